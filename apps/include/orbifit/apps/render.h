@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+using Colour = Eigen::Vector3f;  ///< sRGB in [0, 1]
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< 3 * width * height, top row first
+};
+
+/// What to draw; everything in one frame.
+struct SurfaceLayer {
+  Mesh mesh;
+  std::vector<Colour> face_colours;    ///< #F, or one for all, or empty for the default clay
+  std::vector<Colour> vertex_colours;  ///< #V, interpolated; takes precedence
+  double opacity = 1;                  ///< below 1 it is drawn as glass over what is behind
+  bool edges = false;                  ///< draw the mesh's edges
+};
+struct PointLayer {
+  Points points;
+  Colour colour{0.85F, 0.2F, 0.15F};
+  double radius = 0.003;  ///< fraction of the scene's diagonal
+};
+struct SegmentLayer {  // axes, arrows, frames
+  Points from, to;     ///< #S by 3 each
+  Colour colour{0.1F, 0.1F, 0.1F};
+  double radius = 0.002;  ///< fraction of the scene's diagonal
+};
+struct Scene {
+  std::vector<SurfaceLayer> surfaces;
+  std::vector<PointLayer> points;
+  std::vector<SegmentLayer> segments;
+};
+
+struct ViewOptions {
+  int width = 800, height = 600;    ///< pixels
+  double azimuth = 35;              ///< degrees about `up`
+  double elevation = 25;            ///< degrees
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double field_of_view = 30;        ///< vertical, degrees
+  int samples = 9;                  ///< rays per pixel, a square number
+  bool ground_shadow = true;        ///< soft shadow under the shape
+  /// Box that the picture frames; empty: the scene's. Set it to keep two pictures at one scale.
+  Points frame;
+  Colour background{1, 1, 1};
+};
+
+/// Ray-cast picture with soft light and ambient occlusion; the same scene gives the same bytes.
+Image render(const Scene& scene, const ViewOptions& view, const RunContext& context);
+
+/// Distinct colours, one a region; the same number gives the same colour.
+Colour region_colour(int number);
+
+/// Blue to white to red, or white to red, for values in [0, 1].
+Colour heat_colour(double value);
+
+/// The mesh in grey, with a region's faces in its colour and its axis (or mirror plane's outline) drawn.
+Scene region_scene(const Mesh& mesh, const Region& region);
+
+/// The mesh with an instance of each colour.
+Scene pattern_scene(const Mesh& mesh, const Pattern& pattern);
+
+/// Small pictures side by side with a caption each, in rows.
+Image contact_sheet(const std::vector<Image>& images, const std::vector<std::string>& captions, int columns);
+
+std::string encode_png(const Image& image);
+void write_png(const std::filesystem::path& file, const Image& image);  ///< whole or not at all
+
+}  // namespace orbifit

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+struct DetectOptions {
+  /// Largest distance between g(S) and S that still counts as symmetric, as a fraction of the mesh's diagonal.
+  double tolerance = 0.005;  // 1e-6 <= tolerance <= 0.1
+  /// Surface samples on which a whole mesh is verified; parts get a share by area.
+  int samples = 4000;  // >= 100
+  /// Stop after this many seconds and return what is verified by then.
+  double max_seconds = 0;  // >= 0; 0: no limit
+
+  /// \throw UsageError naming the field, its value and the rule
+  void validate() const;
+};
+
+/// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of its
+/// connected components and sets of congruent components, and the congruences among components as patterns.
+/// Every element of a returned group was verified against the surface. Sorted by area, largest first; parents set.
+/// The result is the same for any number of threads.
+/// \throw InputError when the mesh has no area
+SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
+
+}  // namespace orbifit

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+
+/// Points on a surface: each with its face and that face's normal.
+struct SurfaceSamples {
+  Points points;           ///< #S by 3
+  Points normals;          ///< #S by 3, unit
+  std::vector<int> faces;  ///< #S
+};
+
+/// `count` points uniform by area over the given faces (empty: all), stratified along the faces' order.
+/// \throw InputError when those faces have no area
+SurfaceSamples sample_surface(const Mesh& mesh, int count, Random& random, const std::vector<int>& faces = {});
+
+}  // namespace orbifit

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "orbifit/model/mesh.h"
+
+namespace orbifit {
+
+/// Nearest points and rays on a triangle mesh. Distances are exact in double precision (the tree, Embree's, only culls);
+/// among faces at the same distance the lowest number wins. Const calls may run on several threads.
+class SurfaceIndex {
+ public:
+  /// \param faces the faces to index; empty means all. The mesh is copied as far as needed.
+  explicit SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces = {});
+  ~SurfaceIndex();
+  SurfaceIndex(SurfaceIndex&&) noexcept;
+  SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
+
+  struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();
+    int face = -1;                                          ///< number in the mesh; -1: none within reach
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();        ///< on the face
+    Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< of that point, sums to 1
+  };
+
+  /// O(log F). Nearest point within `max_distance`.
+  Nearest nearest(const Eigen::Vector3d& point,
+                  double max_distance = std::numeric_limits<double>::infinity()) const;
+
+  /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
+  Nearest nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
+                         double max_distance = std::numeric_limits<double>::infinity(),
+                         bool unsigned_normal = false) const;
+
+  struct Hit {
+    double distance = 0;  ///< along the unit direction
+    int face = -1;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
+  };
+
+  /// First face along a ray; single precision relative to the mesh's diagonal.
+  std::optional<Hit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                          double min_distance = 0) const;
+
+  /// Whether anything lies within `max_distance` along the ray; cheaper than cast().
+  bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double min_distance,
+                double max_distance) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Barycentric coordinates of the point of triangle (a, b, c) nearest to p (Ericson 2005, section 5.1.5); a degenerate
+/// triangle is treated as its edges.
+Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                    const Eigen::Vector3d& c);
+
+}  // namespace orbifit

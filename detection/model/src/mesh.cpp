@@ -1,0 +1,80 @@
+#include "orbifit/model/mesh.h"
+
+#include <Eigen/Geometry>
+
+namespace orbifit {
+
+namespace {
+
+Eigen::Vector3d area_vector(const Mesh& mesh, Eigen::Index face) {
+  const Eigen::Vector3d a = mesh.vertices.row(mesh.faces(face, 0));
+  const Eigen::Vector3d b = mesh.vertices.row(mesh.faces(face, 1));
+  const Eigen::Vector3d c = mesh.vertices.row(mesh.faces(face, 2));
+  return 0.5 * (b - a).cross(c - a);
+}
+
+}  // namespace
+
+double diagonal(const Points& points) {
+  if (points.rows() == 0) return 0;
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+}
+
+Eigen::Vector3d bounding_box_centre(const Points& points) {
+  if (points.rows() == 0) return Eigen::Vector3d::Zero();
+  return 0.5 * (points.colwise().maxCoeff() + points.colwise().minCoeff()).transpose();
+}
+
+Points face_normals(const Mesh& mesh) {
+  Points normals(mesh.faces.rows(), 3);
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    const Eigen::Vector3d vector = area_vector(mesh, f);
+    const double length = vector.stableNorm();
+    normals.row(f) = length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
+  }
+  return normals;
+}
+
+Eigen::VectorXd face_areas(const Mesh& mesh) {
+  Eigen::VectorXd areas(mesh.faces.rows());
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) areas[f] = area_vector(mesh, f).norm();
+  return areas;
+}
+
+Points vertex_normals(const Mesh& mesh) {
+  Points normals = Points::Zero(mesh.vertices.rows(), 3);
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    const Eigen::Vector3d vector = area_vector(mesh, f);
+    for (int k = 0; k < 3; ++k) normals.row(mesh.faces(f, k)) += vector;
+  }
+  for (Eigen::Index v = 0; v < normals.rows(); ++v) {
+    const double length = normals.row(v).stableNorm();
+    if (length > 0) normals.row(v) /= length;
+  }
+  return normals;
+}
+
+Mesh submesh(const Mesh& mesh, const std::vector<int>& faces, std::vector<int>* vertex_of) {
+  std::vector<int> number(static_cast<std::size_t>(mesh.vertices.rows()), -1);
+  for (const int f : faces) {
+    for (int k = 0; k < 3; ++k) number[static_cast<std::size_t>(mesh.faces(f, k))] = 0;
+  }
+  std::vector<int> kept;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = static_cast<int>(kept.size());
+    kept.push_back(static_cast<int>(v));
+  }
+  Mesh result;
+  result.vertices = mesh.vertices(kept, Eigen::all);
+  result.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      result.faces(static_cast<Eigen::Index>(f), k) = number[static_cast<std::size_t>(mesh.faces(faces[f], k))];
+    }
+  }
+  if (vertex_of != nullptr) *vertex_of = std::move(kept);
+  return result;
+}
+
+}  // namespace orbifit

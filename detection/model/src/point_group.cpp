@@ -1,0 +1,495 @@
+#include "orbifit/model/point_group.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace orbifit {
+
+namespace {
+
+using Family = PointGroup::Family;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+struct Named {
+  Family family;
+  std::string_view symbol;
+  int order;
+};
+
+// The families whose symbol holds no number.
+constexpr std::array<Named, 17> kNamed{{{Family::C1, "C1", 1},
+                                        {Family::Cs, "Cs", 2},
+                                        {Family::Ci, "Ci", 2},
+                                        {Family::T, "T", 12},
+                                        {Family::Td, "Td", 24},
+                                        {Family::Th, "Th", 24},
+                                        {Family::O, "O", 24},
+                                        {Family::Oh, "Oh", 48},
+                                        {Family::I, "I", 60},
+                                        {Family::Ih, "Ih", 120},
+                                        {Family::Cinf, "Cinf", 0},
+                                        {Family::Cinfv, "Cinfv", 0},
+                                        {Family::Cinfh, "Cinfh", 0},
+                                        {Family::Dinf, "Dinf", 0},
+                                        {Family::Dinfh, "Dinfh", 0},
+                                        {Family::K, "K", 0},
+                                        {Family::Kh, "Kh", 0}}};
+
+struct Numbered {
+  Family family;
+  char letter;
+  std::string_view suffix;
+  int multiple;  // order / n
+};
+
+constexpr std::array<Numbered, 7> kNumbered{{{Family::Cn, 'C', "", 1},
+                                             {Family::Cnv, 'C', "v", 2},
+                                             {Family::Cnh, 'C', "h", 2},
+                                             {Family::Dn, 'D', "", 2},
+                                             {Family::Dnh, 'D', "h", 4},
+                                             {Family::Dnd, 'D', "d", 4},
+                                             {Family::Sn, 'S', "", 1}}};
+
+const Named* find_named(Family family) {
+  const auto* found = std::ranges::find(kNamed, family, &Named::family);
+  return found == kNamed.end() ? nullptr : found;
+}
+
+const Numbered& find_numbered(Family family) { return *std::ranges::find(kNumbered, family, &Numbered::family); }
+
+Matrix3d diagonal_matrix(double x, double y, double z) { return Vector3d(x, y, z).asDiagonal(); }
+
+const Matrix3d kMirrorX = diagonal_matrix(-1, 1, 1);
+const Matrix3d kMirrorZ = diagonal_matrix(1, 1, -1);
+const Matrix3d kHalfTurnX = diagonal_matrix(1, -1, -1);
+const Matrix3d kHalfTurnZ = diagonal_matrix(-1, -1, 1);
+
+// Rotation about z by 2 pi k / n; quarter turns come out exact, opposite angles exactly opposite.
+Matrix3d turn(int k, int n) {
+  const int eighths = 8 * (((k % n) + n) % n);
+  const int octant = eighths / n;
+  double angle = 2 * std::numbers::pi * (eighths - octant * n) / (8.0 * n);
+  std::array<double, 2> base{std::cos(angle), std::sin(angle)};
+  if (octant % 2 == 1) {  // measured back from the end of its quadrant
+    angle = 2 * std::numbers::pi * ((octant + 1) * n - eighths) / (8.0 * n);
+    base = {std::sin(angle), std::cos(angle)};
+  }
+  double c = base[0];
+  double s = base[1];
+  for (int quadrant = 0; quadrant < octant / 2; ++quadrant) {
+    const double old = c;
+    c = -s;
+    s = old;
+  }
+  Matrix3d matrix;
+  matrix << c, -s, 0, s, c, 0, 0, 0, 1;
+  return matrix;
+}
+
+Matrix3d cyclic_permutation() {
+  Matrix3d matrix;
+  matrix << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  return matrix;
+}
+
+// One fifth of a turn about (0, 1, phi), entries snapped to their closed form.
+Matrix3d fifth_turn() {
+  const double phi = std::numbers::phi;
+  Matrix3d matrix = axis_rotation(Vector3d(0, 1, phi).normalized(), 2 * std::numbers::pi / 5);
+  for (double& entry : matrix.reshaped()) {
+    for (const double exact : {0.0, 0.5, phi / 2, (phi - 1) / 2}) {
+      if (std::abs(std::abs(entry) - exact) < 1e-9) entry = std::copysign(exact, entry);
+    }
+  }
+  return matrix;
+}
+
+std::vector<Matrix3d> tetrahedral_rotations() {
+  std::vector<Matrix3d> result;
+  const Matrix3d cycle = cyclic_permutation();
+  const std::array<Matrix3d, 3> cycles{Matrix3d::Identity(), cycle, cycle * cycle};
+  for (const Matrix3d& permutation : cycles) {
+    for (const Matrix3d& half : {Matrix3d(Matrix3d::Identity()), kHalfTurnX, kHalfTurnZ, Matrix3d(kHalfTurnX * kHalfTurnZ)}) {
+      result.push_back(half * permutation);
+    }
+  }
+  return result;
+}
+
+void append_products(std::vector<Matrix3d>& matrices, const Matrix3d& right) {
+  const std::size_t count = matrices.size();
+  for (std::size_t i = 0; i < count; ++i) matrices.push_back(matrices[i] * right);
+}
+
+std::vector<Matrix3d> canonical_elements(const PointGroup& group) {
+  const int n = group.n;
+  const Matrix3d inversion = -Matrix3d::Identity();
+  std::vector<Matrix3d> result;
+  const auto turns = [&] {
+    for (int k = 0; k < n; ++k) result.push_back(turn(k, n));
+  };
+  switch (group.family) {
+    case Family::Cs:
+      return {Matrix3d::Identity(), kMirrorZ};
+    case Family::Ci:
+      return {Matrix3d::Identity(), inversion};
+    case Family::Cn:
+      turns();
+      break;
+    case Family::Cnv:
+      turns();
+      append_products(result, kMirrorX);
+      break;
+    case Family::Cnh:
+      turns();
+      append_products(result, kMirrorZ);
+      break;
+    case Family::Dn:
+      turns();
+      append_products(result, kHalfTurnX);
+      break;
+    case Family::Dnh:
+      turns();
+      append_products(result, kHalfTurnX);
+      append_products(result, kMirrorZ);
+      break;
+    case Family::Dnd:
+      turns();
+      append_products(result, kHalfTurnX);
+      append_products(result, turn(1, 2 * n) * kMirrorZ);
+      break;
+    case Family::Sn:
+      for (int k = 0; k < n; ++k) result.push_back(k % 2 == 0 ? turn(k, n) : Matrix3d(turn(k, n) * kMirrorZ));
+      break;
+    case Family::T:
+      return tetrahedral_rotations();
+    case Family::Td:
+      result = tetrahedral_rotations();
+      append_products(result, turn(1, 4) * kMirrorZ);
+      break;
+    case Family::Th:
+      result = tetrahedral_rotations();
+      append_products(result, inversion);
+      break;
+    case Family::O:
+    case Family::Oh:
+      result = tetrahedral_rotations();
+      append_products(result, turn(1, 4));
+      if (group.family == Family::Oh) append_products(result, inversion);
+      break;
+    case Family::I:
+    case Family::Ih: {
+      const std::vector<Matrix3d> tetrahedral = tetrahedral_rotations();
+      Matrix3d power = Matrix3d::Identity();
+      for (int k = 0; k < 5; ++k) {
+        for (const Matrix3d& element : tetrahedral) result.push_back(power * element);
+        power = fifth_turn() * power;
+      }
+      if (group.family == Family::Ih) append_products(result, inversion);
+      break;
+    }
+    default:
+      return {Matrix3d::Identity()};
+  }
+  return result;
+}
+
+std::vector<Matrix3d> canonical_generators(const PointGroup& group) {
+  const int n = group.n;
+  const Matrix3d inversion = -Matrix3d::Identity();
+  const Matrix3d cycle = cyclic_permutation();
+  const Matrix3d slide = axis_rotation(Vector3d::UnitZ(), 1);
+  switch (group.family) {
+    case Family::Cs:
+      return {kMirrorZ};
+    case Family::Ci:
+      return {inversion};
+    case Family::Cn:
+      return {turn(1, n)};
+    case Family::Cnv:
+      return {turn(1, n), kMirrorX};
+    case Family::Cnh:
+      return {turn(1, n), kMirrorZ};
+    case Family::Dn:
+      return {turn(1, n), kHalfTurnX};
+    case Family::Dnh:
+      return {turn(1, n), kHalfTurnX, kMirrorZ};
+    case Family::Dnd:
+      return {turn(1, 2 * n) * kMirrorZ, kHalfTurnX};
+    case Family::Sn:
+      return {turn(1, n) * kMirrorZ};
+    case Family::T:
+      return {kHalfTurnZ, cycle};
+    case Family::Td:
+      return {turn(1, 4) * kMirrorZ, cycle};
+    case Family::Th:
+      return {kHalfTurnZ, cycle, inversion};
+    case Family::O:
+      return {turn(1, 4), cycle};
+    case Family::Oh:
+      return {turn(1, 4), cycle, inversion};
+    case Family::I:
+      return {kHalfTurnZ, cycle, fifth_turn()};
+    case Family::Ih:
+      return {kHalfTurnZ, cycle, fifth_turn(), inversion};
+    case Family::Cinf:
+      return {slide};
+    case Family::Cinfv:
+      return {slide, kMirrorX};
+    case Family::Cinfh:
+      return {slide, kMirrorZ};
+    case Family::Dinf:
+      return {slide, kHalfTurnX};
+    case Family::Dinfh:
+      return {slide, kHalfTurnX, kMirrorZ};
+    case Family::K:
+      return {slide, axis_rotation(Vector3d::UnitX(), 1)};
+    case Family::Kh:
+      return {slide, axis_rotation(Vector3d::UnitX(), 1), inversion};
+    case Family::C1:
+      break;
+  }
+  return {Matrix3d::Identity()};
+}
+
+std::vector<Matrix3d> in_frame(std::vector<Matrix3d> matrices, const GroupFrame& frame) {
+  for (Matrix3d& matrix : matrices) matrix = frame * matrix * frame.transpose();
+  return matrices;
+}
+
+// ---- classification
+
+struct Axis {
+  Vector3d direction;
+  int order;  // number of rotations about it, the identity included
+};
+
+struct Inventory {
+  std::vector<Axis> axes;          // of the proper rotations, by descending order
+  std::vector<Vector3d> mirrors;   // normals
+  int proper = 0;
+  int improper = 0;
+  bool inversion = false;
+};
+
+Inventory take_inventory(const std::vector<Matrix3d>& linear, double tolerance) {
+  Inventory result;
+  for (const Matrix3d& matrix : linear) {
+    const AxisAngle part = axis_angle(matrix);
+    if (part.determinant < 0) {
+      ++result.improper;
+      if (part.angle < tolerance) result.inversion = true;
+      if (part.angle > std::numbers::pi - tolerance) result.mirrors.push_back(part.axis);
+      continue;
+    }
+    ++result.proper;
+    if (part.angle < tolerance) continue;
+    const auto same = std::ranges::find_if(result.axes, [&](const Axis& axis) {
+      return axis.direction.cross(part.axis).norm() < 4 * tolerance;
+    });
+    if (same != result.axes.end()) {
+      ++same->order;
+    } else {
+      result.axes.push_back({part.axis, 2});
+    }
+  }
+  std::ranges::stable_sort(result.axes, std::greater<>(), &Axis::order);
+  return result;
+}
+
+bool perpendicular(const Vector3d& a, const Vector3d& b, double tolerance) { return std::abs(a.dot(b)) < tolerance; }
+
+GroupFrame orthogonal_axes_frame(const std::vector<Axis>& axes, int order, double tolerance) {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (std::size_t j = i + 1; j < axes.size(); ++j) {
+      if (axes[i].order != order || axes[j].order != order) continue;
+      if (!perpendicular(axes[i].direction, axes[j].direction, tolerance)) continue;
+      return frame_about(axes[i].direction, axes[j].direction);
+    }
+  }
+  return GroupFrame::Identity();
+}
+
+bool reproduces(const ClassifiedGroup& candidate, const std::vector<Matrix3d>& linear, double tolerance) {
+  const std::vector<Matrix3d> exact = elements(candidate.group, candidate.frame);
+  if (exact.size() != linear.size()) return false;
+  return std::ranges::all_of(exact, [&](const Matrix3d& element) {
+    return std::ranges::any_of(
+        linear, [&](const Matrix3d& given) { return (given - element).cwiseAbs().maxCoeff() < tolerance; });
+  });
+}
+
+// The groups that could have this inventory, with their frames; reproduces() decides.
+std::vector<ClassifiedGroup> candidates(const Inventory& have, double tolerance) {
+  const auto axis_frame = [&](const Vector3d& axis, const std::vector<Vector3d>& across) {
+    for (const Vector3d& direction : across) {
+      if (perpendicular(axis, direction, tolerance)) return frame_about(axis, direction);
+    }
+    return frame_about(axis);
+  };
+  std::vector<ClassifiedGroup> result;
+  const auto add = [&](Family family, int n, const GroupFrame& frame) { result.push_back({{family, n}, frame}); };
+  if (have.axes.empty()) {
+    if (have.improper == 0) add(Family::C1, 1, GroupFrame::Identity());
+    if (have.inversion) add(Family::Ci, 1, GroupFrame::Identity());
+    if (!have.mirrors.empty()) add(Family::Cs, 1, frame_about(have.mirrors.front()));
+    return result;
+  }
+  if (have.axes.size() == 1) {
+    const Axis& main = have.axes.front();
+    add(Family::Cn, main.order, frame_about(main.direction));
+    add(Family::Cnv, main.order, axis_frame(main.direction, have.mirrors));
+    add(Family::Cnh, main.order, frame_about(main.direction));
+    add(Family::Sn, 2 * main.order, frame_about(main.direction));
+    return result;
+  }
+  if (have.proper == 12 || have.proper == 24) {
+    const int order = have.proper == 12 ? 2 : 4;
+    const GroupFrame frame = orthogonal_axes_frame(have.axes, order, tolerance);
+    for (const Family family : {Family::T, Family::Td, Family::Th, Family::O, Family::Oh}) add(family, 1, frame);
+  }
+  if (have.proper == 60) {
+    const GroupFrame frame = orthogonal_axes_frame(have.axes, 2, tolerance);
+    for (const Family family : {Family::I, Family::Ih}) {
+      add(family, 1, frame);
+      add(family, 1, frame * turn(1, 4));
+    }
+  }
+  std::vector<Vector3d> twofold;
+  for (const Axis& axis : have.axes) {
+    if (axis.order == 2) twofold.push_back(axis.direction);
+  }
+  // D2, D2h and D2d have three axes of order 2, any of which may be the main one; else the first axis is.
+  for (const Axis& main : have.axes) {
+    if (main.order < have.axes.front().order) break;
+    const GroupFrame frame = axis_frame(main.direction, twofold);
+    for (const Family family : {Family::Dn, Family::Dnh, Family::Dnd}) add(family, main.order, frame);
+  }
+  return result;
+}
+
+}  // namespace
+
+bool PointGroup::continuous() const {
+  const Named* named = find_named(family);
+  return named != nullptr && named->order == 0;
+}
+
+int PointGroup::order() const {
+  const Named* named = find_named(family);
+  return named != nullptr ? named->order : n * find_numbered(family).multiple;
+}
+
+bool PointGroup::has_axis() const {
+  switch (family) {
+    case Family::C1:
+    case Family::Ci:
+    case Family::T:
+    case Family::Td:
+    case Family::Th:
+    case Family::O:
+    case Family::Oh:
+    case Family::I:
+    case Family::Ih:
+    case Family::K:
+    case Family::Kh:
+      return false;
+    default:
+      return true;
+  }
+}
+
+bool PointGroup::proper() const {
+  switch (family) {
+    case Family::C1:
+    case Family::Cn:
+    case Family::Dn:
+    case Family::T:
+    case Family::O:
+    case Family::I:
+    case Family::Cinf:
+    case Family::Dinf:
+    case Family::K:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string PointGroup::symbol() const {
+  if (const Named* named = find_named(family)) return std::string(named->symbol);
+  const Numbered& numbered = find_numbered(family);
+  return numbered.letter + std::to_string(n) + std::string(numbered.suffix);
+}
+
+std::optional<PointGroup> PointGroup::parse(std::string_view symbol) {
+  for (const Named& named : kNamed) {
+    if (named.symbol == symbol) return PointGroup{named.family, 1};
+  }
+  if (symbol.size() < 2 || symbol[1] == '0') return std::nullopt;
+  int n = 0;
+  const auto [end, error] = std::from_chars(symbol.data() + 1, symbol.data() + symbol.size(), n);
+  if (error != std::errc() || n < 2 || n > 1'000'000) return std::nullopt;
+  const std::string_view suffix(end, static_cast<std::size_t>(symbol.data() + symbol.size() - end));
+  for (const Numbered& numbered : kNumbered) {
+    if (numbered.letter != symbol[0] || numbered.suffix != suffix) continue;
+    if (numbered.family == Family::Sn && (n % 2 != 0 || n < 4)) return std::nullopt;
+    return PointGroup{numbered.family, n};
+  }
+  return std::nullopt;
+}
+
+std::vector<Matrix3d> elements(const PointGroup& group, const GroupFrame& frame) {
+  return in_frame(canonical_elements(group), frame);
+}
+
+std::vector<Matrix3d> generators(const PointGroup& group, const GroupFrame& frame) {
+  return in_frame(canonical_generators(group), frame);
+}
+
+std::optional<ClassifiedGroup> classify(const std::vector<Matrix3d>& linear, double tolerance) {
+  const Inventory have = take_inventory(linear, tolerance);
+  if (have.proper == 0 || (have.improper != 0 && have.improper != have.proper)) return std::nullopt;
+  for (const ClassifiedGroup& candidate : candidates(have, 8 * tolerance)) {
+    if (reproduces(candidate, linear, 8 * tolerance)) return candidate;
+  }
+  return std::nullopt;
+}
+
+bool closed(const std::vector<Motion>& elements, double scale, double tolerance) {
+  for (const Motion& a : elements) {
+    for (const Motion& b : elements) {
+      const Motion product = a * b;
+      const bool found = std::ranges::any_of(elements, [&](const Motion& c) {
+        return (product.linear - c.linear).cwiseAbs().maxCoeff() <= tolerance &&
+               (product.translation - c.translation).cwiseAbs().maxCoeff() <= tolerance * scale;
+      });
+      if (!found) return false;
+    }
+  }
+  return true;
+}
+
+GroupFrame frame_about(const Vector3d& axis, const std::optional<Vector3d>& towards) {
+  const Vector3d z = axis.normalized();
+  Vector3d x = Vector3d::Zero();
+  if (towards) x = *towards - z * z.dot(*towards);
+  if (x.norm() < 1e-9) {
+    int smallest = 0;
+    z.cwiseAbs().minCoeff(&smallest);
+    x = Vector3d::Unit(smallest) - z * z[smallest];
+  }
+  x.normalize();
+  GroupFrame frame;
+  frame << x, z.cross(x), z;
+  return frame;
+}
+
+}  // namespace orbifit

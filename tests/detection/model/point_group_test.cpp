@@ -1,0 +1,103 @@
+#include "orbifit/model/point_group.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+namespace {
+
+std::vector<std::string> finite_symbols() {
+  std::vector<std::string> symbols{"Cs", "Ci", "S4", "S6", "S8", "S10", "S12", "T", "Td", "Th", "O", "Oh", "I", "Ih"};
+  for (int n = 2; n <= 13; ++n) {
+    const std::string number = std::to_string(n);
+    for (const char* suffix : {"", "v", "h"}) symbols.push_back("C" + number + suffix);
+    for (const char* suffix : {"", "h", "d"}) symbols.push_back("D" + number + suffix);
+  }
+  symbols.insert(symbols.end(), {"C64v", "D36h", "D40d"});
+  return symbols;
+}
+
+class FiniteGroup : public testing::TestWithParam<std::string> {
+ protected:
+  PointGroup group_ = PointGroup::parse(GetParam()).value();
+  GroupFrame frame_ = Random(7, GetParam()).rotation();
+};
+
+TEST_P(FiniteGroup, SymbolSurvivesParsing) { EXPECT_EQ(group_.symbol(), GetParam()); }
+
+TEST_P(FiniteGroup, HasAsManyElementsAsItsOrderIdentityFirst) {
+  const auto all = elements(group_);
+  ASSERT_EQ(static_cast<int>(all.size()), group_.order());
+  EXPECT_EQ(all.front(), Eigen::Matrix3d(Eigen::Matrix3d::Identity()));
+}
+
+TEST_P(FiniteGroup, ProductsAreElementsToRounding) {
+  std::vector<Motion> motions;
+  for (const Eigen::Matrix3d& linear : elements(group_, frame_)) motions.push_back({linear, Eigen::Vector3d::Zero()});
+  EXPECT_TRUE(closed(motions, 1, 4e-15));
+}
+
+TEST_P(FiniteGroup, ElementsDiffer) {
+  const auto all = elements(group_, frame_);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT((all[i] - all[j]).norm(), 0.01);
+  }
+}
+
+TEST_P(FiniteGroup, GeneratorsGenerateIt) {
+  const auto seeds = generators(group_, frame_);
+  std::vector<Eigen::Matrix3d> reached{Eigen::Matrix3d::Identity()};
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    ASSERT_LE(reached.size(), static_cast<std::size_t>(group_.order()));
+    for (const Eigen::Matrix3d& seed : seeds) {
+      const Eigen::Matrix3d product = seed * reached[i];
+      bool known = false;
+      for (const Eigen::Matrix3d& other : reached) known = known || (other - product).norm() < 1e-6;
+      if (!known) reached.push_back(product);
+    }
+  }
+  EXPECT_EQ(static_cast<int>(reached.size()), group_.order());
+}
+
+TEST_P(FiniteGroup, IsRecognisedInAnyPoseAndOrder) {
+  auto all = elements(group_, frame_);
+  std::reverse(all.begin(), all.end());
+  const auto found = classify(all);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->group.symbol(), GetParam());
+}
+
+TEST_P(FiniteGroup, WithoutOneElementItIsNoGroup) {
+  auto all = elements(group_, frame_);
+  all.pop_back();
+  const auto found = classify(all);
+  // What is left of a group of order 2 is the trivial group.
+  EXPECT_EQ(found.has_value() ? found->group.symbol() : "none", group_.order() == 2 ? "C1" : "none");
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& info) { return info.param; }
+INSTANTIATE_TEST_SUITE_P(All, FiniteGroup, testing::ValuesIn(finite_symbols()), test_name);
+
+TEST(PointGroup, RefusesWhatIsNoSymbol) {
+  for (const char* text : {"", "C", "C0", "C01", "Cx", "S3", "S2", "Dv", "C4x", "D3v", "c4", "Th2", "C4v ", "D-2"}) {
+    EXPECT_FALSE(PointGroup::parse(text).has_value()) << text;
+  }
+}
+
+TEST(PointGroup, ContinuousGroupsHaveOrderZero) {
+  for (const char* text : {"Cinf", "Cinfv", "Cinfh", "Dinf", "Dinfh", "K", "Kh"}) {
+    const auto group = PointGroup::parse(text);
+    ASSERT_TRUE(group.has_value()) << text;
+    EXPECT_TRUE(group->continuous());
+    EXPECT_EQ(group->order(), 0);
+    EXPECT_EQ(group->symbol(), text);
+    EXPECT_FALSE(generators(*group).empty());
+  }
+}
+
+}  // namespace
+}  // namespace orbifit
