@@ -1,1 +1,418 @@
+#include "orbifit/model/surface_index.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <embree3/rtcore.h>
+
+#include "orbifit/model/errors.h"
+
+namespace orbifit {
+
+namespace {
+
+// Beyond this many boxes from the mesh single precision cannot tell its faces apart: every face is then measured.
+constexpr double kFarAway = 1e6;
+
+// Rounding of vertices, of the query and of Embree's own arithmetic, in units of the box; several times the worst case.
+constexpr double kCullMargin = 1e-6;
+
+// Squared sine of a corner below which the face's plane is too ill-defined to tell the regions of Ericson's method.
+constexpr double kSliver = 1e-8;
+
+using Device = std::shared_ptr<RTCDeviceTy>;
+
+// One device serves all indices for as long as one lives. It builds on the calling thread alone.
+Device shared_device() {
+  static std::mutex mutex;
+  static std::weak_ptr<RTCDeviceTy> current;
+  const std::lock_guard lock(mutex);
+  Device device = current.lock();
+  if (!device) {
+    device = Device(rtcNewDevice("threads=1,set_affinity=0"), [](RTCDevice handle) {
+      if (handle != nullptr) rtcReleaseDevice(handle);
+    });
+    if (!device) throw Error("Embree cannot create its device");
+    current = device;
+  }
+  return device;
+}
+
+struct Corners {
+  Eigen::Vector3d a, b, c;
+
+  Eigen::Vector3d at(const Eigen::Vector3d& weights) const { return a + weights[1] * (b - a) + weights[2] * (c - a); }
+};
+
+// Parameter in [0, 1] of the point of segment a + t ab nearest to a + ap.
+double nearest_on_segment(const Eigen::Vector3d& ap, const Eigen::Vector3d& ab) {
+  const double length = ab.squaredNorm();
+  return length > 0 ? std::clamp(ap.dot(ab) / length, 0.0, 1.0) : 0.0;
+}
+
+// Nearest among the three edges and, where it exists, the projection on the plane.
+Eigen::Vector3d nearest_on_sliver(const Eigen::Vector3d& p, const Corners& face) {
+  const Eigen::Vector3d ab = face.b - face.a;
+  const Eigen::Vector3d ac = face.c - face.a;
+  const Eigen::Vector3d ap = p - face.a;
+  const double on_ab = nearest_on_segment(ap, ab);
+  const double on_ac = nearest_on_segment(ap, ac);
+  const double on_bc = nearest_on_segment(p - face.b, face.c - face.b);
+  Eigen::Vector3d candidates[4] = {
+      {1 - on_ab, on_ab, 0}, {1 - on_ac, 0, on_ac}, {0, 1 - on_bc, on_bc}, {1 - on_ab, on_ab, 0}};
+  const Eigen::Vector3d normal = ab.cross(ac);
+  const double squared_area = normal.squaredNorm();
+  if (squared_area > 0) {
+    const double v = normal.dot(ap.cross(ac)) / squared_area;
+    const double w = normal.dot(ab.cross(ap)) / squared_area;
+    if (v >= 0 && w >= 0 && v + w <= 1) candidates[3] = {1 - v - w, v, w};
+  }
+  return *std::min_element(candidates, candidates + 4, [&](const Eigen::Vector3d& left, const Eigen::Vector3d& right) {
+    return (face.at(left) - p).squaredNorm() < (face.at(right) - p).squaredNorm();
+  });
+}
+
+// Ericson 2005, section 5.1.5. \pre lengths are between 1e-70 and 1e70, so that their fourth powers are finite.
+Eigen::Vector3d nearest_weights(const Eigen::Vector3d& p, const Corners& face) {
+  const Eigen::Vector3d ab = face.b - face.a;
+  const Eigen::Vector3d ac = face.c - face.a;
+  if (ab.cross(ac).squaredNorm() <= kSliver * ab.squaredNorm() * ac.squaredNorm()) return nearest_on_sliver(p, face);
+
+  const Eigen::Vector3d ap = p - face.a;
+  const double d1 = ab.dot(ap);
+  const double d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+
+  const Eigen::Vector3d bp = p - face.b;
+  const double d3 = ab.dot(bp);
+  const double d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double v = d1 / (d1 - d3);
+    return {1 - v, v, 0};
+  }
+
+  const Eigen::Vector3d cp = p - face.c;
+  const double d5 = ab.dot(cp);
+  const double d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double w = d2 / (d2 - d6);
+    return {1 - w, 0, w};
+  }
+
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+
+  const double denominator = va + vb + vc;
+  if (!(denominator > 0)) return nearest_on_sliver(p, face);
+  const double v = vb / denominator;
+  const double w = vc / denominator;
+  return {1 - v - w, v, w};
+}
+
+// The power of two that brings `length` near 1: multiplying by it does not round.
+double unit_scale(double length) {
+  return length > 0 && std::isfinite(length) ? std::ldexp(1.0, -std::clamp(std::ilogb(length), -1000, 1000)) : 1.0;
+}
+
+}  // namespace
+
+Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                    const Eigen::Vector3d& c) {
+  const Eigen::Vector3d largest = (p - a).cwiseAbs().cwiseMax((b - a).cwiseAbs()).cwiseMax((c - a).cwiseAbs());
+  const double scale = unit_scale(largest.maxCoeff());
+  return nearest_weights(scale * (p - a), {Eigen::Vector3d::Zero(), scale * (b - a), scale * (c - a)});
+}
+
+struct SurfaceIndex::Implementation {
+  Device device;
+  RTCScene scene = nullptr;
+  double scale = 1;                                  // a power of two; lengths below are in scaled units
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
+  std::vector<Corners> corners;                      // scaled units
+  std::vector<Eigen::Vector3d> normals;              // unit, zero for degenerate faces
+  std::vector<int> face_numbers;                     // in the mesh
+
+  Implementation() = default;
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+  ~Implementation() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+
+  void build();
+  Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
+                  bool unsigned_normal) const;
+
+  // A ray in Embree's frame, with the way by which its origin was moved towards the mesh.
+  struct LocalRay {
+    RTCRay ray;
+    double advance;  // scaled units
+    bool misses;
+  };
+  LocalRay local_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& unit_direction, double min_distance,
+                     double max_distance) const;
+};
+
+namespace {
+
+// State of one nearest-point query; Embree hands it to the callback.
+struct Search {
+  const Corners* corners = nullptr;
+  const Eigen::Vector3d* normals = nullptr;
+  const int* face_numbers = nullptr;
+  Eigen::Vector3d point;  // scaled units
+  double max_distance = 0;
+  double margin = 0;
+
+  const Eigen::Vector3d* facing = nullptr;
+  double min_cosine = 0;
+  bool unsigned_normal = false;
+
+  double squared_distance = std::numeric_limits<double>::infinity();
+  int face = -1;
+  unsigned position = 0;
+  Eigen::Vector3d barycentric;
+
+  // The radius in single precision that still reaches every face at most this far.
+  float reach(double distance) const { return static_cast<float>(distance * (1 + kCullMargin) + margin); }
+
+  bool faces_the_right_way(unsigned triangle) const {
+    if (facing == nullptr) return true;
+    const double cosine = normals[triangle].dot(*facing);
+    return (unsigned_normal ? std::abs(cosine) : cosine) >= min_cosine;
+  }
+};
+
+bool measure(RTCPointQueryFunctionArguments* arguments) {
+  Search& search = *static_cast<Search*>(arguments->userPtr);
+  const unsigned triangle = arguments->primID;
+  if (!search.faces_the_right_way(triangle)) return false;
+  const Corners& corners = search.corners[triangle];
+  const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
+  const double squared = (corners.at(barycentric) - search.point).squaredNorm();
+  if (!(squared <= search.squared_distance)) return false;
+  const int face = search.face_numbers[triangle];
+  // Equal distances: the lowest number, whatever the order in which the tree is walked.
+  if (squared == search.squared_distance && search.face >= 0 && face >= search.face) return false;
+  const double distance = std::sqrt(squared);
+  if (distance > search.max_distance) return false;
+  search.squared_distance = squared;
+  search.face = face;
+  search.position = triangle;
+  search.barycentric = barycentric;
+  const float reach = search.reach(distance);
+  if (!(reach < arguments->query->radius)) return false;
+  arguments->query->radius = reach;
+  return true;
+}
+
+}  // namespace
+
+void SurfaceIndex::Implementation::build() {
+  Eigen::AlignedBox3d box;
+  for (const Corners& face : corners) box.extend(face.a).extend(face.b).extend(face.c);
+  // Unscaled so far: choose the scale, then apply it.
+  scale = unit_scale(box.sizes().maxCoeff());
+  centre = scale * (0.5 * box.min() + 0.5 * box.max());
+  normals.reserve(corners.size());
+  for (Corners& face : corners) {
+    face = {scale * face.a, scale * face.b, scale * face.c};
+    const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
+    const double length = vector.stableNorm();
+    normals.emplace_back(length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero());
+  }
+
+  device = shared_device();
+  scene = rtcNewScene(device.get());
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                3 * sizeof(float), 3 * corners.size()));
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), corners.size()));
+  const bool allocated = positions != nullptr && indices != nullptr;
+  if (allocated) {
+    for (const Corners& face : corners) {
+      for (const Eigen::Vector3d* corner : {&face.a, &face.b, &face.c}) {
+        const Eigen::Vector3f position = (*corner - centre).cast<float>();
+        positions = std::copy_n(position.data(), 3, positions);
+      }
+    }
+    std::iota(indices, indices + 3 * corners.size(), 0U);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+  }
+  rtcReleaseGeometry(geometry);
+  if (!allocated) throw Error("Embree cannot hold " + std::to_string(corners.size()) + " faces");
+  rtcCommitScene(scene);
+}
+
+SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3d& point, double max_distance,
+                                                            const Eigen::Vector3d* normal, double min_cosine,
+                                                            bool unsigned_normal) const {
+  Nearest result;
+  if (corners.empty() || !(max_distance >= 0)) return result;
+  Search search;
+  search.corners = corners.data();
+  search.normals = normals.data();
+  search.face_numbers = face_numbers.data();
+  search.point = scale * point;
+  search.max_distance = scale * max_distance;
+  search.facing = normal;
+  search.min_cosine = min_cosine;
+  search.unsigned_normal = unsigned_normal;
+
+  const Eigen::Vector3d local = search.point - centre;
+  const double offset = local.cwiseAbs().maxCoeff();
+  RTCPointQuery query{};
+  if (offset < kFarAway) {
+    query.x = static_cast<float>(local.x());
+    query.y = static_cast<float>(local.y());
+    query.z = static_cast<float>(local.z());
+    search.margin = kCullMargin * (1 + offset);
+  } else {
+    search.margin = std::numeric_limits<double>::infinity();
+  }
+  query.radius =
+      search.max_distance < 2 * kFarAway ? search.reach(search.max_distance) : std::numeric_limits<float>::infinity();
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, measure, &search);
+  if (search.face < 0) return result;
+  result.distance = std::sqrt(search.squared_distance) / scale;
+  result.face = search.face;
+  result.barycentric = search.barycentric;
+  result.point = corners[search.position].at(search.barycentric) / scale;
+  return result;
+}
+
+SurfaceIndex::Implementation::LocalRay SurfaceIndex::Implementation::local_ray(const Eigen::Vector3d& origin,
+                                                                               const Eigen::Vector3d& unit_direction,
+                                                                               double min_distance,
+                                                                               double max_distance) const {
+  LocalRay local{};
+  Eigen::Vector3d start = scale * origin - centre;
+  // From far away the ray begins anew at a sphere about the box, where single precision resolves the faces.
+  constexpr double kSphere = 2;
+  if (start.cwiseAbs().maxCoeff() > kSphere) {
+    const double along = start.dot(unit_direction);
+    const Eigen::Vector3d closest = start - along * unit_direction;
+    if (closest.norm() > kSphere || along > 0) {
+      local.misses = true;
+      return local;
+    }
+    local.advance = std::max(0.0, -along - kSphere);
+    start += local.advance * unit_direction;
+  }
+  const Eigen::Vector3f org = start.cast<float>();
+  const Eigen::Vector3f dir = unit_direction.cast<float>();
+  const double limit = std::min(scale * max_distance - local.advance, 1e6);
+  local.ray.org_x = org.x();
+  local.ray.org_y = org.y();
+  local.ray.org_z = org.z();
+  local.ray.dir_x = dir.x();
+  local.ray.dir_y = dir.y();
+  local.ray.dir_z = dir.z();
+  local.ray.tnear = static_cast<float>(std::clamp(scale * min_distance - local.advance, 0.0, 1e6));
+  local.ray.tfar = static_cast<float>(limit);
+  local.ray.mask = 0xFFFFFFFFU;
+  local.misses = !(limit >= 0) || !org.allFinite() || !dir.allFinite();
+  return local;
+}
+
+SurfaceIndex::SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces)
+    : implementation_(std::make_unique<Implementation>()) {
+  Implementation& data = *implementation_;
+  data.face_numbers = faces;
+  if (faces.empty()) {
+    data.face_numbers.resize(static_cast<std::size_t>(mesh.faces.rows()));
+    std::iota(data.face_numbers.begin(), data.face_numbers.end(), 0);
+  }
+  if (data.face_numbers.empty()) return;
+  data.corners.reserve(data.face_numbers.size());
+  for (const int face : data.face_numbers) {
+    const auto corner = [&](int k) -> Eigen::Vector3d { return mesh.vertices.row(mesh.faces(face, k)); };
+    data.corners.push_back({corner(0), corner(1), corner(2)});
+  }
+  data.build();
+}
+
+SurfaceIndex::~SurfaceIndex() = default;
+SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
+SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
+
+SurfaceIndex::Nearest SurfaceIndex::nearest(const Eigen::Vector3d& point, double max_distance) const {
+  return implementation_->nearest(point, max_distance, nullptr, 0, false);
+}
+
+SurfaceIndex::Nearest SurfaceIndex::nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                                                   double min_cosine, double max_distance, bool unsigned_normal) const {
+  return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal);
+}
+
+std::optional<SurfaceIndex::Hit> SurfaceIndex::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                                    double min_distance) const {
+  const Implementation& data = *implementation_;
+  if (data.corners.empty()) return std::nullopt;
+  const Eigen::Vector3d unit = direction.stableNormalized();
+  const auto local = data.local_ray(origin, unit, min_distance, std::numeric_limits<double>::infinity());
+  if (local.misses) return std::nullopt;
+  RTCRayHit query{};
+  query.ray = local.ray;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(data.scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+  const Corners& corners = data.corners[query.hit.primID];
+  const auto u = static_cast<double>(query.hit.u);
+  const auto v = static_cast<double>(query.hit.v);
+  Hit hit;
+  hit.face = data.face_numbers[query.hit.primID];
+  hit.barycentric = {1 - u - v, u, v};
+  // The point in double precision, where the ray does not graze the face (Moeller and Trumbore 1997).
+  const Eigen::Vector3d ab = corners.b - corners.a;
+  const Eigen::Vector3d ac = corners.c - corners.a;
+  const Eigen::Vector3d across = unit.cross(ac);
+  const double determinant = ab.dot(across);
+  if (std::abs(determinant) > 1e-6 * ab.norm() * ac.norm()) {
+    const Eigen::Vector3d to_origin = data.scale * origin - corners.a;
+    const double fine_u = std::clamp(to_origin.dot(across) / determinant, 0.0, 1.0);
+    const double fine_v = std::clamp(unit.dot(to_origin.cross(ab)) / determinant, 0.0, 1 - fine_u);
+    if (std::abs(fine_u - u) + std::abs(fine_v - v) < 1e-2) hit.barycentric = {1 - fine_u - fine_v, fine_u, fine_v};
+  }
+  hit.point = corners.at(hit.barycentric) / data.scale;
+  hit.distance = std::max(0.0, (hit.point - origin).dot(unit));
+  return hit;
+}
+
+bool SurfaceIndex::occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double min_distance,
+                            double max_distance) const {
+  const Implementation& data = *implementation_;
+  if (data.corners.empty()) return false;
+  const auto local = data.local_ray(origin, direction.stableNormalized(), min_distance, max_distance);
+  if (local.misses) return false;
+  RTCRay ray = local.ray;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(data.scene, &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace orbifit
