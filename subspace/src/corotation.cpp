@@ -1,0 +1,92 @@
+#include "orbifit/subspace/corotation.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace orbifit {
+
+namespace {
+
+// Weight of the previous rotation against the neighbourhood's covariance: decides only what that leaves open.
+constexpr double kAnchor = 1e-6;
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& covariance) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  return u * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+Corotation corotation(const Points& samples, double distance) {
+  Corotation result;
+  result.rest = samples;
+  result.neighbours.resize(static_cast<std::size_t>(samples.rows()));
+  const SampleEdges edges = neighbour_graph(samples, distance);
+  for (const auto& [i, j] : edges) {
+    result.neighbours[static_cast<std::size_t>(i)].push_back(j);
+    result.neighbours[static_cast<std::size_t>(j)].push_back(i);
+  }
+  result.laplacian = graph_laplacian(edges, samples.rows());
+  result.delta = result.laplacian * samples;
+  return result;
+}
+
+std::vector<Eigen::Matrix3d> local_rotations(const Corotation& corotation, const Points& deformed,
+                                             const std::vector<Eigen::Matrix3d>& previous) {
+  std::vector<Eigen::Matrix3d> rotations(previous.size());
+  for (std::size_t i = 0; i < previous.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    double size = 0;
+    for (const int j : corotation.neighbours[i]) {
+      const Eigen::RowVector3d rest = corotation.rest.row(j) - corotation.rest.row(row);
+      const Eigen::RowVector3d now = deformed.row(j) - deformed.row(row);
+      covariance += now.transpose() * rest;
+      size += rest.squaredNorm();
+    }
+    rotations[i] = size > 0 ? nearest_rotation(covariance + kAnchor * size * previous[i]) : previous[i];
+  }
+  return rotations;
+}
+
+Points corotated_pull(const Corotation& corotation, const std::vector<Eigen::Matrix3d>& rotations) {
+  Points turned(corotation.delta.rows(), 3);
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    turned.row(row) = (rotations[i] * corotation.delta.row(row).transpose()).transpose() - corotation.delta.row(row);
+  }
+  return corotation.laplacian.transpose() * turned;
+}
+
+double laplace_energy(const Corotation& corotation, const std::vector<Eigen::Matrix3d>& rotations,
+                      const Points& displacements) {
+  Points difference = corotation.laplacian * displacements + corotation.delta;
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    difference.row(row) -= (rotations[i] * corotation.delta.row(row).transpose()).transpose();
+  }
+  return difference.squaredNorm();
+}
+
+Eigen::MatrixXd restricted(const Eigen::SparseMatrix<double>& columns, const Eigen::SparseMatrix<double>& scalar) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(3 * static_cast<std::size_t>(scalar.nonZeros()));
+  for (Eigen::Index k = 0; k < scalar.outerSize(); ++k) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(scalar, k); entry; ++entry) {
+      for (int c = 0; c < 3; ++c) entries.emplace_back(3 * entry.row() + c, 3 * entry.col() + c, entry.value());
+    }
+  }
+  Eigen::SparseMatrix<double> block(3 * scalar.rows(), 3 * scalar.cols());
+  block.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> half = block * columns;
+  const Eigen::MatrixXd full = Eigen::MatrixXd(columns.transpose() * half);
+  return 0.5 * (full + full.transpose());
+}
+
+Eigen::VectorXd stacked(const Points& rows) {
+  return Eigen::Map<const Eigen::VectorXd>(rows.data(), rows.size());
+}
+
+}  // namespace orbifit
