@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/point_group.h"
+
+namespace orbifit {
+
+/// Some of a model's faces, ascending.
+using PartFaces = std::vector<int>;
+
+/// The union of disjoint parts.
+PartFaces joined(const std::vector<PartFaces>& parts);
+
+/// A right-handed frame in space: where a part is put and about what it is symmetric.
+struct Placement {
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+
+  operator Motion() const { return {frame, origin}; }  // NOLINT(google-explicit-constructor)
+};
+
+Placement image(const Motion& motion, const Placement& placement);
+
+/// Puts a model together from parts and says what is symmetric.
+class ModelBuilder {
+ public:
+  /// The part's image under `motion`; its faces.
+  PartFaces add(const Mesh& part, const Motion& motion = {});
+
+  /// Declares `faces` symmetric under the group about a place; column 2 of its frame is the axis. Regions of under
+  /// 0.25 % of the model's area are left out: no picture and no measure would show them.
+  void declare(const std::string& name, const PointGroup& group, const Placement& about, const PartFaces& faces);
+
+  /// Declares copies one step apart each.
+  void declare_row(const std::string& name, const Eigen::Vector3d& step, const std::vector<PartFaces>& copies);
+
+  /// The model with all counts, parents and residuals.
+  GeneratedModel finish() const;
+
+ private:
+  Mesh mesh() const;
+
+  std::vector<Mesh> parts_;
+  int faces_ = 0;
+  std::vector<Region> regions_;
+  std::vector<Pattern> patterns_;
+};
+
+}  // namespace orbifit
