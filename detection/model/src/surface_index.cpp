@@ -23,8 +23,8 @@ constexpr double kFarAway = 1e6;
 // Rounding of vertices, of the query and of Embree's own arithmetic, in units of the box; several times the worst case.
 constexpr double kCullMargin = 1e-6;
 
-// Squared sine of a corner below which the face's plane is too ill-defined to tell the regions of Ericson's method.
-constexpr double kSliver = 1e-8;
+// Squared sine of a corner below which Ericson's method, whose products grow with the fourth power, loses digits.
+constexpr double kSliver = 1e-2;
 
 using Device = std::shared_ptr<RTCDeviceTy>;
 
@@ -47,7 +47,14 @@ Device shared_device() {
 struct Corners {
   Eigen::Vector3d a, b, c;
 
-  Eigen::Vector3d at(const Eigen::Vector3d& weights) const { return a + weights[1] * (b - a) + weights[2] * (c - a); }
+  // From p to the point with these weights. Differences first: they lose nothing far from the origin.
+  Eigen::Vector3d from(const Eigen::Vector3d& p, const Eigen::Vector3d& weights) const {
+    if (weights[1] == 1) return b - p;
+    if (weights[2] == 1) return c - p;
+    return (a - p) + (weights[1] * (b - a) + weights[2] * (c - a));
+  }
+
+  Eigen::Vector3d at(const Eigen::Vector3d& weights) const { return from(Eigen::Vector3d::Zero(), weights); }
 };
 
 // Parameter in [0, 1] of the point of segment a + t ab nearest to a + ap.
@@ -56,7 +63,26 @@ double nearest_on_segment(const Eigen::Vector3d& ap, const Eigen::Vector3d& ab) 
   return length > 0 ? std::clamp(ap.dot(ab) / length, 0.0, 1.0) : 0.0;
 }
 
-// Nearest among the three edges and, where it exists, the projection on the plane.
+// Weights of the projection of a + ap, moved into the triangle where it falls outside.
+Eigen::Vector3d project_on_plane(const Eigen::Vector3d& ap, const Eigen::Vector3d& ab, const Eigen::Vector3d& ac) {
+  const Eigen::Vector3d normal = ab.cross(ac);
+  const double squared_area = normal.squaredNorm();
+  if (!(squared_area > 0)) return {1, 0, 0};
+  double v = 0;
+  double w = 0;
+  for (int pass = 0; pass < 3; ++pass) {
+    const Eigen::Vector3d rest = ap - (v * ab + w * ac);
+    v += normal.dot(rest.cross(ac)) / squared_area;
+    w += normal.dot(ab.cross(rest)) / squared_area;
+  }
+  if (!std::isfinite(v) || !std::isfinite(w)) return {1, 0, 0};
+  v = std::clamp(v, 0.0, 1.0);
+  w = std::clamp(w, 0.0, 1 - v);
+  return {1 - v - w, v, w};
+}
+
+// Nearest among the three edges and, where it exists, the projection on the plane, refined twice: thin triangles keep
+// full accuracy.
 Eigen::Vector3d nearest_on_sliver(const Eigen::Vector3d& p, const Corners& face) {
   const Eigen::Vector3d ab = face.b - face.a;
   const Eigen::Vector3d ac = face.c - face.a;
@@ -64,17 +90,10 @@ Eigen::Vector3d nearest_on_sliver(const Eigen::Vector3d& p, const Corners& face)
   const double on_ab = nearest_on_segment(ap, ab);
   const double on_ac = nearest_on_segment(ap, ac);
   const double on_bc = nearest_on_segment(p - face.b, face.c - face.b);
-  Eigen::Vector3d candidates[4] = {
-      {1 - on_ab, on_ab, 0}, {1 - on_ac, 0, on_ac}, {0, 1 - on_bc, on_bc}, {1 - on_ab, on_ab, 0}};
-  const Eigen::Vector3d normal = ab.cross(ac);
-  const double squared_area = normal.squaredNorm();
-  if (squared_area > 0) {
-    const double v = normal.dot(ap.cross(ac)) / squared_area;
-    const double w = normal.dot(ab.cross(ap)) / squared_area;
-    if (v >= 0 && w >= 0 && v + w <= 1) candidates[3] = {1 - v - w, v, w};
-  }
+  const Eigen::Vector3d candidates[4] = {
+      {1 - on_ab, on_ab, 0}, {1 - on_ac, 0, on_ac}, {0, 1 - on_bc, on_bc}, project_on_plane(ap, ab, ac)};
   return *std::min_element(candidates, candidates + 4, [&](const Eigen::Vector3d& left, const Eigen::Vector3d& right) {
-    return (face.at(left) - p).squaredNorm() < (face.at(right) - p).squaredNorm();
+    return face.from(p, left).squaredNorm() < face.from(p, right).squaredNorm();
   });
 }
 
@@ -204,7 +223,7 @@ bool measure(RTCPointQueryFunctionArguments* arguments) {
   if (!search.faces_the_right_way(triangle)) return false;
   const Corners& corners = search.corners[triangle];
   const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
-  const double squared = (corners.at(barycentric) - search.point).squaredNorm();
+  const double squared = corners.from(search.point, barycentric).squaredNorm();
   if (!(squared <= search.squared_distance)) return false;
   const int face = search.face_numbers[triangle];
   // Equal distances: the lowest number, whatever the order in which the tree is walked.

@@ -131,8 +131,9 @@ class DisjointSets {
   }
 
   void unite(int a, int b) {
-    const auto [low, high] = std::minmax(root(a), root(b));
-    parent_[static_cast<std::size_t>(high)] = low;
+    const int root_a = root(a);
+    const int root_b = root(b);
+    parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
   }
 
  private:
