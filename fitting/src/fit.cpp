@@ -1,1 +1,244 @@
+#include "orbifit/fitting/fit.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "orbifit/fitting/alignment.h"
+#include "orbifit/fitting/correspondences.h"
+#include "orbifit/fitting/scan_preparation.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/point_index.h"
+#include "orbifit/model/surface_index.h"
+
+#include "fit_system.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kFirstReach = 0.15;    // of the diagonal: correspondences farther apart are none, at the start
+constexpr double kLastReach = 0.04;     // and at the end
+constexpr double kLeastRobust = 0.003;  // of the diagonal
+constexpr double kStill = 2e-5;         // of the diagonal: the fit has settled when no sample moves more
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(std::vector<StageTime>& times) : times_(times) {}
+
+  void finished(const std::string& stage) {
+    const auto now = std::chrono::steady_clock::now();
+    times_.push_back({stage, std::chrono::duration<double>(now - last_).count()});
+    last_ = now;
+  }
+
+ private:
+  std::vector<StageTime>& times_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void require(bool holds, const std::string& field, double value, const std::string& rule) {
+  if (!holds) throw UsageError(field + " is " + std::to_string(value) + "; it must be " + rule);
+}
+
+Mesh deformed_template(const Mesh& mesh, const Subspace& subspace, const Eigen::VectorXd& q) {
+  Mesh result = mesh;
+  result.vertices += vertex_displacements(subspace, q);
+  return result;
+}
+
+// Whether the scan's oriented normals agree in sign with the template's, so that the sign may be demanded.
+bool signs_agree(const Mesh& mesh, const PreparedScan& scan, const Similarity& pose, const RunContext& context) {
+  if (!scan.normals_oriented) return false;
+  CorrespondenceOptions options;
+  options.max_distance = kLastReach * diagonal(mesh.vertices);
+  options.robust_scale = options.max_distance;
+  const Points normals = normals_to_template(pose, scan.normals);
+  const auto pairs =
+      find_correspondences(MatchSurface(mesh), to_template(pose, scan.points), normals, options, context);
+  const auto agreeing = std::ranges::count_if(
+      pairs, [&](const Correspondence& pair) { return pair.normal.dot(normals.row(pair.scan_point).transpose()) > 0; });
+  return static_cast<double>(agreeing) > 0.9 * static_cast<double>(pairs.size());
+}
+
+std::vector<Pull> pulls_towards(const FitInput& input, const Similarity& pose, double weight) {
+  const Similarity back = inverse(pose);
+  std::vector<Pull> pulls;
+  for (const Landmark& landmark : input.landmarks) pulls.push_back({landmark.vertex, back(landmark.target), weight});
+  for (const Handle& handle : input.handles) {
+    const double each = weight * 3 / static_cast<double>(handle.vertices.size());
+    for (const int vertex : handle.vertices) {
+      const Eigen::Vector3d place = input.pose(handle.motion(input.mesh.vertices.row(vertex).transpose()));
+      pulls.push_back({vertex, back(place), each});
+    }
+  }
+  return pulls;
+}
+
+// Pose and coordinates, improved in place; the loop of the fit.
+struct Iterate {
+  Similarity pose;
+  Eigen::VectorXd q;
+};
+
+void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
+             const RunContext& context, Iterate& state, FitResult& result) {
+  const double size = diagonal(input.mesh.vertices);
+  FitSystem system(subspace, input.mesh, options.stretch);
+  const bool signed_normals = signs_agree(input.mesh, scan, state.pose, context);
+  const int scheduled = options.levels * options.iterations;
+  double robust = 0.05 * size;
+  Points displacements = sample_displacements(subspace, state.q);
+  for (int i = 0; i < options.most_iterations; ++i) {
+    context.progress("fit", double(i) / options.most_iterations);
+    const double progress = std::min(1.0, double(i / options.iterations) / std::max(1, options.levels - 1));
+    FitIteration record;
+    record.stiffness = options.first_stiffness * std::pow(options.last_stiffness / options.first_stiffness, progress);
+
+    CorrespondenceOptions matching;
+    matching.max_distance = (kFirstReach + (kLastReach - kFirstReach) * progress) * size;
+    matching.signed_normals = signed_normals;
+    matching.trim = options.trim;
+    matching.never_trim = 0.005 * size;
+    matching.robust_scale = robust;
+    const Points points = to_template(state.pose, scan.points);
+    const auto pairs = find_correspondences(MatchSurface(deformed_template(input.mesh, subspace, state.q)), points,
+                                            normals_to_template(state.pose, scan.normals), matching, context);
+    if (pairs.empty() && input.landmarks.empty() && input.handles.empty()) {
+      result.stopped_because = "no point of the scan lies near the template";
+      return;
+    }
+    const auto pulls = pulls_towards(input, state.pose, options.landmark_weight);
+    const FitSystem::Solution solution = system.solve(pairs, points, pulls, record.stiffness);
+    state.q = solution.q;
+    const Motion back = inverse(solution.scan_step);
+    state.pose = state.pose * Similarity{1, back.linear, back.translation};
+    system.rotate(state.q);
+
+    const Points next = sample_displacements(subspace, state.q);
+    record.change = (next - displacements).rowwise().norm().maxCoeff() / size;
+    displacements = next;
+    record.correspondences = static_cast<int>(pairs.size());
+    record.rms = weighted_rms(pairs) / size;
+    record.energy = solution.energy;
+    robust = std::max(kLeastRobust * size, std::min(robust, 3 * record.rms * size));
+    result.iterations.push_back(record);
+    if (i + 1 >= scheduled && record.change < kStill) {
+      result.stopped_because = "settled: no sample moves by more than " + std::to_string(kStill) + " of the diagonal";
+      return;
+    }
+  }
+  result.stopped_because = "the iterations allowed are used up";
+}
+
+// What the fitted surface explains of the scan, and what the scan saw of it.
+void assess(const FitInput& input, const PreparedScan& scan, const FitOptions& options, FitResult& result) {
+  const double size = diagonal(result.fitted.vertices);
+  const SurfaceIndex surface(result.fitted);
+  double squares = 0;
+  int inliers = 0;
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    const double distance = surface.nearest(scan.points.row(i).transpose()).distance / size;
+    if (distance > options.inlier_distance) continue;
+    ++inliers;
+    squares += distance * distance;
+  }
+  result.inlier_fraction = double(inliers) / static_cast<double>(scan.points.rows());
+  result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
+
+  const PointIndex points(scan.points);
+  const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
+  result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));
+  for (std::size_t v = 0; v < result.seen.size(); ++v) {
+    const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
+    result.seen[v] = points.nearest(vertex, 1).front().distance <= near ? 1 : 0;
+  }
+  const Eigen::VectorXd areas = face_areas(result.fitted);
+  double hidden = 0;
+  for (Eigen::Index f = 0; f < areas.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (result.seen[static_cast<std::size_t>(result.fitted.faces(f, k))] == 0) hidden += areas[f] / 3;
+    }
+  }
+  result.hidden_fraction = hidden / areas.sum();
+
+  double missed = 0;
+  const auto pulls = pulls_towards(input, result.pose, 1);
+  for (const Pull& pull : pulls) {
+    missed += (result.fitted.vertices.row(pull.vertex).transpose() - result.pose(pull.target)).squaredNorm();
+  }
+  if (!pulls.empty()) result.landmark_rms = std::sqrt(missed / static_cast<double>(pulls.size())) / size;
+}
+
+}  // namespace
+
+void FitOptions::validate() const {
+  subspace.validate();
+  require(levels >= 1, "levels", levels, "at least 1");
+  require(iterations >= 1, "iterations", iterations, "at least 1");
+  require(most_iterations >= levels * iterations, "most_iterations", most_iterations,
+          "at least levels * iterations = " + std::to_string(levels * iterations));
+  require(last_stiffness > 0, "last_stiffness", last_stiffness, "positive");
+  require(first_stiffness > last_stiffness, "first_stiffness", first_stiffness, "more than last_stiffness");
+  require(stretch >= 0, "stretch", stretch, "0 or more");
+  require(trim > 0 && trim <= 1, "trim", trim, "in (0, 1]");
+  require(scan_points >= 10, "scan_points", scan_points, "at least 10");
+  require(landmark_weight > 0, "landmark_weight", landmark_weight, "positive");
+  require(inlier_distance > 0, "inlier_distance", inlier_distance, "positive");
+  require(least_inliers >= 0 && least_inliers <= 1, "least_inliers", least_inliers, "in [0, 1]");
+}
+
+FitResult fit(const FitInput& input, const FitOptions& options, const RunContext& context) {
+  options.validate();
+  FitResult result;
+  Stopwatch watch(result.times);
+
+  ScanPreparationOptions preparation;
+  preparation.most_points = options.scan_points;
+  const PreparedScan scan = prepare_scan(input.scan, preparation, context);
+  watch.finished("scan");
+
+  Iterate state{input.pose, {}};
+  if (!input.landmarks.empty()) {
+    state.pose = align_landmarks(input.mesh, input.landmarks);
+  } else if (options.align && input.handles.empty()) {
+    state.pose = align_rigidly(input.mesh, scan, input.pose, context);
+  }
+  watch.finished("alignment");
+
+  const Subspace subspace = build_subspace(input.mesh, input.annotation, options.subspace, context);
+  state.q = Eigen::VectorXd::Zero(subspace.degrees_of_freedom());
+  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  result.degrees_of_freedom = subspace.degrees_of_freedom();
+  watch.finished("subspace");
+
+  iterate(input, scan, subspace, options, context, state, result);
+  watch.finished("fit");
+
+  const Mesh deformed = deformed_template(input.mesh, subspace, state.q);
+  result.pose = state.pose;
+  result.q = state.q;
+  result.fitted = deformed;
+  for (Eigen::Index v = 0; v < deformed.vertices.rows(); ++v) {
+    result.fitted.vertices.row(v) = state.pose(deformed.vertices.row(v).transpose()).transpose();
+  }
+  result.annotation = transformed(carried_annotation(input.annotation, subspace, state.q, deformed), state.pose);
+  result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
+  assess(input, scan, options, result);
+  for (std::size_t i = 0; i < input.annotation.regions.size(); ++i) {
+    const Residual residual =
+        field_residual(subspace, input.mesh, input.annotation.regions[i], static_cast<int>(i), state.q, context);
+    result.field_residual = std::max(result.field_residual, residual.max);
+  }
+  watch.finished("assessment");
+
+  result.converged = !result.iterations.empty() && result.inlier_fraction >= options.least_inliers;
+  if (!result.iterations.empty() && !result.converged) {
+    result.stopped_because +=
+        "; only " + std::to_string(static_cast<int>(100 * result.inlier_fraction)) + " % of the scan is explained";
+  }
+  return result;
+}
+
+}  // namespace orbifit

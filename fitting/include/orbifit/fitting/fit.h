@@ -1,0 +1,80 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbifit/fitting/landmarks.h"
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/subspace/handles.h"
+#include "orbifit/subspace/subspace.h"
+
+namespace orbifit {
+
+struct FitOptions {
+  SubspaceOptions subspace;
+  int levels = 12;                ///< of stiffness, from stiff to soft, >= 1
+  int iterations = 3;             ///< at each level, >= 1
+  int most_iterations = 80;       ///< in all, >= levels * iterations
+  double first_stiffness = 10;    ///< Laplace energy against data, > last_stiffness
+  double last_stiffness = 0.003;  ///< > 0
+  double stretch = 0.05;          ///< weight of the stretching energy within the Laplace energy, >= 0
+  double trim = 0.9;              ///< share of the nearest correspondences kept, in (0, 1]
+  int scan_points = 4000;         ///< points of the scan used, >= 10
+  double landmark_weight = 10;    ///< of one landmark or handle, against one sample's share of the data, > 0
+  double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
+  double least_inliers = 0.5;     ///< share of explained points below which the fit has failed, in [0, 1]
+  bool align = true;              ///< refine the rough pose by rigid ICP first
+
+  void validate() const;  ///< \throw UsageError naming the field, its value and the rule
+};
+
+struct FitIteration {
+  double stiffness = 0;
+  int correspondences = 0;
+  double rms = 0;     ///< weighted, of the distances to the surface, fraction of the template's diagonal
+  double energy = 0;  ///< data and regularisation, as minimised in this iteration
+  double change = 0;  ///< largest movement of a sample, fraction of the diagonal
+};
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+};
+
+struct FitResult {
+  Mesh fitted;                    ///< template's connectivity, scan's frame
+  SymmetryAnnotation annotation;  ///< the template's, carried along into the scan's frame
+  Similarity pose;                ///< template -> scan
+  Eigen::VectorXd q;              ///< coordinates of the deformation in the subspace
+  int samples = 0, degrees_of_freedom = 0;
+  std::vector<FitIteration> iterations;
+  bool converged = false;
+  std::string stopped_because;
+  double inlier_fraction = 0;  ///< of the scan points used, within inlier_distance of the fitted surface
+  double rms = 0;              ///< of those, fraction of the fitted mesh's diagonal
+  double landmark_rms = 0;     ///< of landmarks and handles, fraction of the fitted mesh's diagonal
+  std::vector<char> seen;      ///< #V: a scan point lies near the fitted vertex
+  double hidden_fraction = 0;  ///< share of the fitted area around vertices not seen
+  double field_residual = 0;   ///< worst of the regions: see orbifit::field_residual
+  std::vector<StageTime> times;
+};
+
+struct FitInput {
+  const Mesh& mesh;  ///< the template
+  const SymmetryAnnotation& annotation;
+  const PointCloud& scan;
+  Similarity pose;                       ///< rough pose, template -> scan
+  std::vector<Landmark> landmarks = {};  ///< take precedence over `pose`
+  std::vector<Handle> handles = {};      ///< their motions give places in the template's frame posed by `pose`
+};
+
+/// Deforms a template to a scan within its symmetric subspace (method notes, section 5): alternates correspondences and
+/// a co-rotated solve in which the pose takes part, from stiff to soft.
+/// The result's `converged` says whether it explains the scan; a fit that does not is still returned.
+/// \throw InputError for a scan of fewer than 10 points, UsageError for options
+FitResult fit(const FitInput& input, const FitOptions& options, const RunContext& context);
+
+}  // namespace orbifit

@@ -1,0 +1,47 @@
+#include "orbifit/fitting/landmarks.h"
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/file.h"
+
+namespace orbifit {
+
+std::vector<Landmark> read_landmarks(const std::filesystem::path& file, const Mesh& mesh) {
+  const auto document = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto fail = [&](const std::string& key, const std::string& reason) {
+    throw InputError(file.string(), key, reason);
+  };
+  if (document.is_discarded()) fail("", "is not JSON");
+  if (!document.is_object() || !document.contains("landmarks") || !document.at("landmarks").is_array()) {
+    fail("landmarks", "must be a list");
+  }
+  std::vector<Landmark> landmarks;
+  for (const auto& entry : document.at("landmarks")) {
+    const std::string key = "landmarks[" + std::to_string(landmarks.size()) + "]";
+    if (!entry.is_object() || !entry.contains("vertex") || !entry.contains("target")) {
+      fail(key, "must have vertex and target");
+    }
+    const auto& vertex = entry.at("vertex");
+    if (!vertex.is_number_integer() || vertex.get<long long>() < 0 || vertex.get<long long>() >= mesh.vertices.rows()) {
+      fail(key + ".vertex",
+           vertex.dump() + " is no vertex of the template, which has " + std::to_string(mesh.vertices.rows()));
+    }
+    const auto& target = entry.at("target");
+    Landmark landmark;
+    landmark.vertex = vertex.get<int>();
+    if (!target.is_array() || target.size() != 3) fail(key + ".target", "must be three numbers");
+    for (int k = 0; k < 3; ++k) {
+      const auto& coordinate = target.at(static_cast<std::size_t>(k));
+      if (!coordinate.is_number()) fail(key + ".target", "must be three numbers");
+      landmark.target[k] = coordinate.get<double>();
+    }
+    landmarks.push_back(landmark);
+  }
+  if (landmarks.empty()) fail("landmarks", "is empty");
+  return landmarks;
+}
+
+}  // namespace orbifit

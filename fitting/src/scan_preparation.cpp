@@ -1,0 +1,103 @@
+#include "orbifit/fitting/scan_preparation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/point_index.h"
+
+#include "scan_normals.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr int kFewestPoints = 10;
+
+std::vector<int> one_a_cell(const Points& points, double width) {
+  const Eigen::RowVector3d corner = points.colwise().minCoeff();
+  std::unordered_set<std::uint64_t> cells;
+  std::vector<int> kept;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      const auto cell = static_cast<std::uint64_t>(std::floor((points(i, k) - corner[k]) / width));
+      key = key << 21U | (cell & 0x1fffffU);
+    }
+    if (cells.insert(key).second) kept.push_back(static_cast<int>(i));
+  }
+  return kept;
+}
+
+// The width whose cells keep nearly as many points as allowed, by bisection.
+std::vector<int> spread_evenly(const Points& points, int most) {
+  if (points.rows() <= most) {
+    std::vector<int> all(static_cast<std::size_t>(points.rows()));
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    return all;
+  }
+  double low = diagonal(points) / (1U << 20U);
+  double high = diagonal(points);
+  std::vector<int> kept = one_a_cell(points, high);
+  for (int round = 0; round < 40 && high > 1.02 * low; ++round) {
+    const double middle = std::sqrt(low * high);
+    std::vector<int> trial = one_a_cell(points, middle);
+    if (static_cast<int>(trial.size()) > most) {
+      low = middle;
+    } else {
+      high = middle;
+      kept = std::move(trial);
+    }
+  }
+  return kept;
+}
+
+double median_spacing(const Points& points) {
+  const PointIndex index(points);
+  std::vector<double> distances;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    distances.push_back(index.nearest(points.row(i).transpose(), 2).back().distance);
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+}  // namespace
+
+PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context) {
+  if (scan.points.rows() < kFewestPoints) {
+    throw InputError("", "scan",
+                     "has " + std::to_string(scan.points.rows()) + " usable points; a fit needs at least " +
+                         std::to_string(kFewestPoints));
+  }
+  if (!(diagonal(scan.points) > 0)) throw InputError("", "scan", "all its points are at one place");
+  context.progress("scan", 0);
+  const std::vector<int> kept = spread_evenly(scan.points, options.most_points);
+  PreparedScan result;
+  result.points = scan.points(kept, Eigen::all);
+  result.spacing = median_spacing(result.points);
+  if (scan.normals.rows() == scan.points.rows()) {
+    result.normals = scan.normals(kept, Eigen::all);
+    result.normals_oriented = true;
+  } else {
+    result.normals = plane_normals(scan.points, kept, options.neighbours);
+  }
+  if (scan.viewpoints.rows() > 0) {
+    result.normals_oriented = true;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Eigen::RowVector3d viewpoint = scan.viewpoints.row(scan.viewpoints.rows() == 1 ? 0 : kept[i]);
+      if (result.normals.row(row).dot(viewpoint - result.points.row(row)) < 0) result.normals.row(row) *= -1;
+    }
+  }
+  context.progress("scan", 1);
+  return result;
+}
+
+}  // namespace orbifit
