@@ -164,6 +164,7 @@ struct SurfaceIndex::Implementation {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
   std::vector<Corners> corners;                      // scaled units
   std::vector<Eigen::Vector3d> normals;              // unit, zero for degenerate faces
+  std::vector<std::uint8_t> needles;                 // 1 where the normal is too uncertain to cull with
   std::vector<int> face_numbers;                     // in the mesh
 
   Implementation() = default;
@@ -193,6 +194,7 @@ namespace {
 struct Search {
   const Corners* corners = nullptr;
   const Eigen::Vector3d* normals = nullptr;
+  const std::uint8_t* needles = nullptr;
   const int* face_numbers = nullptr;
   Eigen::Vector3d point;  // scaled units
   double max_distance = 0;
@@ -217,10 +219,19 @@ struct Search {
   }
 };
 
+// Whether the plane of the triangle alone is farther away than the best face so far. The normal of a triangle that is
+// not a needle is known to 1e-9, so nothing nearer is lost; far from the surface this spares most measurements.
+bool plane_is_beyond(const Search& search, unsigned triangle) {
+  if (search.face < 0 || search.needles[triangle]) return false;
+  const Eigen::Vector3d from_plane = search.point - search.corners[triangle].a;
+  const double height = std::abs(search.normals[triangle].dot(from_plane)) - 1e-8 * from_plane.lpNorm<1>();
+  return height > 0 && height * height > search.squared_distance;
+}
+
 bool measure(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
   const unsigned triangle = arguments->primID;
-  if (!search.faces_the_right_way(triangle)) return false;
+  if (!search.faces_the_right_way(triangle) || plane_is_beyond(search, triangle)) return false;
   const Corners& corners = search.corners[triangle];
   const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
   const double squared = corners.from(search.point, barycentric).squaredNorm();
@@ -253,6 +264,7 @@ void SurfaceIndex::Implementation::build() {
     face = {scale * face.a, scale * face.b, scale * face.c};
     const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
     const double length = vector.stableNorm();
+    needles.push_back(length > 1e-6 * (face.b - face.a).norm() * (face.c - face.a).norm() ? 0 : 1);
     normals.emplace_back(length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero());
   }
 
@@ -289,6 +301,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   Search search;
   search.corners = corners.data();
   search.normals = normals.data();
+  search.needles = needles.data();
   search.face_numbers = face_numbers.data();
   search.point = scale * point;
   search.max_distance = scale * max_distance;
