@@ -1,0 +1,96 @@
+#include "command.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include <unistd.h>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/file.h"
+
+namespace orbifit {
+
+namespace fs = std::filesystem;
+
+void check_output(const fs::path& output, const std::vector<std::string>& endings,
+                  const std::vector<fs::path>& inputs) {
+  if (output.empty()) throw UsageError("the output's name is empty");
+  std::error_code code;
+  const fs::file_status status = fs::status(output, code);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return;  // such as /dev/stdout
+  if (!endings.empty() && std::ranges::find(endings, lower_extension(output)) == endings.end()) {
+    std::string list;
+    for (std::size_t i = 0; i < endings.size(); ++i) {
+      list += (i == 0 ? "" : i + 1 == endings.size() ? " or " : ", ") + endings[i];
+    }
+    throw UsageError(output.string() + ": the ending must be " + list);
+  }
+  if (fs::is_directory(status)) throw InputError(output.string(), "", "cannot be written: it is a folder");
+  for (const fs::path& input : inputs) {
+    if (fs::equivalent(output, input, code)) {
+      throw UsageError(output.string() + ": would overwrite the input " + input.string());
+    }
+  }
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, code)) {
+    throw InputError(output.string(), "", "cannot be written: the folder " + folder.string() + " does not exist");
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    throw InputError(output.string(), "", "cannot be written: the folder " + folder.string() + " does not allow it");
+  }
+}
+
+Eigen::Vector3d to_direction(const std::string& option, const std::vector<double>& values) {
+  const bool finite = std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  const Eigen::Vector3d vector = values.size() == 3 ? Eigen::Vector3d(values.data()) : Eigen::Vector3d::Zero();
+  if (!finite || !(vector.stableNorm() > 0)) {
+    throw UsageError(option + " must be three numbers, not all 0");
+  }
+  return vector.stableNormalized();
+}
+
+std::string count_of(long long count, const std::string& singular, const std::string& plural) {
+  return std::to_string(count) + " " + (count == 1 ? singular : plural.empty() ? singular + "s" : plural);
+}
+
+std::string short_number(double number, int digits) {
+  std::array<char, 64> buffer;
+  const int length = std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, number == 0 ? 0.0 : number);
+  return {buffer.data(), static_cast<std::size_t>(std::clamp(length, 0, 63))};
+}
+
+std::string TextTable::text() const {
+  std::vector<std::size_t> widths;
+  std::vector<bool> numeric;
+  for (const auto& row : rows_) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    numeric.resize(widths.size(), true);
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      widths[c] = std::max(widths[c], row[c].size());
+      const bool number = !row[c].empty() && std::strchr("-0123456789", row[c].front()) != nullptr;
+      if (&row != rows_.data() && !number) numeric[c] = false;
+    }
+  }
+  std::string result;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string padding(widths[c] - row[c].size(), ' ');
+      line += "  " + (numeric[c] ? padding + row[c] : row[c] + padding);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    result += line + "\n";
+  }
+  return result;
+}
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw InputError("standard output", "", "cannot be written");
+  }
+}
+
+}  // namespace orbifit

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/file.h"
+#include "orbifit/model/mesh_io.h"
+#include "orbifit/model/scan_io.h"
+
+#include "../commands.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+struct ConvertArguments {
+  std::string input, output;
+  bool points = false;
+};
+
+bool is_scan_file(const std::string& file) {
+  constexpr std::array<std::string_view, 3> kEndings{".pcd", ".xyz", ".pts"};
+  return std::ranges::find(kEndings, lower_extension(file)) != kEndings.end();
+}
+
+}  // namespace
+
+CommandBody convert(CLI::App& app) {
+  const auto arguments = std::make_shared<ConvertArguments>();
+  app.add_option("IN", arguments->input, "Mesh (.obj, .off, .ply, .stl, .gltf, .glb) or scan (.ply, .pcd, .xyz, .pts)")
+      ->required();
+  app.add_option("OUT", arguments->output, "Mesh (.obj, .off, .ply, .stl, .glb) or scan (.ply, .pcd, .xyz, .pts)")
+      ->required();
+  app.add_flag("--points", arguments->points,
+               "Keep the points only; understood where one of the files is a .pcd, .xyz or .pts");
+  return [arguments](CommandContext& context) {
+    const bool as_scan = arguments->points || is_scan_file(arguments->input) || is_scan_file(arguments->output);
+    check_output(arguments->output, as_scan ? std::vector<std::string>{".ply", ".pcd", ".xyz", ".pts"}
+                                            : std::vector<std::string>{".obj", ".off", ".ply", ".stl", ".glb"});
+    nlohmann::ordered_json summary{{"output", arguments->output}};
+    std::string text = arguments->output + ": ";
+    if (as_scan) {
+      const PointCloud scan = read_scan(arguments->input);
+      context.run.check();
+      write_scan(arguments->output, scan);
+      summary["points"] = scan.points.rows();
+      summary["dropped"] = scan.dropped;
+      text += count_of(scan.points.rows(), "point");
+      if (scan.dropped > 0) text += " (" + std::to_string(scan.dropped) + " left out: not finite)";
+    } else {
+      const Mesh mesh = read_mesh(arguments->input);
+      context.run.check();
+      write_mesh(arguments->output, mesh);
+      summary["vertices"] = mesh.vertices.rows();
+      summary["faces"] = mesh.faces.rows();
+      text += count_of(mesh.vertices.rows(), "vertex", "vertices") + ", " + count_of(mesh.faces.rows(), "triangle");
+    }
+    print((context.json ? summary.dump(2) : text) + "\n");
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands

@@ -1,0 +1,162 @@
+#include "orbifit/detection/detect.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/apps/render.h"
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/mesh_io.h"
+
+#include "../commands.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+struct DetectArguments {
+  std::string mesh, output, preview, colour;
+  std::vector<double> up{0, 0, 1};
+  DetectOptions options;
+};
+
+double area_fraction(const Eigen::VectorXd& areas, const std::vector<int>& faces) {
+  double area = 0;
+  for (const int face : faces) area += areas[face];
+  return areas.sum() > 0 ? area / areas.sum() : 0;
+}
+
+nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh) {
+  const Eigen::VectorXd areas = face_areas(mesh);
+  nlohmann::ordered_json regions = nlohmann::ordered_json::array();
+  for (const Region& region : found.regions) {
+    regions.push_back({{"id", region.id},
+                       {"name", region.name},
+                       {"group", region.group.symbol()},
+                       {"faces", region.faces.size()},
+                       {"area_fraction", area_fraction(areas, region.faces)},
+                       {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
+                       {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
+  }
+  nlohmann::ordered_json patterns = nlohmann::ordered_json::array();
+  for (const Pattern& pattern : found.patterns) {
+    patterns.push_back({{"id", pattern.id},
+                        {"name", pattern.name},
+                        {"kind", to_string(pattern.kind)},
+                        {"instances", pattern.instances.size()},
+                        {"residual", {{"rms", pattern.residual.rms}, {"max", pattern.residual.max}}}});
+  }
+  return {{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
+}
+
+std::string to_text(const SymmetryAnnotation& found, const Mesh& mesh) {
+  if (found.regions.empty() && found.patterns.empty()) {
+    return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
+  }
+  const Eigen::VectorXd areas = face_areas(mesh);
+  const auto percent = [](double fraction) { return short_number(100 * fraction, 3); };
+  std::string text;
+  if (!found.regions.empty()) {
+    TextTable table({"region", "group", "area %", "faces", "parent", "residual max %", "name"});
+    for (const Region& region : found.regions) {
+      table.add({std::to_string(region.id), region.group.symbol(), percent(area_fraction(areas, region.faces)),
+                 std::to_string(region.faces.size()), region.parent ? std::to_string(*region.parent) : "-",
+                 percent(region.residual.max), region.name});
+    }
+    text += table.text();
+  }
+  if (!found.patterns.empty()) {
+    TextTable table({"pattern", "kind", "instances", "residual max %", "name"});
+    for (const Pattern& pattern : found.patterns) {
+      table.add({std::to_string(pattern.id), to_string(pattern.kind), std::to_string(pattern.instances.size()),
+                 percent(pattern.residual.max), pattern.name});
+    }
+    text += (text.empty() ? "" : "\n") + table.text();
+  }
+  return text + "Residuals are in percent of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
+}
+
+// Every region's colour on the faces for which it is the smallest region; clay elsewhere.
+Points region_colours(const Mesh& mesh, const std::vector<Region>& regions) {
+  Points colours = Points::Constant(mesh.faces.rows(), 3, 0.75);
+  std::vector<const Region*> by_size;
+  for (const Region& region : regions) by_size.push_back(&region);
+  std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const Region* region) { return region->faces.size(); });
+  for (const Region* region : by_size) {
+    const Eigen::RowVector3d colour = region_colour(region->id).cast<double>();
+    for (const int face : region->faces) colours.row(face) = colour;
+  }
+  return colours;
+}
+
+void write_preview(const DetectArguments& arguments, const Mesh& mesh, const SymmetryAnnotation& found,
+                   const RunContext& run) {
+  constexpr std::size_t kMostPictures = 24;
+  ViewOptions view;
+  view.width = 480;
+  view.height = 360;
+  view.up = to_direction("--up", arguments.up);
+  std::vector<Image> images;
+  std::vector<std::string> captions;
+  const auto add = [&](const Scene& scene, const std::string& caption) {
+    if (images.size() >= kMostPictures) return;
+    images.push_back(orbifit::render(scene, view, run));
+    captions.push_back(caption);
+  };
+  for (const Region& region : found.regions) {
+    add(region_scene(mesh, region), "region " + std::to_string(region.id) + ": " + region.group.symbol());
+  }
+  for (const Pattern& pattern : found.patterns) {
+    add(pattern_scene(mesh, pattern), "pattern " + std::to_string(pattern.id) + ": " + to_string(pattern.kind));
+  }
+  if (images.empty()) {
+    Scene plain;
+    plain.surfaces.emplace_back().mesh = mesh;
+    add(plain, "no symmetry found");
+  }
+  const std::size_t total = found.regions.size() + found.patterns.size();
+  if (total > images.size()) {
+    run.message("the preview shows the first " + std::to_string(images.size()) + " of " + std::to_string(total) +
+                " regions and patterns");
+  }
+  write_png(arguments.preview, contact_sheet(images, captions, std::min<int>(static_cast<int>(images.size()), 4)));
+}
+
+}  // namespace
+
+CommandBody detect(CLI::App& app) {
+  const auto arguments = std::make_shared<DetectArguments>();
+  DetectOptions& options = arguments->options;
+  app.add_option("MESH", arguments->mesh, "Mesh to look at")->required();
+  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it only the list is printed")
+      ->type_name("FILE");
+  app.add_option("--tolerance", options.tolerance,
+                 "Largest distance that counts as symmetric, as a fraction of the diagonal")
+      ->capture_default_str();
+  app.add_option("--max-seconds", options.max_seconds, "Stop then and keep what is verified; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--samples", options.samples, "Surface samples on which a whole mesh is verified")
+      ->capture_default_str();
+  app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
+  app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
+  app.add_option("--up", arguments->up, "Upward direction of the preview")->expected(3)->type_name("X Y Z");
+  return [arguments](CommandContext& context) {
+    arguments->options.validate();
+    to_direction("--up", arguments->up);
+    if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
+    if (!arguments->preview.empty()) check_output(arguments->preview, {".png"}, {arguments->mesh});
+    if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
+    const Mesh mesh = read_mesh(arguments->mesh);
+    context.run.check();
+    const SymmetryAnnotation found = orbifit::detect(mesh, arguments->options, context.run);
+    if (!arguments->output.empty()) write_annotation(arguments->output, found);
+    if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
+    if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
+    print(context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands
