@@ -58,11 +58,11 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
       box({half_width, half_depth, seat_thickness / 2}, {8 * detail, 8 * detail, 2}, 0.45 * seat_thickness, 3),
       {Matrix3d::Identity(), base.seat_middle});
 
-  const double inset = 0.5 * thickness + 0.06 * values["seat_width"];
+  const double inset = 0.5 * thickness + 0.045 * values["seat_width"];
   const Vector3d upper(half_width - inset, half_depth - inset, height);
   const Vector3d lower(upper.x() + spread, upper.y() + spread, 0);
   const Vector3d along = upper - lower;
-  const Mesh leg = leg_part(thickness, along.norm(), 0.7, detail);
+  const Mesh leg = leg_part(thickness, along.norm(), 0.6, detail);
   const Placement leg_place{leg_frame(along.normalized()), (upper + lower) / 2};
   for (const Matrix3d& element : elements({Family::Cnv, 2})) {
     const Motion motion{element, Vector3d::Zero()};
@@ -102,7 +102,7 @@ struct Back {
 Back build_back(ModelBuilder& builder, const ModelValues& values) {
   const int detail = values.count("detail");
   const double height = values["back_height"];
-  const double post = 0.85 * values["leg_thickness"];
+  const double post = 0.8 * values["leg_thickness"];
   const double half_width = values["seat_width"] / 2 - post;
   const double tilt = values["back_tilt"] * std::numbers::pi / 180;
   const int slats = values.count("slats");
@@ -174,7 +174,7 @@ ModelDefinition chair_model() {
        "a chair with splayed legs, cross bars and a ladder back",
        {{"leg_height", 0.43, 0.2, 0.8, false, "floor to seat, m"},
         {"leg_spread", 0.03, 0, 0.12, false, "how far each foot stands outwards of its upper end, in x and in y, m"},
-        {"leg_thickness", 0.042, 0.02, 0.06, false, "m"},
+        {"leg_thickness", 0.055, 0.02, 0.07, false, "m"},
         {"bar_height", 0.35, 0.1, 0.8, false, "of the cross bars, as a fraction of the legs' height"},
         {"seat_width", 0.44, 0.3, 0.8, false, "m"},
         {"seat_depth", 0.44, 0.3, 0.8, false, "m; C4v below where it equals the width, else C2v"},

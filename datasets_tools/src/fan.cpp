@@ -36,8 +36,8 @@ Mesh torus(double radius, double height, double section, int facets, int sides) 
 
 // Twisted and swept, along +x from the hub: no mirror maps it to itself.
 Mesh blade(double root, double tip, int detail) {
-  const int stations = 10 * detail;
-  const int points = 10 * detail;
+  const int stations = 14 * detail;
+  const int points = 12 * detail;
   std::vector<Ring> rings;
   std::vector<Vector3d> middles;
   for (int i = 0; i <= stations; ++i) {
@@ -100,8 +100,8 @@ std::vector<Vector3d> wire_path(double from, double to, double depth, int pieces
     const double share = static_cast<double>(i) / pieces;
     const double angle = 0.5 * std::numbers::pi * share;
     // A quarter of a superellipse: flat before the blades, then round down to the rim.
-    const double out = std::pow(std::sin(angle), 0.75);
-    const double up = std::pow(std::max(std::cos(angle), 0.0), 0.75);
+    const double out = std::pow(std::sin(angle), 0.9);
+    const double up = std::pow(std::max(std::cos(angle), 0.0), 0.8);
     path.emplace_back(from + (to - from) * out, 0, depth * up);
   }
   return path;
@@ -216,13 +216,9 @@ GeneratedModel build_fan(const ModelValues& values) {
   const Placement about_wire{frame_about(about_head.frame.col(2), Vector3d(about_head.frame.col(1))), middle};
   builder.declare("guard", {Family::Cnv, values.count("wires")}, about_wire, guard);
   const bool continuous = values.count("continuous") != 0;
-  const auto round = [&](const std::string& name, bool flat, int facets, const Placement& about,
+  const auto round = [&](const std::string& name, bool alike, int facets, const Placement& about,
                          const PartFaces& faces) {
-    if (continuous) {
-      builder.declare(name, {flat ? Family::Dinfh : Family::Cinfv, 1}, about, faces);
-    } else {
-      builder.declare(name, {flat ? Family::Dnh : Family::Cnv, facets}, about, faces);
-    }
+    builder.declare_turned(name, alike, continuous ? 0 : facets, about, faces);
   };
   round("turned parts of the head", false, head.facets, about_head, turned);
   const std::array<std::string, 3> ring_names{"rim of the guard", "front ring", "back ring"};
@@ -243,9 +239,10 @@ ModelDefinition fan_model() {
             {"guard_depth", 0.075, 0.06, 0.12, false, "from the rim to the front, m"},
             {"height", 0.46, 0.45, 1.4, false, "of the head's middle, m"},
             {"base_radius", 0.14, 0.1, 0.3, false, "m"},
-            {"blades", 5, 3, 6, true, ""},
+            {"blades", 5, 3, 6, true, "of the rotor"},
             {"wires", 24, 12, 40, true, "of the guard's front, and as many at its back"},
-            {"continuous", 0, 0, 1, true, "1: the truth calls turned parts Cinfv and Dinfh, else by their facets"},
+            {"continuous", 1, 0, 1, true,
+             "1: the truth calls turned parts Cinfv and Dinfh, 0: by their facets, Cnv and Dnh"},
             {"detail", 1, 1, 4, true, "fineness of the mesh"}}},
           build_fan};
 }

@@ -49,6 +49,16 @@ void ModelBuilder::declare(const std::string& name, const PointGroup& group, con
   regions_.push_back(make_region(group, about.origin, about.frame, faces, name));
 }
 
+void ModelBuilder::declare_turned(const std::string& name, bool alike, int facets, const Placement& about,
+                                  const PartFaces& faces) {
+  using Family = PointGroup::Family;
+  if (facets == 0) {
+    declare(name, {alike ? Family::Dinfh : Family::Cinfv, 1}, about, faces);
+  } else {
+    declare(name, {alike ? Family::Dnh : Family::Cnv, facets}, about, faces);
+  }
+}
+
 void ModelBuilder::declare_row(const std::string& name, const Eigen::Vector3d& step,
                                const std::vector<PartFaces>& copies) {
   Pattern pattern;

@@ -37,6 +37,10 @@ class ModelBuilder {
   /// 0.25 % of the model's area are left out: no picture and no measure would show them.
   void declare(const std::string& name, const PointGroup& group, const Placement& about, const PartFaces& faces);
 
+  /// Declares a turned part: Cinfv, or Dinfh if its two ends are `alike`; Cnv or Dnh of its facets where these count.
+  /// \param facets 0 to take the part as round
+  void declare_turned(const std::string& name, bool alike, int facets, const Placement& about, const PartFaces& faces);
+
   /// Declares copies one step apart each.
   void declare_row(const std::string& name, const Eigen::Vector3d& step, const std::vector<PartFaces>& copies);
 

@@ -42,15 +42,20 @@ class Skin {
     size_ = static_cast<int>(ring.size());
     vertices_.insert(vertices_.end(), ring.begin(), ring.end());
   }
-  void join(int lower, int upper) {
+  void join(int lower, int upper, const std::function<bool(int ring, int point)>& other_diagonal = {}) {
     for (int j = 0; j < size_; ++j) {
       const int next = (j + 1) % size_;
       const int a = lower * size_ + j;
       const int b = lower * size_ + next;
       const int c = upper * size_ + next;
       const int d = upper * size_ + j;
-      faces_.push_back({a, b, c});
-      faces_.push_back({a, c, d});
+      if (other_diagonal && other_diagonal(lower, j)) {
+        faces_.push_back({a, b, d});
+        faces_.push_back({b, c, d});
+      } else {
+        faces_.push_back({a, b, c});
+        faces_.push_back({a, c, d});
+      }
     }
   }
   void close(int ring, const Vector3d& apex, bool first) {
@@ -148,11 +153,11 @@ Mesh loft(const std::vector<Ring>& rings, const Vector3d& first_apex, const Vect
   return skin.mesh();
 }
 
-Mesh closed_loft(const std::vector<Ring>& rings) {
+Mesh closed_loft(const std::vector<Ring>& rings, const std::function<bool(int ring, int point)>& other_diagonal) {
   Skin skin;
   const int count = static_cast<int>(rings.size());
   for (const Ring& ring : rings) skin.add(ring);
-  for (int i = 0; i < count; ++i) skin.join(i, (i + 1) % count);
+  for (int i = 0; i < count; ++i) skin.join(i, (i + 1) % count, other_diagonal);
   return skin.mesh();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,7 +33,9 @@ using Ring = std::vector<Eigen::Vector3d>;
 Mesh loft(const std::vector<Ring>& rings, const Eigen::Vector3d& first_apex, const Eigen::Vector3d& last_apex);
 
 /// Skin over rings of which the last is joined to the first.
-Mesh closed_loft(const std::vector<Ring>& rings);
+/// \param other_diagonal whether the quadrangle from point j of ring i to j + 1 of i + 1 is cut the other way; may be
+/// empty
+Mesh closed_loft(const std::vector<Ring>& rings, const std::function<bool(int ring, int point)>& other_diagonal = {});
 
 /// Turned about z. The profile is a closed line, or begins and ends on the axis (radius 0).
 /// \param facets of a circle; a facet's edge lies at angle 0
