@@ -18,11 +18,10 @@ struct DetectOptions {
   void validate() const;
 };
 
-/// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of its
-/// connected components and sets of congruent components, and the congruences among components as patterns.
-/// Every element of a returned group was verified against the surface. Sorted by area, largest first; parents set.
-/// The result is the same for any number of threads.
-/// \throw InputError when the mesh has no area
+/// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of
+/// its connected components and sets of congruent components, and the congruences among components as patterns. Every
+/// element of a returned group was verified against the surface. Sorted by area, largest first; parents set. The result
+/// is the same for any number of threads. \throw InputError when the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 
 }  // namespace orbifit

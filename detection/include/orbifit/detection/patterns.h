@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "orbifit/detection/components.h"
+#include "orbifit/detection/refinement.h"
+#include "orbifit/model/annotation.h"
+
+namespace orbifit {
+
+/// A way to see the copies of a part as a regular arrangement.
+struct Arrangement {
+  Pattern::Kind kind = Pattern::Kind::congruent;
+  std::vector<Motion> generators;
+  std::vector<Motion> motions;  ///< of each copy from the first, on the arrangement exactly
+};
+
+/// Names the arrangement of copies placed by `motions` (the first is the identity): a lattice of translations of one to
+/// three generators, an arc of rotations, or none (`congruent`).
+/// \param own group of the copy at the first place, by which a motion may be changed; null when it has none
+/// \param centroid of the first copy \param reach its radius \param tolerance how far a copy may be off its place
+Arrangement arrange(const std::vector<Motion>& motions, const GroupPlacement* own, const Eigen::Vector3d& centroid,
+                    double reach, double tolerance);
+
+}  // namespace orbifit

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "orbifit/detection/surface_patch.h"
+#include "orbifit/model/point_group.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// Where a group sits: its elements follow in closed form.
+struct GroupPlacement {
+  PointGroup group;
+  GroupFrame frame = GroupFrame::Identity();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+struct RefinementOptions {
+  int samples = 400;       ///< of the patch
+  int iterations = 12;     ///< at most
+  double first_width = 4;  ///< reach of the robust loss at the start, in tolerances of the patch
+  double last_width = 1;   ///< and at the end
+};
+
+/// Moves frame and centre, all elements of the group together, so that the images of the patch's samples come to lie on
+/// the patch: point-to-plane least squares with Tukey's loss, whose reach shrinks. The group itself stays exact.
+GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RefinementOptions& options = {});
+
+/// Where the vertices of the patch are images of one another, lets them decide: point-to-point least squares, which
+/// leaves no more than rounding. Returns `start` unchanged where they are not.
+GroupPlacement refine_on_vertices(const SurfacePatch& patch, const GroupPlacement& start);
+
+}  // namespace orbifit

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/model/sampling.h"
+#include "orbifit/model/surface_index.h"
+#include "orbifit/model/topology.h"
+
+namespace orbifit {
+
+/// A mesh made ready for detection: moved so that its box is centred on the origin and its diagonal is 1.
+struct PreparedMesh {
+  Mesh mesh;                       ///< normalised; faces in the order of the input
+  Similarity input_of_normalised;  ///< carries the normalised mesh back to where it was given
+  Weld weld;                       ///< at 1e-7 of the diagonal
+  Components components;
+  Points normals;                                 ///< #F by 3
+  Eigen::VectorXd areas;                          ///< #F; 0 for faces that repeat an earlier one (two-sided sheets)
+  std::vector<std::vector<int>> faces_of_vertex;  ///< by group of the weld: the faces at it
+  double area = 0;
+};
+
+/// \throw InputError when the mesh has no area or a coordinate is not finite
+PreparedMesh prepare(const Mesh& mesh);
+
+/// Area moments of some faces, exact integrals over the triangles.
+struct SurfaceMoments {
+  double area = 0;
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< about the centroid, divided by the area
+  double radius = 0;                                     ///< largest distance of a vertex from the centroid
+  double diagonal = 0;                                   ///< of the faces' bounding box
+};
+SurfaceMoments surface_moments(const PreparedMesh& prepared, const std::vector<int>& faces);
+
+/// A set of faces with what is needed to ask whether motions map it to itself. Lengths are those of the normalised
+/// mesh.
+struct SurfacePatch {
+  const PreparedMesh* prepared = nullptr;  ///< not owned
+  std::vector<int> faces;                  ///< ascending
+  SurfaceMoments moments;
+  SurfaceSamples samples;
+  std::vector<char> at_crease;    ///< per sample: a face at more than 25 degrees is within three tolerances
+  double tolerance = 0;           ///< min(t, 4 t d): t the mesh's, d the patch's diagonal
+  double relative_tolerance = 0;  ///< t, a fraction of a diagonal
+  std::shared_ptr<const SurfaceIndex> index;
+};
+
+/// \param stream name of the random stream that draws the samples
+SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
+                        const RunContext& context, std::string_view stream);
+
+}  // namespace orbifit

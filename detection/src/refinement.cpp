@@ -1,0 +1,174 @@
+#include "orbifit/detection/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "orbifit/detection/verification.h"
+#include "orbifit/model/point_index.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Jacobian = Eigen::Matrix<double, 3, 6>;
+
+constexpr double kNormalCosine = 0.8;  // 37 degrees: looser than when verifying, the start may be off
+
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d matrix;
+  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return matrix;
+}
+
+// The motions that the refinement looks at. Generators and their inverses constrain the placement as all elements do.
+std::vector<Motion> fitted_motions(const GroupPlacement& placement) {
+  std::vector<Motion> result;
+  if (placement.group.continuous()) {
+    const std::vector<Motion> all = judged_motions(placement.group, placement.frame, placement.centre);
+    const std::size_t step = std::max<std::size_t>(1, all.size() / 10);
+    for (std::size_t i = 0; i < all.size(); i += step) result.push_back(all[i]);
+    return result;
+  }
+  for (const Matrix3d& linear : generators(placement.group, placement.frame)) {
+    const Motion motion = Motion::about(linear, placement.centre);
+    result.push_back(motion);
+    // A generator of high order moves little; a power of it that turns by about a quarter holds the axis better.
+    const AxisAngle turn = axis_angle(linear);
+    if (turn.angle > 1e-6 && turn.angle < 1.2) {
+      const int power = static_cast<int>(std::lround(std::acos(-0.3) / turn.angle));
+      Matrix3d raised = Matrix3d::Identity();
+      for (int k = 0; k < power; ++k) raised = raised * linear;
+      result.push_back(Motion::about(raised, placement.centre));
+    }
+  }
+  return result;
+}
+
+// How the image of `point` under `motion` moves with a small rotation of the frame (in units of 1 / scale) and with a
+// shift of the centre: d(O x + c - O c) = [a] O x - O [a] x + (1 - O) dc with x measured from the centre.
+Jacobian image_jacobian(const Motion& motion, const Vector3d& from_centre, double scale) {
+  Jacobian jacobian;
+  jacobian.leftCols<3>() =
+      (motion.linear * cross_matrix(from_centre) - cross_matrix(motion.linear * from_centre)) / scale;
+  jacobian.rightCols<3>() = Matrix3d::Identity() - motion.linear;
+  return jacobian;
+}
+
+struct NormalEquations {
+  Matrix6 matrix = Matrix6::Zero();
+  Vector6 right = Vector6::Zero();
+  double weight = 0;
+};
+
+// Takes the step; directions that the data leave free (along an axis, within a plane) stay where they are.
+double apply(const NormalEquations& equations, double scale, GroupPlacement& placement) {
+  const double damping = 1e-9 * std::max(equations.matrix.trace(), 1e-300);
+  const Vector6 step = (equations.matrix + damping * Matrix6::Identity()).ldlt().solve(-equations.right);
+  Vector3d turn = step.head<3>() / scale;
+  if (turn.norm() > 0.3) turn *= 0.3 / turn.norm();
+  if (turn.norm() > 0) {
+    placement.frame = axis_rotation(turn.normalized(), turn.norm()) * placement.frame;
+    placement.frame = nearest_orthogonal(placement.frame);
+  }
+  placement.centre += step.tail<3>();
+  return turn.norm() * scale + step.tail<3>().norm();
+}
+
+}  // namespace
+
+GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RefinementOptions& options) {
+  GroupPlacement placement = start;
+  const double scale = std::max(patch.moments.radius, 1e-9);
+  const Eigen::Index total = patch.samples.points.rows();
+  const Eigen::Index count = std::min<Eigen::Index>(total, options.samples);
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    const double progress = std::min(1.0, iteration / std::max(1.0, 0.6 * options.iterations));
+    const double width = patch.tolerance * std::exp((1 - progress) * std::log(options.first_width) +
+                                                    progress * std::log(options.last_width));
+    NormalEquations equations;
+    for (const Motion& motion : fitted_motions(placement)) {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const Eigen::Index s = i * total / count;
+        const Vector3d point = patch.samples.points.row(s);
+        const Vector3d image = motion(point);
+        const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
+        const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNormalCosine, width, true);
+        if (near.face < 0) continue;
+        const Vector3d facing = patch.prepared->normals.row(near.face);
+        const double residual = facing.dot(image - near.point);
+        const double ratio = near.distance / width;
+        const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
+        const Vector6 row = image_jacobian(motion, point - placement.centre, scale).transpose() * facing;
+        equations.matrix += weight * row * row.transpose();
+        equations.right += weight * residual * row;
+        equations.weight += weight;
+      }
+    }
+    if (equations.weight < 20) break;
+    const double moved = apply(equations, scale, placement);
+    if (progress >= 1 && moved < 1e-12 * scale) break;
+  }
+  return placement;
+}
+
+GroupPlacement refine_on_vertices(const SurfacePatch& patch, const GroupPlacement& start) {
+  if (start.group.continuous()) return start;
+  const PreparedMesh& prepared = *patch.prepared;
+  std::vector<int> groups;
+  for (const int f : patch.faces) {
+    for (int k = 0; k < 3; ++k) {
+      groups.push_back(prepared.weld.group_of_vertex[static_cast<std::size_t>(prepared.mesh.faces(f, k))]);
+    }
+  }
+  std::ranges::sort(groups);
+  groups.erase(std::ranges::unique(groups).begin(), groups.end());
+  Points points(static_cast<Eigen::Index>(groups.size()), 3);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    points.row(static_cast<Eigen::Index>(i)) =
+        prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(groups[i])]);
+  }
+  const PointIndex index(points);
+  const double scale = std::max(patch.moments.radius, 1e-9);
+  constexpr Eigen::Index kMostVertices = 2000;
+  const Eigen::Index count = std::min(points.rows(), kMostVertices);
+  GroupPlacement placement = start;
+  double reach = 0.3 * patch.tolerance;
+  double rms = 0;
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    NormalEquations equations;
+    Eigen::Index matched = 0;
+    double square = 0;
+    const std::vector<Motion> motions = fitted_motions(placement);
+    for (const Motion& motion : motions) {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const Vector3d point = points.row(i * points.rows() / count);
+        const Vector3d image = motion(point);
+        const PointIndex::Neighbour near = index.nearest(image, 1).front();
+        if (near.distance > reach) continue;
+        ++matched;
+        square += near.distance * near.distance;
+        const Jacobian jacobian = image_jacobian(motion, point - placement.centre, scale);
+        const Vector3d residual = image - points.row(near.index).transpose();
+        equations.matrix += jacobian.transpose() * jacobian;
+        equations.right += jacobian.transpose() * residual;
+      }
+    }
+    const auto pairs = static_cast<Eigen::Index>(motions.size()) * count;
+    if (matched < static_cast<Eigen::Index>(0.9 * static_cast<double>(pairs)) || pairs == 0) return start;
+    apply(equations, scale, placement);
+    rms = std::sqrt(square / static_cast<double>(matched));
+    reach = std::max(1e-9, std::min(reach, 4 * rms + 1e-9));
+  }
+  // In a dense mesh some vertex is always near; only a true correspondence makes the distances vanish.
+  return rms < 0.02 * patch.tolerance ? placement : start;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,154 @@
+#include "orbifit/detection/surface_patch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kWeldTolerance = 1e-7;
+constexpr double kCreaseCosine = 0.90630778703665;  // 25 degrees
+
+// Faces with the same welded corners as an earlier one carry no area of their own: a sheet modelled with two sides
+// would else weigh double and pull the centroid away from the axis.
+void silence_repeated_faces(const Mesh& mesh, const Weld& weld, Eigen::VectorXd& areas) {
+  std::vector<std::pair<std::array<int, 3>, int>> corners(static_cast<std::size_t>(mesh.faces.rows()));
+  for (int f = 0; f < mesh.faces.rows(); ++f) {
+    std::array<int, 3> key{};
+    for (int k = 0; k < 3; ++k) {
+      key[static_cast<std::size_t>(k)] = weld.group_of_vertex[static_cast<std::size_t>(mesh.faces(f, k))];
+    }
+    std::ranges::sort(key);
+    corners[static_cast<std::size_t>(f)] = {key, f};
+  }
+  std::ranges::sort(corners);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (corners[i].first == corners[i - 1].first) areas[corners[i].second] = 0;
+  }
+}
+
+bool near_crease(const PreparedMesh& prepared, const Vector3d& point, int face, double reach) {
+  const Vector3d normal = prepared.normals.row(face);
+  for (int k = 0; k < 3; ++k) {
+    const int group = prepared.weld.group_of_vertex[static_cast<std::size_t>(prepared.mesh.faces(face, k))];
+    const std::vector<int>& around = prepared.faces_of_vertex[static_cast<std::size_t>(group)];
+    if (around.size() > 64) continue;  // the apex of a fan: its faces are seen from their other corners
+    for (const int other : around) {
+      if (std::abs(normal.dot(prepared.normals.row(other))) > kCreaseCosine) continue;
+      const Vector3d a = prepared.mesh.vertices.row(prepared.mesh.faces(other, 0));
+      const Vector3d b = prepared.mesh.vertices.row(prepared.mesh.faces(other, 1));
+      const Vector3d c = prepared.mesh.vertices.row(prepared.mesh.faces(other, 2));
+      const Vector3d weights = nearest_on_triangle(point, a, b, c);
+      if ((weights[0] * a + weights[1] * b + weights[2] * c - point).norm() <= reach) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+PreparedMesh prepare(const Mesh& mesh) {
+  if (!mesh.vertices.allFinite()) throw InputError("", "vertices", "a coordinate is not finite");
+  PreparedMesh result;
+  const double size = diagonal(mesh.vertices);
+  if (!(size > 0)) throw InputError("", "", "the mesh has no extent");
+  const Vector3d centre = bounding_box_centre(mesh.vertices);
+  result.input_of_normalised = {size, Matrix3d::Identity(), centre};
+  result.mesh = mesh;
+  result.mesh.vertices = (mesh.vertices.rowwise() - centre.transpose()) / size;
+  result.weld = weld_vertices(result.mesh.vertices, kWeldTolerance);
+  result.components = connected_components(result.mesh, result.weld);
+  result.normals = face_normals(result.mesh);
+  result.areas = face_areas(result.mesh);
+  silence_repeated_faces(result.mesh, result.weld, result.areas);
+  result.area = result.areas.sum();
+  if (!(result.area > 0)) throw InputError("", "faces", "the mesh has no area");
+  result.faces_of_vertex.resize(result.weld.representative.size());
+  for (int f = 0; f < mesh.faces.rows(); ++f) {
+    if (result.areas[f] <= 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int group = result.weld.group_of_vertex[static_cast<std::size_t>(mesh.faces(f, k))];
+      result.faces_of_vertex[static_cast<std::size_t>(group)].push_back(f);
+    }
+  }
+  return result;
+}
+
+SurfaceMoments surface_moments(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  SurfaceMoments result;
+  Matrix3d second = Matrix3d::Zero();
+  Eigen::AlignedBox3d box;
+  const auto corner = [&](int face, int k) -> Vector3d {
+    return prepared.mesh.vertices.row(prepared.mesh.faces(face, k));
+  };
+  for (const int f : faces) {
+    const double area = prepared.areas[f];
+    for (int k = 0; k < 3; ++k) box.extend(corner(f, k));
+    result.area += area;
+    result.centroid += area / 3 * (corner(f, 0) + corner(f, 1) + corner(f, 2));
+  }
+  result.diagonal = box.isEmpty() ? 0 : box.diagonal().norm();
+  if (result.area <= 0) {
+    if (!box.isEmpty()) result.centroid = box.center();
+    return result;
+  }
+  result.centroid /= result.area;
+  for (const int f : faces) {
+    // Over a triangle the integral of x x^T is area / 12 (sum of v v^T + s s^T) with s the sum of the corners.
+    Vector3d sum = Vector3d::Zero();
+    Matrix3d outer = Matrix3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d v = corner(f, k) - result.centroid;
+      result.radius = std::max(result.radius, v.norm());
+      sum += v;
+      outer += v * v.transpose();
+    }
+    second += prepared.areas[f] / 12 * (outer + sum * sum.transpose());
+  }
+  result.covariance = second / result.area;
+  return result;
+}
+
+SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
+                        const RunContext& context, std::string_view stream) {
+  SurfacePatch patch;
+  patch.prepared = &prepared;
+  std::ranges::sort(faces);
+  patch.moments = surface_moments(prepared, faces);
+  patch.relative_tolerance = tolerance;
+  patch.tolerance = tolerance * std::min(1.0, 4 * patch.moments.diagonal);
+  std::vector<int> visible;
+  visible.reserve(faces.size());
+  for (const int f : faces) {
+    if (prepared.areas[f] > 0) visible.push_back(f);
+  }
+  Random random(context.seed, stream);
+  patch.samples = sample_surface(prepared.mesh, samples, random, visible);
+  patch.index = std::make_shared<const SurfaceIndex>(prepared.mesh, visible);
+  patch.at_crease.resize(static_cast<std::size_t>(patch.samples.points.rows()));
+  parallel_for(context, patch.at_crease.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      patch.at_crease[s] = near_crease(prepared, patch.samples.points.row(static_cast<Eigen::Index>(s)),
+                                       patch.samples.faces[s], 3 * patch.tolerance)
+                               ? 1
+                               : 0;
+    }
+  });
+  patch.faces = std::move(faces);
+  return patch;
+}
+
+}  // namespace orbifit
