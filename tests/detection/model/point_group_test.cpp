@@ -27,7 +27,9 @@ class FiniteGroup : public testing::TestWithParam<std::string> {
   GroupFrame frame_ = Random(7, GetParam()).rotation();
 };
 
-TEST_P(FiniteGroup, SymbolSurvivesParsing) { EXPECT_EQ(group_.symbol(), GetParam()); }
+TEST_P(FiniteGroup, SymbolSurvivesParsing) {
+  EXPECT_EQ(group_.symbol(), GetParam());
+}
 
 TEST_P(FiniteGroup, HasAsManyElementsAsItsOrderIdentityFirst) {
   const auto all = elements(group_);
@@ -79,7 +81,9 @@ TEST_P(FiniteGroup, WithoutOneElementItIsNoGroup) {
   EXPECT_EQ(found.has_value() ? found->group.symbol() : "none", group_.order() == 2 ? "C1" : "none");
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) { return info.param; }
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+  return info.param;
+}
 INSTANTIATE_TEST_SUITE_P(All, FiniteGroup, testing::ValuesIn(finite_symbols()), test_name);
 
 TEST(PointGroup, RefusesWhatIsNoSymbol) {
