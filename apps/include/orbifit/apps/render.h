@@ -45,25 +45,27 @@ struct Scene {
 };
 
 struct ViewOptions {
-  int width = 800, height = 600;    ///< pixels
-  double azimuth = 35;              ///< degrees about `up`
-  double elevation = 25;            ///< degrees
+  int width = 800, height = 600;  ///< pixels
+  double azimuth = 35;            ///< degrees about `up`
+  double elevation = 25;          ///< degrees
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  double field_of_view = 30;        ///< vertical, degrees
-  int samples = 9;                  ///< rays per pixel, a square number
-  bool ground_shadow = true;        ///< soft shadow under the shape
-  /// Box that the picture frames; empty: the scene's. Set it to keep two pictures at one scale.
+  double field_of_view = 30;  ///< vertical, degrees
+  int samples = 9;            ///< rays per pixel, a square number
+  bool ground_shadow = true;  ///< soft shadow under the shape
+  /// Points that the picture frames, #P by 3, or two opposite corners of a box; empty: the scene's own. Set it to keep
+  /// two pictures at one scale; its diagonal then is the scene's.
   Points frame;
   Colour background{1, 1, 1};
 };
 
-/// Ray-cast picture with soft light and ambient occlusion; the same scene gives the same bytes.
+/// Ray-cast picture with soft light and ambient occlusion; the same scene gives the same bytes with any number of
+/// threads. \throw UsageError naming the field of `view`, its value and the rule
 Image render(const Scene& scene, const ViewOptions& view, const RunContext& context);
 
 /// Distinct colours, one a region; the same number gives the same colour.
 Colour region_colour(int number);
 
-/// Blue to white to red, or white to red, for values in [0, 1].
+/// Blue (0) over white to red (1); grey for a value that is not a number.
 Colour heat_colour(double value);
 
 /// The mesh in grey, with a region's faces in its colour and its axis (or mirror plane's outline) drawn.
@@ -72,7 +74,8 @@ Scene region_scene(const Mesh& mesh, const Region& region);
 /// The mesh with an instance of each colour.
 Scene pattern_scene(const Mesh& mesh, const Pattern& pattern);
 
-/// Small pictures side by side with a caption each, in rows.
+/// Small pictures side by side with a caption each, in rows. Captions are ASCII; long ones are cut.
+/// \throw UsageError for another number of captions than images, fewer than one column, or an ill-formed image
 Image contact_sheet(const std::vector<Image>& images, const std::vector<std::string>& captions, int columns);
 
 std::string encode_png(const Image& image);
