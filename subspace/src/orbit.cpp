@@ -91,7 +91,7 @@ double transport_difference(const Transport& a, const Transport& b) {
   return result;
 }
 
-Orbit orbit_of(const Eigen::Vector3d& seed, int face, const RegionMap& regions, const OrbitOptions& options) {
+Orbit orbit_of(const Eigen::Vector3d& seed, int face, const RegionMap& regions, const ClosureOptions& options) {
   // Two ways to one point give the same transport up to rounding unless they restrict the displacement.
   constexpr double kSameTransport = 1e-7;
   Orbit orbit;

@@ -98,7 +98,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
   sampling.first_sample.push_back(0);
   std::vector<Eigen::Vector3d> points;
   DiscGrid grid(r);
-  OrbitOptions closure;
+  ClosureOptions closure;
   closure.floating = options.floating;
   closure.doublet = kDoublet * diagonal(mesh.vertices);
   closure.snap = kCrowded * r;
@@ -113,7 +113,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
       const Eigen::Vector3d fixed = fixed_point(seed, orbit.stabilisers);
       // Motions without a common fixed point nearby crowd the seed by accident; it stays where it is.
       if ((fixed - seed).norm() < r) {
-        OrbitOptions exact = closure;
+        ClosureOptions exact = closure;
         exact.snap = 0;
         orbit = orbit_of(fixed, face, regions, exact);
       }

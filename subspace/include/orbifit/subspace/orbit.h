@@ -44,7 +44,7 @@ struct Orbit {
   std::vector<Motion> stabilisers;  ///< motions found that bring the seed back to within `snap`
 };
 
-struct OrbitOptions {
+struct ClosureOptions {
   bool floating = true;     ///< carry the groups by translations
   double doublet = 1e-9;    ///< points closer than this are one, mesh units, > 0
   double snap = 0;          ///< motions that move the seed by less count as its stabilisers, mesh units
@@ -53,7 +53,7 @@ struct OrbitOptions {
 
 /// \param face the face on which the seed lies: it says in which regions the seed is
 /// \throw InputError naming two regions when the orbit does not close
-Orbit orbit_of(const Eigen::Vector3d& seed, int face, const RegionMap& regions, const OrbitOptions& options);
+Orbit orbit_of(const Eigen::Vector3d& seed, int face, const RegionMap& regions, const ClosureOptions& options);
 
 /// The point nearest to `seed` that all its stabilisers fix.
 Eigen::Vector3d fixed_point(const Eigen::Vector3d& seed, const std::vector<Motion>& stabilisers);

@@ -28,7 +28,7 @@ struct SymmetricSampling {
 
 struct SamplingOptions {
   double radius = 0;     ///< r, mesh units, > 0
-  bool floating = true;  ///< see OrbitOptions
+  bool floating = true;  ///< see ClosureOptions
   int most_samples = 20000;
 };
 
