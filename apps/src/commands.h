@@ -12,6 +12,7 @@ CommandBody detect(CLI::App& app);
 CommandBody generate(CLI::App& app);
 CommandBody info(CLI::App& app);
 CommandBody render(CLI::App& app);
+CommandBody report(CLI::App& app);
 CommandBody scan(CLI::App& app);
 
 }  // namespace orbifit::commands

@@ -50,6 +50,8 @@ constexpr std::array kCommands{
             "orbifit render chair.obj --annotation chair.json -o regions.png\n"
             "orbifit render chair.obj --points scan.ply --up 0 1 0 -o fit.png",
             commands::render},
+    Command{"report", "Bind texts, tables and pictures into one self-contained HTML page.",
+            "orbifit report steps.json -o index.html", commands::report},
 };
 
 struct CommonOptions {

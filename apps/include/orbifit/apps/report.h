@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbifit/apps/render.h"
+
+namespace orbifit {
+
+/// Text below is plain: it is escaped, and a blank line begins a new paragraph.
+struct ReportPicture {
+  std::string png;  ///< the file's bytes (encode_png)
+  std::string caption;
+};
+
+struct ReportTable {
+  std::vector<std::string> headers;
+  std::vector<std::vector<std::string>> rows;  ///< as many cells each as there are headers
+};
+
+struct ReportSection {
+  std::string title, text;
+  std::vector<ReportPicture> pictures;
+  std::vector<ReportTable> tables;
+  std::vector<std::string> notes;  ///< small print
+};
+
+struct Report {
+  std::string title, intro;
+  std::vector<ReportSection> sections;
+};
+
+/// One page that needs nothing else: pictures and style within it, no script; for desktop, phone and paper.
+/// Columns whose cells are all numbers stand to the right. The same report gives the same bytes.
+/// \throw UsageError for a row of another length than the headers, or a picture that is not a PNG
+std::string to_html(const Report& report);
+
+/// RFC 4648, with padding.
+std::string base64(const std::string& bytes);
+
+}  // namespace orbifit
