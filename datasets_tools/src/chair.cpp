@@ -75,7 +75,9 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
   const Vector3d corner = lower + along * level;
   const double half_thickness = 0.26 * thickness;
   const auto bar = [&](double half_length) {
-    return box({half_length, half_thickness, 1.5 * half_thickness}, {6 * detail, 2, 2}, 0.4 * half_thickness, 2);
+    // A little short of the legs' axes, so that bars do not share edges within a leg.
+    return box({half_length - 0.3 * half_thickness, half_thickness, 1.5 * half_thickness}, {6 * detail, 2, 2},
+               0.4 * half_thickness, 2);
   };
   const std::array<std::pair<double, Placement>, 2> bars{
       {{corner.x(), {Matrix3d::Identity(), Vector3d(0, corner.y(), corner.z())}},

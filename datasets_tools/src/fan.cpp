@@ -218,7 +218,7 @@ GeneratedModel build_fan(const ModelValues& values) {
   const bool continuous = values.count("continuous") != 0;
   const auto round = [&](const std::string& name, bool alike, int facets, const Placement& about,
                          const PartFaces& faces) {
-    builder.declare_turned(name, alike, continuous ? 0 : facets, about, faces);
+    builder.declare_turned(name, alike, continuous, facets, about, faces);
   };
   round("turned parts of the head", false, head.facets, about_head, turned);
   const std::array<std::string, 3> ring_names{"rim of the guard", "front ring", "back ring"};

@@ -46,17 +46,18 @@ PartFaces ModelBuilder::add(const Mesh& part, const Motion& motion) {
 
 void ModelBuilder::declare(const std::string& name, const PointGroup& group, const Placement& about,
                            const PartFaces& faces) {
-  regions_.push_back(make_region(group, about.origin, about.frame, faces, name));
+  Region region = make_region(group, about.origin, about.frame, faces, name);
+  std::vector<Motion> measured = region.generators;
+  regions_.push_back({std::move(region), std::move(measured)});
 }
 
-void ModelBuilder::declare_turned(const std::string& name, bool alike, int facets, const Placement& about,
+void ModelBuilder::declare_turned(const std::string& name, bool alike, bool round, int facets, const Placement& about,
                                   const PartFaces& faces) {
   using Family = PointGroup::Family;
-  if (facets == 0) {
-    declare(name, {alike ? Family::Dinfh : Family::Cinfv, 1}, about, faces);
-  } else {
-    declare(name, {alike ? Family::Dnh : Family::Cnv, facets}, about, faces);
-  }
+  declare(name, {alike ? Family::Dnh : Family::Cnv, facets}, about, faces);
+  if (!round) return;
+  regions_.back().region =
+      make_region({alike ? Family::Dinfh : Family::Cinfv, 1}, about.origin, about.frame, faces, name);
 }
 
 void ModelBuilder::declare_row(const std::string& name, const Eigen::Vector3d& step,
@@ -92,18 +93,24 @@ GeneratedModel ModelBuilder::finish() const {
   GeneratedModel model{mesh(), {}};
   model.truth = empty_annotation(model.mesh, 0.005);
   const Eigen::VectorXd areas = face_areas(model.mesh);
-  for (const Region& region : regions_) {
-    if (area_of(areas, region.faces) < kSmallestArea * areas.sum()) continue;
-    model.truth.regions.push_back(region);
+  // Products of exact motions add rounding only: to measure the generators is enough, and quick.
+  SymmetryAnnotation measured = model.truth;
+  for (const Declared& declared : regions_) {
+    if (area_of(areas, declared.region.faces) < kSmallestArea * areas.sum()) continue;
+    model.truth.regions.push_back(declared.region);
     model.truth.regions.back().id = static_cast<int>(model.truth.regions.size()) - 1;
+    measured.regions.push_back(declared.region);
+    measured.regions.back().group = {};
+    measured.regions.back().elements = declared.measured;
   }
   for (const Pattern& pattern : patterns_) {
     model.truth.patterns.push_back(pattern);
     model.truth.patterns.back().id = static_cast<int>(model.truth.patterns.size()) - 1;
   }
+  measured.patterns = model.truth.patterns;
   set_parents(model.truth.regions);
   RunContext context;
-  const SymmetryReport report = symmetry_residual(model.mesh, model.truth, nullptr, CarriedMotions::fixed, context);
+  const SymmetryReport report = symmetry_residual(model.mesh, measured, nullptr, CarriedMotions::fixed, context);
   for (std::size_t r = 0; r < report.regions.size(); ++r) model.truth.regions[r].residual = report.regions[r].floor;
   for (std::size_t p = 0; p < report.patterns.size(); ++p) model.truth.patterns[p].residual = report.patterns[p].floor;
   return model;

@@ -38,8 +38,9 @@ class ModelBuilder {
   void declare(const std::string& name, const PointGroup& group, const Placement& about, const PartFaces& faces);
 
   /// Declares a turned part: Cinfv, or Dinfh if its two ends are `alike`; Cnv or Dnh of its facets where these count.
-  /// \param facets 0 to take the part as round
-  void declare_turned(const std::string& name, bool alike, int facets, const Placement& about, const PartFaces& faces);
+  /// \param round whether to take the part as round
+  void declare_turned(const std::string& name, bool alike, bool round, int facets, const Placement& about,
+                      const PartFaces& faces);
 
   /// Declares copies one step apart each.
   void declare_row(const std::string& name, const Eigen::Vector3d& step, const std::vector<PartFaces>& copies);
@@ -48,11 +49,15 @@ class ModelBuilder {
   GeneratedModel finish() const;
 
  private:
+  struct Declared {
+    Region region;
+    std::vector<Motion> measured;  // generators of the group that the tessellation has
+  };
   Mesh mesh() const;
 
   std::vector<Mesh> parts_;
   int faces_ = 0;
-  std::vector<Region> regions_;
+  std::vector<Declared> regions_;
   std::vector<Pattern> patterns_;
 };
 

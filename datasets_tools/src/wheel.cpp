@@ -186,7 +186,7 @@ GeneratedModel build_wheel(const ModelValues& values) {
   const PartFaces spokes =
       copies(spoke(0.8 * hub, 0.885 * rim, front - 0.1 * hub, 0.42 * hub, values["spoke_breadth"] * rim, detail), 5);
   const Motion out{Matrix3d::Identity(), Vector3d(0.72 * hub, 0, front)};
-  const PartFaces bolts = copies(moved(bolt(0.14 * hub, 0.36 * hub, detail), out), 10);
+  const PartFaces bolts = copies(moved(bolt(0.175 * hub, 0.5 * hub, detail), out), 10);
   const Motion aside =
       Motion::rotation(Vector3d::UnitZ(), values["valve_angle"] * std::numbers::pi / 180, Vector3d::Zero());
   const Motion at_rim{Matrix3d::Identity(), Vector3d(0.87 * rim, 0, 0.24 * width)};
@@ -201,8 +201,8 @@ GeneratedModel build_wheel(const ModelValues& values) {
   builder.declare("tyre and rim", {Family::Dnh, lugs}, place, joined({tyre_faces, rim_faces}));
   builder.declare("rim, hub and bolts", {Family::Cnv, 10}, mirrored, joined({turned, bolts}));
   const bool continuous = values.count("continuous") != 0;
-  builder.declare_turned("rim and hub", false, continuous ? 0 : facets, place, turned);
-  builder.declare_turned("rim", true, continuous ? 0 : facets, place, rim_faces);
+  builder.declare_turned("rim and hub", false, continuous, facets, place, turned);
+  builder.declare_turned("rim", true, continuous, facets, place, rim_faces);
   return builder.finish();
 }
 

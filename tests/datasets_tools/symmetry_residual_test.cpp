@@ -1,0 +1,235 @@
+#include "orbifit/datasets_tools/symmetry_residual.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/orbit_model.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+SymmetryReport measure(const GeneratedModel& model, const Mesh* deformed, CarriedMotions motions) {
+  RunContext context;
+  return symmetry_residual(model.mesh, model.truth, deformed, motions, context);
+}
+
+Mesh moved_by(Mesh mesh, const Similarity& similarity) {
+  for (auto vertex : mesh.vertices.rowwise()) vertex = similarity(Vector3d(vertex.transpose())).transpose();
+  return mesh;
+}
+
+// Moves the vertices of some faces.
+void shift(Mesh& mesh, const std::vector<int>& faces, const Motion& motion) {
+  std::vector<bool> done(static_cast<std::size_t>(mesh.vertices.rows()), false);
+  for (const int f : faces) {
+    for (int k = 0; k < 3; ++k) {
+      const int v = mesh.faces(f, k);
+      if (done[static_cast<std::size_t>(v)]) continue;
+      done[static_cast<std::size_t>(v)] = true;
+      mesh.vertices.row(v) = motion(Vector3d(mesh.vertices.row(v).transpose())).transpose();
+    }
+  }
+}
+
+const Region& region_named(const GeneratedModel& model, const std::string& name) {
+  return *std::ranges::find(model.truth.regions, name, &Region::name);
+}
+
+// A square of 2 x 2 quadrangles with the mirror x -> -x; vertex 3 * j + i at (i - 1, j - 1, 0).
+GeneratedModel square() {
+  GeneratedModel model;
+  model.mesh.vertices.resize(9, 3);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) model.mesh.vertices.row(3 * j + i) = Eigen::RowVector3d(i - 1, j - 1, 0);
+  }
+  model.mesh.faces.resize(8, 3);
+  model.mesh.faces << 0, 1, 3, 1, 4, 3, 1, 2, 5, 1, 5, 4, 3, 4, 6, 4, 7, 6, 4, 5, 8, 4, 8, 7;
+  model.truth = empty_annotation(model.mesh, 0.005);
+  std::vector<int> faces(8);
+  std::iota(faces.begin(), faces.end(), 0);
+  model.truth.regions.push_back(
+      make_region({PointGroup::Family::Cs, 1}, Vector3d::Zero(), frame_about(Vector3d::UnitX()), faces, "square"));
+  return model;
+}
+
+TEST(SymmetryResidual, IsWhatOneComputesByHand) {
+  const GeneratedModel model = square();
+  Mesh deformed = model.mesh;
+  deformed.vertices.row(3) += Eigen::RowVector3d(0, 0, 0.3);  // its image, vertex 5, stays
+  const SymmetryReport report = measure(model, &deformed, CarriedMotions::fixed);
+  const RegionResidual& region = report.regions.front();
+  const double size = diagonal(deformed.vertices);
+  EXPECT_EQ(region.pairs, 9);
+  EXPECT_EQ(region.mapped, 9);
+  EXPECT_EQ(region.floor.max, 0);
+  EXPECT_NEAR(region.deformed.max, 0.3 / size, 1e-15);
+  EXPECT_NEAR(region.deformed.rms, 0.3 / size * std::sqrt(2.0 / 9), 1e-15);  // of the pairs 3 -> 5 and 5 -> 3
+  EXPECT_TRUE(region.worst_vertex == 3 || region.worst_vertex == 5);
+}
+
+TEST(SymmetryResidual, MeasuresTheRestShapesOwnFlaw) {
+  GeneratedModel model = square();
+  model.mesh.vertices(3, 2) = 0.01;
+  const SymmetryReport report = measure(model, nullptr, CarriedMotions::fixed);
+  const RegionResidual& region = report.regions.front();
+  EXPECT_EQ(region.mapped, 7);
+  EXPECT_FALSE(report.vertices_onto_vertices);
+  // Vertex 3's image lies 0.01 above the flat side; vertex 5's image lies under the raised one, a little nearer.
+  EXPECT_NEAR(region.floor.max, 0.01 / diagonal(model.mesh.vertices), 1e-9);
+  EXPECT_EQ(region.worst_vertex, 3);
+  EXPECT_EQ(region.excess.max, 0);
+}
+
+TEST(SymmetryResidual, ExcessLeavesTheFloorOut) {
+  GeneratedModel model = square();
+  model.mesh.vertices(3, 2) = 0.01;
+  const RegionResidual same = measure(model, &model.mesh, CarriedMotions::fixed).regions.front();
+  EXPECT_NEAR(same.deformed.max, same.floor.max, 1e-15);
+  EXPECT_NEAR(same.excess.max, 0, 1e-15);
+}
+
+TEST(SymmetryResidual, FindsASingleMovedVertex) {
+  const GeneratedModel model = generate("table", {{"detail", 1}});
+  const Region& leg = region_named(model, "leg 2");
+  for (const double size : {1e-3, 1e-7, 1e-11}) {
+    Mesh deformed = model.mesh;
+    const int vertex = deformed.faces(leg.faces[40], 0);
+    deformed.vertices(vertex, 2) += size;
+    const SymmetryReport report = measure(model, &deformed, CarriedMotions::fixed);
+    const double expected = size / diagonal(deformed.vertices);
+    EXPECT_NEAR(report.regions[static_cast<std::size_t>(leg.id)].deformed.max / expected, 1, 1e-4);
+    EXPECT_LT(report.regions[static_cast<std::size_t>(region_named(model, "leg 1").id)].deformed.max, 1e-14);
+    // Free motions may spread the flaw, but not hide it.
+    const SymmetryReport free = measure(model, &deformed, CarriedMotions::moving);
+    EXPECT_GT(free.regions[static_cast<std::size_t>(leg.id)].deformed.max / expected, 0.5);
+  }
+}
+
+class PosedShape : public testing::TestWithParam<int> {};
+
+TEST_P(PosedShape, IsExactOnceItsPoseIsTakenOut) {
+  const GeneratedModel model = generate("chair", {{"detail", 1}});
+  Random random(static_cast<std::uint64_t>(GetParam()));
+  const Eigen::Matrix3d turn = random.rotation();
+  const Mesh posed = moved_by(model.mesh, {1, turn, Vector3d(4, -7, 1)});
+  const Mesh scaled = moved_by(model.mesh, {2.5, turn, Vector3d(4, -7, 1)});
+  EXPECT_GT(measure(model, &posed, CarriedMotions::fixed).worst_deformed, 0.05);
+  EXPECT_LT(measure(model, &posed, CarriedMotions::posed).worst_deformed, 2e-14);
+  // The regions' centres have moved apart: one rigid motion is not enough.
+  EXPECT_GT(measure(model, &scaled, CarriedMotions::posed).worst_deformed, 0.05);
+  EXPECT_LT(measure(model, &scaled, CarriedMotions::floating).worst_deformed, 2e-14);
+  EXPECT_LT(measure(model, &scaled, CarriedMotions::moving).worst_deformed, 2e-14);
+}
+
+INSTANTIATE_TEST_SUITE_P(Poses, PosedShape, testing::Range(1, 7));
+
+TEST(SymmetryResidual, FloatingForgivesATranslationOfARegionAndFixedDoesNot) {
+  const GeneratedModel model = generate("table", {{"detail", 1}});
+  Mesh deformed = model.mesh;
+  const Region& leg = region_named(model, "leg 3");
+  const Vector3d step(0.02, -0.01, 0.03);
+  shift(deformed, leg.faces, {Eigen::Matrix3d::Identity(), step});
+  const auto of_leg = [&](CarriedMotions motions) {
+    return measure(model, &deformed, motions).regions[static_cast<std::size_t>(leg.id)].deformed.max;
+  };
+  // Of the step only what the elements do not carry along counts: half turns double its part across the axis.
+  EXPECT_NEAR(of_leg(CarriedMotions::fixed) * diagonal(deformed.vertices), 2 * std::hypot(step.x(), step.y()), 1e-12);
+  EXPECT_LT(of_leg(CarriedMotions::moving), 1e-14);
+  GeneratedModel alone = model;
+  alone.truth.regions = {leg, region_named(model, "leg 1")};
+  EXPECT_LT(measure(alone, &deformed, CarriedMotions::floating).worst_deformed, 1e-14);
+  EXPECT_GT(measure(alone, &deformed, CarriedMotions::posed).worst_deformed, 1e-3);
+}
+
+TEST(SymmetryResidual, OnlyMovingForgivesATurnedRegion) {
+  const GeneratedModel model = generate("table", {{"detail", 1}});
+  Mesh deformed = model.mesh;
+  const Region& leg = region_named(model, "leg 4");
+  shift(deformed, leg.faces, Motion::rotation(Vector3d(1, 2, 0).normalized(), 0.2, leg.centre));
+  const auto of_leg = [&](CarriedMotions motions) {
+    return measure(model, &deformed, motions).regions[static_cast<std::size_t>(leg.id)].deformed.max;
+  };
+  EXPECT_GT(of_leg(CarriedMotions::floating), 0.01);
+  EXPECT_LT(of_leg(CarriedMotions::moving), 1e-14);
+}
+
+TEST(SymmetryResidual, AnotherChairIsASymmetricDeformationOfTheFirst) {
+  const GeneratedModel model = generate("chair", {{"detail", 1}});
+  const Mesh deformed =
+      generate("chair", {{"detail", 1}, {"leg_height", 0.6}, {"leg_spread", 0.1}, {"back_tilt", 20}}).mesh;
+  const SymmetryReport report = measure(model, &deformed, CarriedMotions::moving);
+  EXPECT_LT(report.worst_deformed, 1e-13);
+  for (const PatternResidual& pattern : report.patterns) EXPECT_LT(pattern.deformed.max, 1e-14);
+}
+
+TEST(SymmetryResidual, KeepsItsDigitsFarFromTheOrigin) {
+  OrbitOptions options;
+  options.centre = {1024, -2048, 512};
+  const GeneratedModel far = generate_orbit({PointGroup::Family::Td, 1}, options);
+  const SymmetryReport report = measure(far, &far.mesh, CarriedMotions::moving);
+  EXPECT_LT(report.worst_floor, 1e-12);
+  EXPECT_LT(report.worst_deformed, 1e-12);
+}
+
+TEST(SymmetryResidual, ContinuousGroupsAreTriedOnTheTessellationsTurns) {
+  const GeneratedModel model = generate("wheel", {{"detail", 1}});
+  Mesh deformed = model.mesh;
+  const Region& rim = region_named(model, "rim");
+  ASSERT_TRUE(rim.group.continuous());
+  EXPECT_LT(measure(model, &deformed, CarriedMotions::fixed).worst_deformed, 1e-14);
+  const int vertex = deformed.faces(rim.faces[7], 1);
+  const Vector3d out = (deformed.vertices.row(vertex).transpose() - rim.centre).normalized();
+  deformed.vertices.row(vertex) += 1e-4 * out.transpose();
+  const SymmetryReport report = measure(model, &deformed, CarriedMotions::fixed);
+  EXPECT_NEAR(report.regions[static_cast<std::size_t>(rim.id)].deformed.max * diagonal(deformed.vertices), 1e-4, 1e-8);
+}
+
+TEST(SymmetryResidual, SeesAStretchedInstanceOfAPattern) {
+  const GeneratedModel model = generate("chair", {{"detail", 1}});
+  Mesh deformed = model.mesh;
+  const std::vector<int>& slat = model.truth.patterns.front().instances[2].faces;
+  shift(deformed, slat, Motion::rotation(Vector3d::UnitY(), 0.3, Vector3d(0.1, 0.2, 0.3)));
+  EXPECT_LT(measure(model, &deformed, CarriedMotions::fixed).patterns.front().deformed.max, 1e-14);
+  deformed.vertices(deformed.faces(slat[3], 2), 1) += 1e-3;
+  EXPECT_GT(measure(model, &deformed, CarriedMotions::fixed).patterns.front().deformed.max, 5e-4);
+}
+
+TEST(SymmetryResidual, IsTheSameOnTwoThreads) {
+  const GeneratedModel model = generate("chair", {{"detail", 1}});
+  Mesh deformed = model.mesh;
+  Random random(8);
+  for (auto vertex : deformed.vertices.rowwise()) vertex += 1e-3 * random.direction().transpose();
+  RunContext one;
+  RunContext two;
+  two.threads = 2;
+  const SymmetryReport a = symmetry_residual(model.mesh, model.truth, &deformed, CarriedMotions::moving, one);
+  const SymmetryReport b = symmetry_residual(model.mesh, model.truth, &deformed, CarriedMotions::moving, two);
+  ASSERT_EQ(a.regions.size(), b.regions.size());
+  for (std::size_t r = 0; r < a.regions.size(); ++r) {
+    EXPECT_EQ(a.regions[r].deformed.rms, b.regions[r].deformed.rms);
+    EXPECT_EQ(a.regions[r].worst_vertex, b.regions[r].worst_vertex);
+  }
+}
+
+TEST(SymmetryResidual, RefusesAnotherConnectivity) {
+  const GeneratedModel model = square();
+  Mesh deformed = model.mesh;
+  deformed.vertices.conservativeResize(8, 3);
+  EXPECT_THROW(measure(model, &deformed, CarriedMotions::fixed), InputError);
+  deformed = model.mesh;
+  deformed.faces.row(0).reverseInPlace();
+  EXPECT_THROW(measure(model, &deformed, CarriedMotions::fixed), InputError);
+}
+
+}  // namespace
+}  // namespace orbifit
