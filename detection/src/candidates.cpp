@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
@@ -22,6 +23,8 @@ constexpr int kGridCells = 48;
 constexpr int kGridPoints = 20000;
 constexpr int kScreenSamples = 220;
 constexpr std::size_t kMostMaxima = 24;
+constexpr std::size_t kMostCorners = 130;
+constexpr std::size_t kMostCornerAxes = 600;
 
 // Lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012): exact squared distances along one line.
 void transform_line(std::vector<float>& line, std::vector<float>& out, std::vector<int>& apex,
@@ -112,6 +115,57 @@ std::vector<Vector3d> local_maxima(const DirectionSet& set, const std::vector<do
   return result;
 }
 
+// The welded vertices farthest from the centroid; none where they are too many to tell apart.
+std::vector<Vector3d> farthest_vertices(const SurfacePatch& patch) {
+  const PreparedMesh& prepared = *patch.prepared;
+  std::vector<int> groups;
+  for (const int f : patch.faces) {
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = prepared.mesh.faces(f, k);
+      const double radius = (prepared.mesh.vertices.row(vertex).transpose() - patch.moments.centroid).norm();
+      if (radius < patch.moments.radius - 0.5 * patch.tolerance) continue;
+      groups.push_back(prepared.weld.group_of_vertex[static_cast<std::size_t>(vertex)]);
+    }
+  }
+  std::ranges::sort(groups);
+  groups.erase(std::ranges::unique(groups).begin(), groups.end());
+  if (groups.size() > kMostCorners) return {};
+  std::vector<Vector3d> result;
+  for (const int g : groups) {
+    const int vertex = prepared.weld.representative[static_cast<std::size_t>(g)];
+    result.emplace_back(prepared.mesh.vertices.row(vertex).transpose() - patch.moments.centroid);
+  }
+  return result;
+}
+
+void add_corner_directions(const SurfacePatch& patch, CandidateDirections& result) {
+  const std::vector<Vector3d> corners = farthest_vertices(patch);
+  const double least = 0.05 * patch.moments.radius;
+  const auto add = [&](std::vector<Vector3d>& list, const Vector3d& v) {
+    if (v.norm() < least) return;
+    const Vector3d unit = v.normalized();
+    const bool known =
+        std::ranges::any_of(list, [&](const Vector3d& other) { return other.cross(unit).norm() < 0.01; });
+    if (!known) list.push_back(unit);
+  };
+  // An element moves a corner or leaves it in place; two anchors meet both cases.
+  for (std::size_t a = 0; a < corners.size() && a < 2; ++a) {
+    add(result.corner_axes, corners[a]);
+    for (std::size_t b = 0; b < corners.size(); ++b) {
+      add(result.corner_mirrors, corners[a] - corners[b]);
+      if (a != b) add(result.corner_axes, corners[a] + corners[b]);
+    }
+    for (std::size_t b = 0; b < corners.size(); ++b) {
+      for (std::size_t c = 0; c < corners.size() && result.corner_axes.size() < kMostCornerAxes; ++c) {
+        const double first = (corners[b] - corners[a]).norm();
+        const double second = (corners[c] - corners[b]).norm();
+        if (a == b || b == c || a == c || std::abs(first - second) > patch.tolerance) continue;
+        add(result.corner_axes, (corners[b] - corners[a]).cross(corners[c] - corners[b]) / patch.moments.radius);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 DistanceGrid::DistanceGrid(const Points& points, const Vector3d& centre, double reach, int cells)
@@ -191,6 +245,7 @@ CandidateDirections find_candidates(const SurfacePatch& patch, const DirectionSe
   }
   if (screen == nullptr) return result;
 
+  add_corner_directions(patch, result);
   const Screen rough(patch, context);
   const std::size_t count = screen->directions.size();
   std::array<std::vector<double>, 3> scores;

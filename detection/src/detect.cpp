@@ -152,8 +152,7 @@ class Detector {
       const SurfacePatch patch =
           make_patch(prepared_, faces_of(grown), kPartSamples, options_.tolerance, context_, "grown");
       double tolerance = patch.tolerance;
-      if (placement.group.continuous())
-        tolerance = continuous_tolerance(patch, placement.frame.col(2), placement.centre);
+      if (placement.group.continuous()) tolerance = continuous_tolerance(patch);
       const Verification verification =
           verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0, 0, context_);
       if (!passes(verification)) grown = seed;
@@ -259,7 +258,8 @@ class Detector {
       const double tolerance = options_.tolerance * std::min(1.0, 4 * moments.diagonal);
       const GroupPlacement* own = own_groups_[c] ? &*own_groups_[c] : nullptr;
       const Arrangement arrangement = arrange(kind.motions, own, moments.centroid, moments.radius, tolerance);
-      if (arrangement.kind == Pattern::Kind::congruent && related_by_a_region(kind)) continue;
+      const bool lattice = arrangement.kind != Pattern::Kind::congruent && arrangement.kind != Pattern::Kind::rotation;
+      if (!lattice && related_by_a_region(kind)) continue;
       Pattern pattern;
       pattern.id = static_cast<int>(annotation.patterns.size());
       pattern.name = name_of(kind.members);

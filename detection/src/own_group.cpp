@@ -19,10 +19,23 @@ constexpr double kSlack = 2.5;         // tolerances, while directions are not r
 constexpr double kScreenShare = 0.80;  // of the samples, likewise
 constexpr int kScreenSamples = 96;
 constexpr double kSameDirection = 0.03;  // radians
-constexpr double kPerpendicular = 0.06;
 constexpr int kHighestOrder = 180;
 // A rotation that moves no point by more than this many tolerances cannot be told from none.
 constexpr double kLeastMove = 6;
+
+constexpr double kClassifyTolerance = 0.02;
+
+Matrix3d mirror(const Vector3d& normal) {
+  return Matrix3d::Identity() - 2 * normal * normal.transpose();
+}
+
+// For comparing groups by size: continuous ones exceed all finite ones.
+int size_of(const PointGroup& group) {
+  constexpr int kContinuous = 100000;
+  if (!group.continuous()) return group.order();
+  if (group.family == Family::Kh) return kContinuous + 2;
+  return group.family == Family::Dinfh ? kContinuous + 1 : kContinuous;
+}
 
 bool same_line(const Vector3d& a, const Vector3d& b) {
   return a.cross(b).norm() < kSameDirection;
@@ -40,24 +53,40 @@ double radius_about(const SurfacePatch& patch, const Vector3d& axis, const Vecto
 /// The search for one patch: directions found so far, and the best group.
 class Search {
  public:
-  Search(const SurfacePatch& patch, const RunContext& context)
-      : patch_(patch), context_(context), centre_(patch.moments.centroid) {}
+  Search(const SurfacePatch& patch, const RunContext& context, bool thorough)
+      : patch_(patch), context_(context), thorough_(thorough), centre_(patch.moments.centroid) {}
 
   std::optional<OwnGroup> run(const DirectionSet* screen, const GroupHints& hints) {
     const CandidateDirections candidates = find_candidates(patch_, screen, context_);
-    if (try_sphere(candidates)) return best_;
-    collect(candidates, hints);
-    for (const Vector3d& axis : axes_) try_axis(axis);
-    try_polyhedral();
-    if (!best_) try_simple();
-    if (best_) polish();
-    return best_;
+    if (!try_sphere(candidates)) {
+      collect(candidates, hints);
+      for (const Vector3d& axis : axes_) {
+        if (!continuous()) find_rotations(axis);
+      }
+      if (!continuous()) {
+        try_polyhedral();
+        std::ranges::stable_sort(rotations_, std::greater<>(), &Rotation::order);
+        for (const Rotation& rotation : rotations_) try_axial(rotation);
+        if (!best_) try_simple();
+      }
+    }
+    if (!best_ || polish()) return best_;
+    if (thorough_) return std::nullopt;
+    // The quick look was deceived: every attempt again, on all samples.
+    return Search(patch_, context_, true).run(screen, hints);
   }
 
  private:
-  bool screen_passes(const Matrix3d& linear, double slack = kSlack) const {
-    return kept_share(patch_, Motion::about(linear, centre_), slack * patch_.tolerance, kScreenSamples, kScreenShare) >=
-           kScreenShare;
+  struct Rotation {
+    Vector3d axis;
+    int order;
+  };
+
+  bool continuous() const { return best_ && best_->placement.group.continuous(); }
+
+  bool screen_passes(const Matrix3d& linear) const {
+    return kept_share(patch_, Motion::about(linear, centre_), kSlack * patch_.tolerance, kScreenSamples,
+                      kScreenShare) >= kScreenShare;
   }
 
   GroupPlacement coarse(const PointGroup& group, const Vector3d& axis) const {
@@ -69,28 +98,35 @@ class Search {
     return refine(patch_, {group, frame_about(axis), centre_}, options);
   }
 
+  GroupPlacement fitted(const PointGroup& group, const GroupFrame& frame) const {
+    RefinementOptions options;
+    options.samples = 250;
+    options.first_width = 6;
+    return refine(patch_, {group, frame, centre_}, options);
+  }
+
   static void add_line(std::vector<Vector3d>& lines, const Vector3d& line) {
     const Vector3d unit = line.normalized();
-    if (std::ranges::none_of(lines, [&](const Vector3d& known) { return same_line(known, unit); }))
+    if (std::ranges::none_of(lines, [&](const Vector3d& known) { return same_line(known, unit); })) {
       lines.push_back(unit);
+    }
   }
 
   void collect(const CandidateDirections& candidates, const GroupHints& hints) {
-    const auto refined = [&](const PointGroup& group, const Vector3d& direction) -> Vector3d {
-      return coarse(group, direction).frame.col(2);
-    };
     std::vector<Vector3d> normals = candidates.principal;
     normals.insert(normals.end(), hints.axes.begin(), hints.axes.end());
-    std::vector<Vector3d> axes = normals;
+    const std::vector<Vector3d> axes = normals;
     normals.insert(normals.end(), candidates.mirrors.begin(), candidates.mirrors.end());
-    const PointGroup mirror{Family::Cs, 1};
     for (const Vector3d& normal : normals) {
-      Vector3d better = refined(mirror, normal);
-      if (screen_passes(Matrix3d::Identity() - 2 * better * better.transpose())) {
+      const Vector3d better = coarse({Family::Cs, 1}, normal).frame.col(2);
+      if (screen_passes(mirror(better))) {
         add_line(mirrors_, better);
-      } else if (screen_passes(Matrix3d::Identity() - 2 * normal * normal.transpose())) {
+      } else if (screen_passes(mirror(normal))) {
         add_line(mirrors_, normal);
       }
+    }
+    for (const Vector3d& normal : candidates.corner_mirrors) {
+      if (screen_passes(mirror(normal))) add_line(mirrors_, normal);
     }
     for (const Vector3d& axis : axes) add_line(axes_, axis);
     for (std::size_t i = 0; i < mirrors_.size() && i < 8; ++i) {
@@ -99,33 +135,39 @@ class Search {
         if (line.norm() > 0.05) add_line(axes_, line);
       }
     }
+    for (const Vector3d& axis : candidates.corner_axes) {
+      for (const int order : {2, 3, 5}) {
+        if (screen_passes(axis_rotation(axis, 2 * std::numbers::pi / order))) add_line(axes_, axis);
+      }
+    }
     for (const auto& [list, order] : {std::pair{&candidates.twofold, 2}, std::pair{&candidates.threefold, 3}}) {
       for (const Vector3d& axis : *list) {
-        const Vector3d better = refined({Family::Cn, order}, axis);
+        const Vector3d better = coarse({Family::Cn, order}, axis).frame.col(2);
         if (screen_passes(axis_rotation(better, 2 * std::numbers::pi / order))) add_line(axes_, better);
       }
     }
   }
 
+  double tolerance_of(const PointGroup& group) const {
+    return group.continuous() ? continuous_tolerance(patch_) : patch_.tolerance;
+  }
+
+  // Verifies on fewer samples the larger the group; the winner is verified on all of them in the end.
+  bool check(const GroupPlacement& placement) const {
+    if ((placement.centre - centre_).norm() > 0.1 * patch_.moments.radius) return false;
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    const int samples = thorough_ ? 0 : std::max(250, 12000 / static_cast<int>(motions.size()));
+    const VerificationLimits limits;
+    return passes(verify(patch_, motions, tolerance_of(placement.group), samples, limits.joint, context_), limits);
+  }
+
   // Refines and verifies a template; keeps it if it is larger than the best.
   bool attempt(const PointGroup& group, const GroupFrame& frame) {
     context_.check();
-    const auto order = [](const PointGroup& g) {
-      return g.continuous() ? 100000 + (g.family == Family::Dinfh ? 1 : 0) : g.order();
-    };
-    if (best_ && order(best_->placement.group) >= order(group)) return false;
-    RefinementOptions options;
-    options.samples = 250;
-    options.first_width = 6;
-    const GroupPlacement placement = refine(patch_, {group, frame, centre_}, options);
-    if ((placement.centre - centre_).norm() > 0.1 * patch_.moments.radius) return false;
-    const VerificationLimits limits;
-    const double tolerance =
-        group.continuous() ? continuous_tolerance(patch_, placement.frame.col(2), placement.centre) : patch_.tolerance;
-    Verification verification =
-        verify(patch_, judged_motions(group, placement.frame, placement.centre), tolerance, 0, limits.joint, context_);
-    if (!passes(verification, limits)) return false;
-    best_ = OwnGroup{placement, std::move(verification)};
+    if (best_ && size_of(best_->placement.group) >= size_of(group)) return false;
+    const GroupPlacement placement = fitted(group, frame);
+    if (!check(placement)) return false;
+    best_ = OwnGroup{placement, {}};
     return true;
   }
 
@@ -139,6 +181,7 @@ class Search {
   // phi.
   template <typename Element>
   std::vector<Vector3d> phases(const Vector3d& axis, double period, const Element& element) const {
+    constexpr double kPhaseShare = 0.7;
     const GroupFrame frame = frame_about(axis);
     const double radius = std::max(radius_about(patch_, axis, centre_), 1e-9);
     const int steps = std::clamp(static_cast<int>(std::ceil(period * radius / (1.5 * patch_.tolerance))), 4, 400);
@@ -150,7 +193,7 @@ class Search {
     parallel_for(context_, shares.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const Motion motion = Motion::about(element(direction(static_cast<int>(k))), centre_);
-        shares[k] = kept_share(patch_, motion, kSlack * patch_.tolerance, kScreenSamples, 0.7);
+        shares[k] = kept_share(patch_, motion, kSlack * patch_.tolerance, kScreenSamples, kPhaseShare);
       }
     });
     std::vector<std::pair<double, int>> peaks;
@@ -158,7 +201,7 @@ class Search {
       const double here = shares[static_cast<std::size_t>(k)];
       const double before = shares[static_cast<std::size_t>((k + steps - 1) % steps)];
       const double after = shares[static_cast<std::size_t>((k + 1) % steps)];
-      if (here >= 0.7 && here >= before && here >= after) peaks.emplace_back(-here, k);
+      if (here >= kPhaseShare && here >= before && here >= after) peaks.emplace_back(-here, k);
     }
     std::ranges::sort(peaks);
     std::vector<Vector3d> result;
@@ -172,69 +215,51 @@ class Search {
     return result;
   }
 
-  void try_axis(const Vector3d& axis) {
+  void find_rotations(const Vector3d& axis) {
     context_.check();
     if (continuous_about(patch_, axis, centre_, context_)) {
       const GroupFrame frame = frame_about(axis);
       if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
     }
-    if (best_ && best_->placement.group.continuous()) return;
     std::vector<int> orders = rotation_orders(patch_, axis, centre_, kSlack);
     if (orders.empty()) return;
     // The axis is better known once its rotations have been fitted; the orders are then asked again.
     const Vector3d better = coarse({Family::Cn, orders.back()}, axis).frame.col(2);
+    Vector3d chosen = axis;
     if (better.cross(axis).norm() < 0.15) {
       std::vector<int> again = rotation_orders(patch_, better, centre_, kSlack);
       if (!again.empty() && again.front() >= orders.front()) {
         orders = std::move(again);
-        try_orders(better, orders);
-        return;
+        chosen = better;
       }
     }
-    try_orders(axis, orders);
-  }
-
-  void try_orders(const Vector3d& axis, const std::vector<int>& orders) {
-    int tried = 0;
-    for (const int n : orders) {
-      if (best_ && best_->placement.group.order() >= 4 * n) break;
-      if (!attempt_cyclic(axis, n)) {
-        if (++tried == 6) break;
-        continue;
-      }
-      try_axial(axis, n);
-      break;
+    constexpr int kMostTries = 6;
+    for (int i = 0; i < std::min(kMostTries, static_cast<int>(orders.size())); ++i) {
+      if (add_rotation(chosen, orders[static_cast<std::size_t>(i)])) return;
     }
   }
 
-  // Whether the rotation alone verifies; remembers the axis for the polyhedral groups.
-  bool attempt_cyclic(const Vector3d& axis, int n) {
-    RefinementOptions options;
-    options.samples = 250;
-    options.first_width = 6;
-    const PointGroup group{Family::Cn, n};
-    const GroupPlacement placement = refine(patch_, {group, frame_about(axis), centre_}, options);
-    const VerificationLimits limits;
-    const Verification verification = verify(patch_, judged_motions(group, placement.frame, placement.centre),
-                                             patch_.tolerance, 0, limits.joint, context_);
-    if (!passes(verification, limits)) return false;
-    rotations_.push_back({placement.frame.col(2), n});
-    if (!best_ || best_->placement.group.order() < n) best_ = OwnGroup{placement, verification};
+  bool add_rotation(const Vector3d& axis, int n) {
+    const GroupPlacement placement = fitted({Family::Cn, n}, frame_about(axis));
+    const Vector3d better = placement.frame.col(2);
+    const bool known =
+        std::ranges::any_of(rotations_, [&](const Rotation& r) { return r.order >= n && same_line(r.axis, better); });
+    if (known) return true;
+    if (!check(placement)) return false;
+    rotations_.push_back({better, n});
+    if (!best_ || size_of(best_->placement.group) < n) best_ = OwnGroup{placement, {}};
     return true;
   }
 
-  void try_axial(const Vector3d& start, int n) {
-    const Vector3d axis =
-        rotations_.back().axis.dot(start) < 0 ? Vector3d(-rotations_.back().axis) : rotations_.back().axis;
-    const bool horizontal = screen_passes(Matrix3d::Identity() - 2 * axis * axis.transpose());
-    const Matrix3d half_step =
-        axis_rotation(axis, std::numbers::pi / n) * (Matrix3d::Identity() - 2 * axis * axis.transpose());
-    const bool roto = screen_passes(half_step);
+  void try_axial(const Rotation& rotation) {
+    const int n = rotation.order;
+    const Vector3d axis = rotation.axis;
+    if (best_ && size_of(best_->placement.group) >= 4 * n) return;
+    const bool horizontal = screen_passes(mirror(axis));
+    const bool roto = screen_passes(axis_rotation(axis, std::numbers::pi / n) * mirror(axis));
     const double period = std::numbers::pi / n;
-    const std::vector<Vector3d> verticals = phases(
-        axis, period, [](const Vector3d& d) -> Matrix3d { return Matrix3d::Identity() - 2 * d * d.transpose(); });
-    const std::vector<Vector3d> halves = phases(
-        axis, period, [](const Vector3d& d) -> Matrix3d { return 2 * d * d.transpose() - Matrix3d::Identity(); });
+    const std::vector<Vector3d> verticals = phases(axis, period, mirror);
+    const std::vector<Vector3d> halves = phases(axis, period, [](const Vector3d& d) -> Matrix3d { return -mirror(d); });
     if (horizontal) {
       for (const Vector3d& d : halves) {
         if (attempt({Family::Dnh, n}, frame_about(axis, d))) return;
@@ -260,15 +285,13 @@ class Search {
 
   // Two rotation axes that are neither parallel nor perpendicular generate T, O or I, or nothing finite.
   void try_polyhedral() {
-    if (best_ && best_->placement.group.continuous()) return;
     for (std::size_t i = 0; i < rotations_.size(); ++i) {
       for (std::size_t j = i + 1; j < rotations_.size(); ++j) {
         const Rotation& a = rotations_[i];
         const Rotation& b = rotations_[j];
         if (std::max(a.order, b.order) < 3 || std::max(a.order, b.order) > 5) continue;
         if (same_line(a.axis, b.axis)) continue;
-        const std::vector<Matrix3d> generated = generate(a, b);
-        const std::optional<ClassifiedGroup> known = classify(generated, 0.02);
+        const std::optional<ClassifiedGroup> known = classify(generate(a, b), kClassifyTolerance);
         if (!known) continue;
         const Family family = known->group.family;
         if (family == Family::I) {
@@ -290,17 +313,11 @@ class Search {
     turned.col(0) = frame.col(1);
     turned.col(1) = -frame.col(0);
     for (const GroupFrame& each : {frame, turned}) {
-      const Motion fifth = Motion::about(generators({Family::I, 1}, each)[2], centre_);
-      if (kept_share(patch_, fifth, kSlack * patch_.tolerance, kScreenSamples) < kScreenShare) continue;
+      if (!screen_passes(generators({Family::I, 1}, each)[2])) continue;
       attempt({Family::Ih, 1}, each);
       attempt({Family::I, 1}, each);
     }
   }
-
-  struct Rotation {
-    Vector3d axis;
-    int order;
-  };
 
   static std::vector<Matrix3d> generate(const Rotation& a, const Rotation& b) {
     const std::array<Matrix3d, 2> seeds{axis_rotation(a.axis, 2 * std::numbers::pi / a.order),
@@ -323,26 +340,27 @@ class Search {
     if (screen_passes(-Matrix3d::Identity())) attempt({Family::Ci, 1}, GroupFrame::Identity());
   }
 
-  void polish() {
-    const OwnGroup before = *best_;
+  // Last refinement, and the verification that counts: on all samples. Whether the group stands.
+  bool polish() {
+    const GroupPlacement before = best_->placement;
     RefinementOptions options;
     options.samples = 1500;
     options.iterations = 20;
     options.first_width = 1.5;
     options.last_width = 1;
-    GroupPlacement placement = refine(patch_, before.placement, options);
-    placement = refine_on_vertices(patch_, placement);
-    const VerificationLimits limits;
-    const double tolerance = placement.group.continuous()
-                                 ? continuous_tolerance(patch_, placement.frame.col(2), placement.centre)
-                                 : patch_.tolerance;
-    Verification verification =
-        verify(patch_, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0, 0, context_);
-    if (passes(verification, limits)) best_ = OwnGroup{placement, std::move(verification)};
+    for (const GroupPlacement& placement : {refine_on_vertices(patch_, refine(patch_, before, options)), before}) {
+      Verification verification = verify(patch_, judged_motions(placement.group, placement.frame, placement.centre),
+                                         tolerance_of(placement.group), 0, 0, context_);
+      if (!passes(verification)) continue;
+      best_ = OwnGroup{placement, std::move(verification)};
+      return true;
+    }
+    return false;
   }
 
   const SurfacePatch& patch_;
   const RunContext& context_;
+  bool thorough_;
   Vector3d centre_;
   std::vector<Vector3d> mirrors_;
   std::vector<Vector3d> axes_;
@@ -354,7 +372,7 @@ class Search {
 
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,
                                        const RunContext& context) {
-  return Search(patch, context).run(screen, hints);
+  return Search(patch, context, false).run(screen, hints);
 }
 
 std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre,
@@ -372,14 +390,14 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
   return result;
 }
 
-double continuous_tolerance(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre) {
-  return std::min(patch.tolerance, 2 * patch.relative_tolerance * radius_about(patch, axis, centre));
+double continuous_tolerance(const SurfacePatch& patch) {
+  return patch.relative_tolerance * std::min(1.0, patch.moments.diagonal);
 }
 
 bool continuous_about(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre,
                       const RunContext& context) {
   (void)context;
-  const double tolerance = 1.5 * continuous_tolerance(patch, axis, centre);
+  const double tolerance = 1.5 * continuous_tolerance(patch);
   for (const double turns : {0.1180, 0.2918, 0.3820, 0.4721, 0.0557, 0.0213}) {
     const Motion motion = Motion::rotation(axis, 2 * std::numbers::pi * turns, centre);
     if (kept_share(patch, motion, tolerance, 150, 0.9) < 0.9) return false;

@@ -43,6 +43,9 @@ struct CandidateDirections {
   std::vector<Eigen::Vector3d> mirrors;    ///< normals: local maxima of a coarse score
   std::vector<Eigen::Vector3d> twofold;    ///< axes, likewise
   std::vector<Eigen::Vector3d> threefold;
+  /// From the vertices farthest from the centroid, which every element permutes: normals of the planes between two of
+  /// them, and axes through one, between two, and about three of them. Exact where the mesh is; many are wrong.
+  std::vector<Eigen::Vector3d> corner_mirrors, corner_axes;
 };
 
 /// \param screen null: principal axes only (enough where no two variances are close)

@@ -36,11 +36,12 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Eigen::Vector3
                                  double slack);
 
 /// Whether every rotation about the axis keeps the patch, facets allowed for: their sagitta must stay below the
-/// tolerance times the diameter about the axis.
+/// continuous tolerance. Judged coarsely, on a few angles.
 bool continuous_about(const SurfacePatch& patch, const Eigen::Vector3d& axis, const Eigen::Vector3d& centre,
                       const RunContext& context);
 
-/// The tolerance at which a continuous group of the patch is judged.
-double continuous_tolerance(const SurfacePatch& patch, const Eigen::Vector3d& axis, const Eigen::Vector3d& centre);
+/// The tolerance at which a continuous group of the patch is judged, a length: the relative tolerance at the scale of
+/// the patch itself, so that a small faceted part is not called round because the mesh is large.
+double continuous_tolerance(const SurfacePatch& patch);
 
 }  // namespace orbifit
