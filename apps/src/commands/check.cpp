@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -18,14 +17,17 @@ namespace {
 
 struct CheckArguments {
   std::string mesh, annotation, deformed;
-  CarriedMotions motions = CarriedMotions::floating;
+  std::string mode = "floating";
   double max_residual = 0;
 };
 
-const std::map<std::string, CarriedMotions> kModes{{"fixed", CarriedMotions::fixed},
-                                                   {"posed", CarriedMotions::posed},
-                                                   {"floating", CarriedMotions::floating},
-                                                   {"moving", CarriedMotions::moving}};
+CarriedMotions parse_mode(const std::string& text) {
+  if (text == "fixed") return CarriedMotions::fixed;
+  if (text == "posed") return CarriedMotions::posed;
+  if (text == "floating") return CarriedMotions::floating;
+  if (text == "moving") return CarriedMotions::moving;
+  throw UsageError("--mode is '" + text + "': must be fixed, posed, floating or moving");
+}
 
 nlohmann::ordered_json to_json(const Residual& residual) {
   return {{"rms", residual.rms}, {"max", residual.max}};
@@ -120,15 +122,14 @@ double worst_residual(const SymmetryReport& report, bool deformed) {
 
 CommandBody check(CLI::App& app) {
   const auto arguments = std::make_shared<CheckArguments>();
-  app.add_option("MESH", arguments->mesh, "Mesh at rest")->required();
-  app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required();
-  app.add_option("--deformed", arguments->deformed, "The same mesh after a deformation")->type_name("MESH");
-  app.add_option("--mode", arguments->motions,
+  app.add_option("MESH", arguments->mesh, "Mesh at rest")->required()->type_name("FILE");
+  app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required()->type_name("FILE");
+  app.add_option("--deformed", arguments->deformed, "The same mesh after a deformation")->type_name("FILE");
+  app.add_option("--mode", arguments->mode,
                  "How the groups may move along: fixed, posed (one rigid motion for all), floating (also a translation "
                  "each) or moving (a rigid motion each)")
-      ->transform(CLI::CheckedTransformer(kModes).description(""))
       ->type_name("MODE")
-      ->default_str("floating");
+      ->capture_default_str();
   app.add_option("--max-residual", arguments->max_residual,
                  "Exit with 1 above this fraction of the diagonal (of the excess with --deformed)");
   return [arguments, &app](CommandContext& context) {
@@ -136,6 +137,7 @@ CommandBody check(CLI::App& app) {
     if (limited && !(arguments->max_residual >= 0)) {
       throw UsageError("--max-residual is " + short_number(arguments->max_residual) + ": must be at least 0");
     }
+    parse_mode(arguments->mode);
     const Mesh mesh = read_mesh(arguments->mesh);
     const SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     const bool has_deformed = !arguments->deformed.empty();
@@ -149,8 +151,8 @@ CommandBody check(CLI::App& app) {
                    : "the faces join other vertices"));
     }
     context.run.check();
-    const SymmetryReport report =
-        symmetry_residual(mesh, annotation, has_deformed ? &deformed : nullptr, arguments->motions, context.run);
+    const SymmetryReport report = symmetry_residual(mesh, annotation, has_deformed ? &deformed : nullptr,
+                                                    parse_mode(arguments->mode), context.run);
     const double worst = worst_residual(report, has_deformed);
     print(context.json ? to_json(report, has_deformed, worst).dump(2) + "\n" : to_text(report, has_deformed));
     if (!limited || worst <= arguments->max_residual) return kDone;

@@ -31,9 +31,11 @@ bool is_scan_file(const std::string& file) {
 CommandBody convert(CLI::App& app) {
   const auto arguments = std::make_shared<ConvertArguments>();
   app.add_option("IN", arguments->input, "Mesh (.obj, .off, .ply, .stl, .gltf, .glb) or scan (.ply, .pcd, .xyz, .pts)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   app.add_option("OUT", arguments->output, "Mesh (.obj, .off, .ply, .stl, .glb) or scan (.ply, .pcd, .xyz, .pts)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   app.add_flag("--points", arguments->points,
                "Keep the points only; understood where one of the files is a .pcd, .xyz or .pts");
   return [arguments](CommandContext& context) {

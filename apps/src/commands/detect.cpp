@@ -56,7 +56,8 @@ std::string to_text(const SymmetryAnnotation& found, const Mesh& mesh) {
     return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
   }
   const Eigen::VectorXd areas = face_areas(mesh);
-  const auto percent = [](double fraction) { return short_number(100 * fraction, 3); };
+  // What is left by rounding is no news here; `check` shows every digit.
+  const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
   std::string text;
   if (!found.regions.empty()) {
     TextTable table({"region", "group", "area %", "faces", "parent", "residual max %", "name"});
@@ -129,7 +130,7 @@ void write_preview(const DetectArguments& arguments, const Mesh& mesh, const Sym
 CommandBody detect(CLI::App& app) {
   const auto arguments = std::make_shared<DetectArguments>();
   DetectOptions& options = arguments->options;
-  app.add_option("MESH", arguments->mesh, "Mesh to look at")->required();
+  app.add_option("MESH", arguments->mesh, "Mesh to look at")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it only the list is printed")
       ->type_name("FILE");
   app.add_option("--tolerance", options.tolerance,
@@ -141,7 +142,7 @@ CommandBody detect(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
   app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
-  app.add_option("--up", arguments->up, "Upward direction of the preview")->expected(3)->type_name("X Y Z");
+  app.add_option("--up", arguments->up, "Upward direction of the preview")->type_size(3)->type_name("X Y Z");
   return [arguments](CommandContext& context) {
     arguments->options.validate();
     to_direction("--up", arguments->up);

@@ -79,7 +79,7 @@ int list_models(bool json) {
 
 CommandBody generate(CLI::App& app) {
   const auto arguments = std::make_shared<GenerateArguments>();
-  app.add_option("NAME", arguments->name, "Model to build; --list shows them");
+  app.add_option("NAME", arguments->name, "Model to build; --list shows them")->type_name("");
   app.add_option("--param", arguments->parameters, "Parameter of the model; may be repeated")
       ->type_name("NAME=NUMBER")
       ->expected(1)

@@ -48,11 +48,9 @@ std::vector<Scene> annotated_scenes(const RenderArguments& arguments, const Mesh
   return scenes;
 }
 
-Scene plain_scene(const Mesh& mesh, bool edges) {
+Scene plain_scene(const Mesh& mesh) {
   Scene scene;
-  SurfaceLayer& layer = scene.surfaces.emplace_back();
-  layer.mesh = mesh;
-  layer.edges = edges;
+  scene.surfaces.emplace_back().mesh = mesh;
   return scene;
 }
 
@@ -61,20 +59,24 @@ Scene plain_scene(const Mesh& mesh, bool edges) {
 CommandBody render(CLI::App& app) {
   const auto arguments = std::make_shared<RenderArguments>();
   ViewOptions& view = arguments->view;
-  app.add_option("MESH", arguments->mesh, "Mesh to draw")->required();
+  app.add_option("MESH", arguments->mesh, "Mesh to draw")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Picture to write (.png)")->required()->type_name("FILE");
   app.add_option("--annotation", arguments->annotation, "Draw its regions and patterns, one picture each")
       ->type_name("FILE");
   app.add_option("--region", arguments->region, "Only the region of this id")->type_name("ID");
-  app.add_option("--points", arguments->points, "Scan to draw over the mesh")->type_name("SCAN");
+  app.add_option("--points", arguments->points, "Scan to draw over the mesh")->type_name("FILE");
   app.add_option("--compare", arguments->compare, "Second mesh, drawn beside the first at the same scale")
-      ->type_name("MESH");
+      ->type_name("FILE");
   app.add_flag("--edges", arguments->edges, "Draw the edges of the triangles");
-  app.add_option("--up", arguments->up, "Upward direction")->expected(3)->type_name("X Y Z")->default_str("0 0 1");
+  app.add_option("--up", arguments->up, "Upward direction")->type_size(3)->type_name("X Y Z")->default_str("0 0 1");
   app.add_option("--azimuth", view.azimuth, "Degrees about the upward direction")->capture_default_str();
   app.add_option("--elevation", view.elevation, "Degrees above the horizon")->capture_default_str();
-  app.add_option("--width", view.width, "Pixels")->capture_default_str()->check(CLI::Range(16, 8192));
-  app.add_option("--height", view.height, "Pixels")->capture_default_str()->check(CLI::Range(16, 8192));
+  app.add_option("--width", view.width, "Pixels of one picture (480 where there are several)")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 8192));
+  app.add_option("--height", view.height, "Pixels of one picture (360 where there are several)")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 8192));
   return [arguments, &app](CommandContext& context) {
     const bool one_region = app.count("--region") > 0;
     if (one_region && arguments->annotation.empty()) throw UsageError("--region needs --annotation");
@@ -85,7 +87,7 @@ CommandBody render(CLI::App& app) {
     std::vector<Scene> scenes;
     if (!arguments->annotation.empty()) scenes = annotated_scenes(*arguments, mesh, one_region, captions);
     if (scenes.empty()) {
-      scenes.push_back(plain_scene(mesh, arguments->edges));
+      scenes.push_back(plain_scene(mesh));
       captions.push_back(arguments->mesh);
     }
     Points frame = mesh.vertices;
@@ -95,12 +97,19 @@ CommandBody render(CLI::App& app) {
     }
     if (!arguments->compare.empty()) {
       const Mesh other = read_mesh(arguments->compare);
-      scenes.push_back(plain_scene(other, arguments->edges));
+      scenes.push_back(plain_scene(other));
       captions.push_back(arguments->compare);
       frame.conservativeResize(mesh.vertices.rows() + other.vertices.rows(), 3);
       frame.bottomRows(other.vertices.rows()) = other.vertices;
     }
-    if (scenes.size() > 1) arguments->view.frame = frame;
+    for (Scene& scene : scenes) {
+      for (SurfaceLayer& layer : scene.surfaces) layer.edges = layer.edges || arguments->edges;
+    }
+    if (scenes.size() > 1) {
+      arguments->view.frame = frame;
+      if (app.count("--width") == 0) arguments->view.width = 480;
+      if (app.count("--height") == 0) arguments->view.height = 360;
+    }
     std::vector<Image> images;
     for (const Scene& scene : scenes) {
       context.run.progress("render", static_cast<double>(images.size()) / static_cast<double>(scenes.size()));

@@ -24,7 +24,7 @@ struct ScanArguments {
 CommandBody scan(CLI::App& app) {
   const auto arguments = std::make_shared<ScanArguments>();
   ScanOptions& options = arguments->options;
-  app.add_option("MESH", arguments->mesh, "Mesh to scan")->required();
+  app.add_option("MESH", arguments->mesh, "Mesh to scan")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Scan to write: .ply, .pcd, .xyz or .pts")
       ->required()
       ->type_name("FILE");
@@ -41,7 +41,7 @@ CommandBody scan(CLI::App& app) {
   number("--height", options.height, "Pixels");
   number("--field-of-view", options.field_of_view, "Vertical, degrees");
   number("--grazing-limit", options.grazing_limit, "Degrees between ray and normal above which nothing is seen");
-  app.add_option("--up", arguments->up, "Upward direction")->expected(3)->type_name("X Y Z")->default_str("0 0 1");
+  app.add_option("--up", arguments->up, "Upward direction")->type_size(3)->type_name("X Y Z")->default_str("0 0 1");
   return [arguments](CommandContext& context) {
     arguments->options.up = to_direction("--up", arguments->up);
     arguments->options.validate();
