@@ -233,7 +233,7 @@ class Search {
         chosen = better;
       }
     }
-    constexpr int kMostTries = 6;
+    constexpr int kMostTries = 12;
     for (int i = 0; i < std::min(kMostTries, static_cast<int>(orders.size())); ++i) {
       if (add_rotation(chosen, orders[static_cast<std::size_t>(i)])) return;
     }
@@ -381,11 +381,15 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
   const double radius = radius_about(patch, axis, centre);
   const auto highest =
       static_cast<int>(std::min<double>(kHighestOrder, 2 * std::numbers::pi * radius / (kLeastMove * patch.tolerance)));
+  const auto kept = [&](int k, int n) {
+    const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
+    return kept_share(patch, turn, slack * patch.tolerance, kScreenSamples, kScreenShare) >= kScreenShare;
+  };
   for (int n = highest; n >= 2; --n) {
-    const Motion step = Motion::rotation(axis, 2 * std::numbers::pi / n, centre);
-    if (kept_share(patch, step, slack * patch.tolerance, kScreenSamples, kScreenShare) < kScreenShare) continue;
-    // Half a step must be worse, or the rotation says nothing about this order.
-    result.push_back(n);
+    // A small turn keeps flat sides within the tolerance; its larger multiples do not.
+    std::vector<int> powers{1, n / 2};
+    for (const double share : {0.382, 0.236, 0.146, 0.472}) powers.push_back(static_cast<int>(std::lround(share * n)));
+    if (std::ranges::all_of(powers, [&](int k) { return k < 1 || kept(k, n); })) result.push_back(n);
   }
   return result;
 }
