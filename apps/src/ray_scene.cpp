@@ -202,7 +202,7 @@ std::optional<SurfaceHit> RayScene::hit(const Part& part, const Ray& ray, float 
         linear_colour(surface.face_colours.empty() ? kClay : surface.face_colours[static_cast<std::size_t>(face)]);
   }
   if (!layer.drawn_edges.empty()) {
-    const float half_width = 0.7F * pixel_width * result.distance;
+    const float half_width = 0.45F * pixel_width * result.distance;
     float nearest = std::numeric_limits<float>::infinity();
     const float double_area = (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
     for (int k = 0; k < 3; ++k) {
@@ -210,7 +210,7 @@ std::optional<SurfaceHit> RayScene::hit(const Part& part, const Ray& ray, float 
       const float length = (corner[(k + 1) % 3] - corner[k]).norm();
       if (length > 0) nearest = std::min(nearest, weights[(k + 2) % 3] * double_area / length);
     }
-    if (nearest < half_width) result.colour *= 0.25F;
+    if (nearest < half_width) result.colour *= 0.3F;
   }
   return result;
 }

@@ -95,7 +95,7 @@ struct Interval {
 
 Interval reach_along(const Points& points, const Eigen::Vector3d& centre, const Eigen::Vector3d& direction) {
   const Eigen::ArrayXd along = (points.rowwise() - centre.transpose()) * direction;
-  const double margin = 0.08 * std::max(along.maxCoeff() - along.minCoeff(), 0.3 * diagonal(points));
+  const double margin = 0.06 * std::max(along.maxCoeff() - along.minCoeff(), 0.3 * diagonal(points));
   return {along.minCoeff() - margin, along.maxCoeff() + margin};
 }
 
@@ -174,7 +174,7 @@ Scene region_scene(const Mesh& mesh, const Region& region) {
   Lines axes;
   for (const Eigen::Vector3d& axis : axes_of(region)) {
     const Interval reach = reach_along(points, region.centre, axis);
-    const double beyond = 0.06 * (reach.high - reach.low);
+    const double beyond = 0.12 * (reach.high - reach.low);
     axes.add(region.centre + (reach.low - beyond) * axis, region.centre + (reach.high + beyond) * axis);
   }
   if (!axes.from.empty()) scene.segments.push_back(axes.layer(kAxisInk, 0.0035));

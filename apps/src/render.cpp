@@ -149,9 +149,11 @@ class Painter {
 
   Vector ground_colour(int x, int y, const Vector& position) const {
     const Light light = buffer_.light(x, y, position, ground_.up, PixelSurface::Kind::ground);
-    // Fades out towards the horizon, so that the shadow has no border.
+    // Fades out towards the horizon and the picture's rim, so that the shadow has no border.
     const float open = 0.6F * light.sky + 0.4F * light.key;
-    const float fade = std::clamp(1.6F - position.norm(), 0.0F, 1.0F);
+    const auto to_rim = static_cast<float>(std::min({x, y, view_.width - 1 - x, view_.height - 1 - y}));
+    const float fade = std::clamp(1.6F - position.norm(), 0.0F, 1.0F) *
+                       std::clamp(to_rim / (0.06F * static_cast<float>(view_.height)), 0.0F, 1.0F);
     return background_ * (1 - kShadowStrength * fade * (1 - open));
   }
 
