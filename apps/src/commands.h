@@ -8,11 +8,14 @@ namespace orbifit::commands {
 
 CommandBody check(CLI::App& app);
 CommandBody convert(CLI::App& app);
+CommandBody deform(CLI::App& app);
 CommandBody detect(CLI::App& app);
+CommandBody fit(CLI::App& app);
 CommandBody generate(CLI::App& app);
 CommandBody info(CLI::App& app);
 CommandBody render(CLI::App& app);
 CommandBody report(CLI::App& app);
 CommandBody scan(CLI::App& app);
+CommandBody subspace(CLI::App& app);
 
 }  // namespace orbifit::commands

@@ -31,6 +31,19 @@ constexpr std::array kCommands{
             "orbifit check chair.obj chair.json\n"
             "orbifit check chair.obj chair.json --deformed edited.obj --max-residual 1e-9",
             commands::check},
+    Command{"subspace", "Build the symmetric subspace of a mesh and say what it holds.",
+            "orbifit subspace chair.obj chair.json\n"
+            "orbifit subspace chair.obj chair.json --samples 300 --mode fixed",
+            commands::subspace},
+    Command{"deform", "Edit a mesh with handles, its symmetries kept.",
+            "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj\n"
+            "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj --annotation-out edited.json",
+            commands::deform},
+    Command{"fit", "Fit a template to a scan, its symmetries kept and its hidden sides completed by them.",
+            "orbifit fit chair.obj scan.ply -o fitted.obj\n"
+            "orbifit fit chair.obj scan.ply --annotation chair.json -o fitted.obj --report fit.json --html fit.html\n"
+            "orbifit fit chair.obj scan.ply --landmarks landmarks.json -o fitted.obj",
+            commands::fit},
     Command{"generate", "Build a model whose symmetries are known.",
             "orbifit generate --list\n"
             "orbifit generate chair -o models\n"
@@ -138,7 +151,14 @@ int run(const CommandBody& body, const CommonOptions& options, bool has_timeout)
 int refuse_call(const CLI::ParseError& error, const std::string& command) {
   Console console(false);
   const std::string help = "'orbifit " + (command.empty() ? "" : command + " ") + "--help'";
-  console.error(std::string(error.what()) + " (see " + help + ")");
+  std::string reason = error.what();
+  if (reason.starts_with("The following argument")) {
+    const std::size_t colon = reason.find(": ");
+    reason = "unexpected argument" + (colon == std::string::npos ? "" : " " + reason.substr(colon + 2));
+  } else if (reason.starts_with("A subcommand")) {
+    reason = "a command is needed";
+  }
+  console.error(reason + " (see " + help + ")");
   return kUsage;
 }
 

@@ -16,6 +16,7 @@ constexpr int kDefaultSamples = 600;
 constexpr int kDefaultDegreesOfFreedom = 200;
 constexpr double kVertexOntoVertex = 1e-6;  // of the diagonal
 constexpr int kSearchRounds = 6;
+constexpr Eigen::Index kMostResidualPairs = 50000;
 
 // Samples with the radius asked for, or with one found by a few rounds of secant steps on n ~ r^-2.
 SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, const SubspaceOptions& options,
@@ -122,7 +123,10 @@ SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, cons
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const Eigen::VectorXd& q, const RunContext& context) {
-  const Mesh part = submesh(mesh, region.faces);
+  Mesh part = submesh(mesh, region.faces);
+  const auto order = static_cast<Eigen::Index>(subspace.regions->elements(region_number).size());
+  const Eigen::Index step = 1 + part.vertices.rows() * order / kMostResidualPairs;
+  part.vertices = Points(part.vertices(Eigen::seq(0, Eigen::last, step), Eigen::all));
   const Eigen::Vector3d t = carried_translation(subspace, q, region_number);
   const Points here = displacement_field(subspace, q, part.vertices, context);
   Residual residual;

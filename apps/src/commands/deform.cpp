@@ -1,0 +1,118 @@
+#include <chrono>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/mesh_io.h"
+#include "orbifit/subspace/deformer.h"
+#include "orbifit/subspace/handles.h"
+
+#include "../commands.h"
+#include "../subspace_arguments.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+struct DeformArguments {
+  std::string mesh, annotation, handles, output, annotation_output;
+  std::string laplacian = "graph";
+  int iterations = 0;
+  SubspaceOptions options;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+}  // namespace
+
+CommandBody deform(CLI::App& app) {
+  const auto arguments = std::make_shared<DeformArguments>();
+  app.add_option("MESH", arguments->mesh, "Mesh to edit")->required();
+  app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required();
+  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->required()->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Edited mesh to write")->required()->type_name("FILE");
+  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the edited mesh to write (.json)")
+      ->type_name("FILE");
+  app.add_option("--iterations", arguments->iterations, "Co-rotated iterations, instead of the handle file's")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
+  app.add_option("--laplacian", arguments->laplacian, "Laplacian of the samples")
+      ->check(CLI::IsMember({"graph"}))
+      ->capture_default_str();
+  add_subspace_options(app, arguments->options);
+  return [arguments](CommandContext& context) {
+    arguments->options.validate();
+    check_output(arguments->output, {}, {arguments->annotation, arguments->handles});
+    if (!arguments->annotation_output.empty()) {
+      check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->handles, arguments->output});
+    }
+    const Mesh mesh = read_mesh(arguments->mesh);
+    const SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    HandleSet set = read_handles(arguments->handles, mesh);
+    if (arguments->iterations > 0) set.iterations = arguments->iterations;
+
+    const auto start = Clock::now();
+    const Subspace built = build_subspace(mesh, annotation, arguments->options, context.run);
+    const auto with_subspace = Clock::now();
+    context.run.progress("handles", 0);
+    Deformer deformer(built, mesh);
+    deformer.set_handles(set.handles, set.alpha);
+    const auto factorised = Clock::now();
+    std::vector<Motion> motions;
+    for (const Handle& handle : set.handles) motions.push_back(handle.motion);
+    const Deformation deformation = deformer.solve(motions, set.iterations);
+    const auto solved = Clock::now();
+    Mesh edited = mesh;
+    edited.vertices += vertex_displacements(built, deformation.q);
+    const auto lifted = Clock::now();
+    double worst_field = 0;
+    for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
+      const Residual residual =
+          field_residual(built, mesh, annotation.regions[i], static_cast<int>(i), deformation.q, context.run);
+      worst_field = std::max(worst_field, residual.max);
+    }
+    context.run.check();
+    write_mesh(arguments->output, edited);
+    if (!arguments->annotation_output.empty()) {
+      write_annotation(arguments->annotation_output, carried_annotation(annotation, built, deformation.q, edited));
+    }
+
+    const double size = diagonal(mesh.vertices);
+    const double missed = deformation.handle_error / size;
+    if (context.json) {
+      const nlohmann::ordered_json summary{{"mode", to_string(built.mode)},
+                                           {"samples", built.sampling.points.rows()},
+                                           {"degrees_of_freedom", built.degrees_of_freedom()},
+                                           {"handles", set.handles.size()},
+                                           {"iterations", set.iterations},
+                                           {"energy", deformation.energy},
+                                           {"handle_error", missed},
+                                           {"last_change", deformation.last_change / size},
+                                           {"field_residual", worst_field},
+                                           {"milliseconds",
+                                            {{"subspace", milliseconds(start, with_subspace)},
+                                             {"prefactor", milliseconds(with_subspace, factorised)},
+                                             {"solve", milliseconds(factorised, solved)},
+                                             {"lift", milliseconds(solved, lifted)}}}};
+      print(summary.dump(2) + "\n");
+      return kDone;
+    }
+    print(arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
+          count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", handles missed by " +
+          short_number(100 * missed, 3) + " % of the diagonal\n" + "subspace " +
+          short_number(milliseconds(start, with_subspace), 3) + " ms, prefactor " +
+          short_number(milliseconds(with_subspace, factorised), 3) + " ms, " + count_of(set.iterations, "iteration") +
+          " " + short_number(milliseconds(factorised, solved), 3) + " ms, lift " +
+          short_number(milliseconds(solved, lifted), 3) + " ms\n");
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands

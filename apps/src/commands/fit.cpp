@@ -1,0 +1,116 @@
+#include "orbifit/fitting/fit.h"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/detection/detect.h"
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/file.h"
+#include "orbifit/model/mesh_io.h"
+#include "orbifit/model/scan_io.h"
+#include "orbifit/subspace/handles.h"
+
+#include "../commands.h"
+#include "../fit_report.h"
+#include "../subspace_arguments.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+struct FitArguments {
+  std::string mesh, scan, annotation, output, report, html, landmarks, handles, annotation_output;
+  std::vector<double> up{0, 0, 1};
+  bool aligned = false;
+  FitOptions options;
+};
+
+void check_outputs(const FitArguments& arguments) {
+  const std::vector<std::filesystem::path> inputs{arguments.mesh, arguments.scan, arguments.annotation};
+  check_output(arguments.output, {}, {arguments.scan, arguments.annotation});
+  if (!arguments.report.empty()) check_output(arguments.report, {".json"}, inputs);
+  if (!arguments.html.empty()) check_output(arguments.html, {".html", ".htm"}, inputs);
+  if (!arguments.annotation_output.empty()) check_output(arguments.annotation_output, {".json"}, inputs);
+}
+
+std::string to_text(const FitArguments& arguments, const FitResult& result, const SymmetryReport& symmetry) {
+  const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
+  double seconds = 0;
+  for (const StageTime& time : result.times) seconds += time.seconds;
+  std::string text = arguments.output + ": " + percent(result.inlier_fraction) + " of the scan within " +
+                     percent(arguments.options.inlier_distance) + " of the diagonal (rms " + percent(result.rms) +
+                     "), " + percent(result.hidden_fraction) + " of the surface not seen\n";
+  text += "symmetry residual added " + short_number(symmetry.worst_excess, 3) + ", field residual " +
+          short_number(result.field_residual, 3) + "\n";
+  text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
+          count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
+          short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
+  return text;
+}
+
+}  // namespace
+
+CommandBody fit(CLI::App& app) {
+  const auto arguments = std::make_shared<FitArguments>();
+  FitOptions& options = arguments->options;
+  app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
+  app.add_option("SCAN", arguments->scan, "Points to fit it to, roughly aligned with the template")->required();
+  app.add_option("--annotation", arguments->annotation, "The template's annotation; without it, it is detected")
+      ->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Fitted mesh to write")->required()->type_name("FILE");
+  app.add_option("--report", arguments->report, "All figures (.json)")->type_name("FILE");
+  app.add_option("--html", arguments->html, "Page with pictures (.html)")->type_name("FILE");
+  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the fitted mesh (.json)")
+      ->type_name("FILE");
+  app.add_option("--landmarks", arguments->landmarks, "Vertices and their places in the scan (.json)")
+      ->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
+  app.add_flag("--aligned", arguments->aligned, "The pose is right: do not refine it by rigid ICP first");
+  app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
+      ->capture_default_str();
+  app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
+  app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
+  add_subspace_options(app, options.subspace);
+  return [arguments](CommandContext& context) {
+    FitOptions& chosen = arguments->options;
+    chosen.align = !arguments->aligned;
+    chosen.validate();
+    const Eigen::Vector3d up = to_direction("--up", arguments->up);
+    check_outputs(*arguments);
+    const Mesh mesh = read_mesh(arguments->mesh);
+    const PointCloud scan = read_scan(arguments->scan);
+    if (scan.dropped > 0) {
+      context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
+    }
+    const SymmetryAnnotation annotation = arguments->annotation.empty()
+                                              ? orbifit::detect(mesh, DetectOptions{}, context.run)
+                                              : read_annotation(arguments->annotation, mesh);
+    FitInput input{mesh, annotation, scan, Similarity{}, {}, {}};
+    if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
+    if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;
+
+    const FitResult result = orbifit::fit(input, chosen, context.run);
+    const SymmetryReport symmetry =
+        symmetry_residual(mesh, annotation, &result.fitted, CarriedMotions::moving, context.run);
+    context.run.check();
+    // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
+    if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");
+    if (!arguments->html.empty()) {
+      write_file(arguments->html, fit_to_html(mesh, scan, result, symmetry, up, context.run));
+    }
+    if (!result.converged) {
+      throw NoResultError("the fit of " + arguments->mesh + " to " + arguments->scan +
+                          " failed: " + result.stopped_because);
+    }
+    write_mesh(arguments->output, result.fitted);
+    if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
+    print(context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands

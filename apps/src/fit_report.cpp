@@ -1,0 +1,121 @@
+#include "fit_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "orbifit/apps/render.h"
+#include "orbifit/apps/report.h"
+#include "orbifit/model/point_index.h"
+
+#include "command.h"
+
+namespace orbifit {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json matrix_rows(const Eigen::Matrix3d& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2)});
+  return rows;
+}
+
+ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
+  const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
+  ReportTable table{{"figure", "value"}, {}};
+  table.rows.push_back({"converged", result.converged ? "yes" : "no"});
+  table.rows.push_back({"stopped because", result.stopped_because});
+  table.rows.push_back({"iterations", std::to_string(result.iterations.size())});
+  table.rows.push_back({"degrees of freedom", std::to_string(result.degrees_of_freedom)});
+  table.rows.push_back({"scan points explained (within 1 %)", percent(result.inlier_fraction)});
+  table.rows.push_back({"their rms distance, of the diagonal", percent(result.rms)});
+  table.rows.push_back({"surface that the scan did not see", percent(result.hidden_fraction)});
+  table.rows.push_back({"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)});
+  return table;
+}
+
+}  // namespace
+
+Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
+  Json iterations = Json::array();
+  for (const FitIteration& iteration : result.iterations) {
+    iterations.push_back({{"stiffness", iteration.stiffness},
+                          {"correspondences", iteration.correspondences},
+                          {"rms", iteration.rms},
+                          {"energy", iteration.energy},
+                          {"change", iteration.change}});
+  }
+  Json times;
+  for (const StageTime& time : result.times) times[time.stage] = time.seconds;
+  Json regions = Json::array();
+  for (const RegionResidual& region : symmetry.regions) {
+    regions.push_back({{"id", region.id},
+                       {"name", region.name},
+                       {"group", region.group},
+                       {"rest", region.floor.max},
+                       {"excess", region.excess.max}});
+  }
+  return {{"converged", result.converged},
+          {"stopped_because", result.stopped_because},
+          {"pose",
+           {{"scale", result.pose.scale},
+            {"rotation", matrix_rows(result.pose.linear)},
+            {"translation", {result.pose.translation.x(), result.pose.translation.y(), result.pose.translation.z()}}}},
+          {"samples", result.samples},
+          {"degrees_of_freedom", result.degrees_of_freedom},
+          {"inlier_fraction", result.inlier_fraction},
+          {"rms", result.rms},
+          {"landmark_rms", result.landmark_rms},
+          {"hidden_fraction", result.hidden_fraction},
+          {"symmetry",
+           {{"field_residual", result.field_residual}, {"worst_excess", symmetry.worst_excess}, {"regions", regions}}},
+          {"seconds", times},
+          {"iterations", iterations}};
+}
+
+std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
+                        const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run) {
+  ViewOptions view;
+  view.up = up;
+  view.frame.resize(mesh.vertices.rows() + result.fitted.vertices.rows(), 3);
+  view.frame << mesh.vertices, result.fitted.vertices;
+  const auto picture = [&](const Scene& scene, const std::string& caption) {
+    return ReportPicture{encode_png(render(scene, view, run)), caption};
+  };
+  Scene rest;
+  rest.surfaces.emplace_back().mesh = mesh;
+  rest.points.emplace_back().points = scan.points;
+  Scene fitted;
+  fitted.surfaces.emplace_back().mesh = result.fitted;
+  fitted.points.emplace_back().points = scan.points;
+  Scene distances;
+  SurfaceLayer& heat = distances.surfaces.emplace_back();
+  heat.mesh = result.fitted;
+  Scene hidden;
+  SurfaceLayer& marked = hidden.surfaces.emplace_back();
+  marked.mesh = result.fitted;
+  const PointIndex points(scan.points);
+  const double scale = 0.02 * diagonal(result.fitted.vertices);
+  for (Eigen::Index v = 0; v < result.fitted.vertices.rows(); ++v) {
+    const bool seen = result.seen[static_cast<std::size_t>(v)] != 0;
+    const double distance = points.nearest(result.fitted.vertices.row(v).transpose(), 1).front().distance;
+    heat.vertex_colours.push_back(seen ? heat_colour(std::min(1.0, distance / scale)) : Colour{0.72F, 0.72F, 0.72F});
+    marked.vertex_colours.push_back(seen ? Colour{0.82F, 0.82F, 0.80F} : Colour{0.36F, 0.55F, 0.85F});
+  }
+  Report report;
+  report.title = "Template fitted to a scan";
+  report.sections.push_back(
+      {"Fit",
+       "",
+       {picture(rest, "template and scan, before"), picture(fitted, "fitted template and scan"),
+        picture(distances, "distance to the scan, white 0 to red 2 % of the diagonal; grey: not seen"),
+        picture(hidden, "blue: completed, not seen by the scan")},
+       {figures(result, symmetry)},
+       {}});
+  return to_html(report);
+}
+
+}  // namespace orbifit

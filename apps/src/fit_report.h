@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/fitting/fit.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// Everything `fit` has to say, as `--report` writes it.
+nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry);
+
+/// The same with pictures, as `--html` writes it: template, scan over fit, distances, hidden parts.
+/// \param up unit
+std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
+                        const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run);
+
+}  // namespace orbifit
