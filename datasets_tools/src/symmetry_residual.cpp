@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
 
 #include "carried_motion.h"
 #include "region_surface.h"
@@ -21,7 +22,7 @@ using Eigen::Vector3d;
 // A point maps onto a vertex when it comes this near, as a fraction of the diagonal.
 constexpr double kOntoVertex = 1e-6;
 // Points of each element from which the carried motions are fitted; all are measured.
-constexpr int kFitPoints = 600;
+constexpr int kMostFitPoints = 600;
 constexpr int kFewestFitPoints = 60;
 constexpr int kFitBudget = 200000;
 
@@ -83,11 +84,14 @@ RegionSample sample_of(const Mesh& deformed, const Region& region, const RegionP
   sample.centre = region.centre;
   const std::size_t count = pairs.vertices.size();
   const std::size_t few = std::min(count, static_cast<std::size_t>(points));
+  Random random(1, "fit points");
   for (std::size_t e = 0; e < pairs.elements.size(); ++e) {
     ElementSample element{pairs.elements[e], Points(static_cast<Index>(few), 3), Points(static_cast<Index>(few), 3)};
     for (std::size_t i = 0; i < few; ++i) {
-      // Each element its own share of the vertices, so that together they cover more of the region.
-      const std::size_t v = (i * count + e * count / pairs.elements.size()) / few % count;
+      // One of each of `few` equal runs of the vertices: no regular step, which a regular mesh might answer.
+      const double share = (static_cast<double>(i) + random.uniform()) / static_cast<double>(few);
+      const std::size_t v =
+          few == count ? i : std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
       element.p.row(static_cast<Index>(i)) = deformed.vertices.row(pairs.vertices[v]);
       element.q.row(static_cast<Index>(i)) = pairs.places[e * count + v](deformed);
     }
@@ -125,7 +129,7 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
     elements += pairs[r].elements.size();
   }
   if (measured.empty()) return frames;
-  const int points = std::clamp(kFitBudget / static_cast<int>(elements), kFewestFitPoints, kFitPoints);
+  const int points = std::clamp(kFitBudget / static_cast<int>(elements), kFewestFitPoints, kMostFitPoints);
   std::vector<RegionSample> samples;
   for (const std::size_t r : measured) samples.push_back(sample_of(deformed, regions[r], pairs[r], points));
 

@@ -168,7 +168,7 @@ GeneratedModel build_wheel(const ModelValues& values) {
   const double radius = values["radius"];
   const double width = values["width"];
   const double rim = radius * values["rim"];
-  const double hub = 0.42 * rim;
+  const double hub = 0.44 * rim;
   const double front = 0.22 * width;
   const Placement place = standing(radius);
 
@@ -186,7 +186,7 @@ GeneratedModel build_wheel(const ModelValues& values) {
   const PartFaces spokes =
       copies(spoke(0.8 * hub, 0.885 * rim, front - 0.1 * hub, 0.42 * hub, values["spoke_breadth"] * rim, detail), 5);
   const Motion out{Matrix3d::Identity(), Vector3d(0.72 * hub, 0, front)};
-  const PartFaces bolts = copies(moved(bolt(0.175 * hub, 0.5 * hub, detail), out), 10);
+  const PartFaces bolts = copies(moved(bolt(0.185 * hub, 0.6 * hub, detail), out), 10);
   const Motion aside =
       Motion::rotation(Vector3d::UnitZ(), values["valve_angle"] * std::numbers::pi / 180, Vector3d::Zero());
   const Motion at_rim{Matrix3d::Identity(), Vector3d(0.87 * rim, 0, 0.24 * width)};
@@ -213,8 +213,8 @@ ModelDefinition wheel_model() {
       {"wheel",
        "a standing wheel: tyre with a tread, rim, hub, 5 spokes, 10 bolts and a valve that has no partner",
        {{"radius", 0.34, 0.2, 0.5, false, "of the tyre, m"},
-        {"width", 0.2, 0.1, 0.3, false, "of the tyre, m"},
-        {"rim", 0.66, 0.6, 0.8, false, "radius of the rim over that of the tyre"},
+        {"width", 0.16, 0.1, 0.3, false, "of the tyre, m"},
+        {"rim", 0.68, 0.6, 0.8, false, "radius of the rim over that of the tyre"},
         {"spoke_breadth", 0.26, 0.12, 0.4, false, "at the hub, as a fraction of the rim's radius"},
         {"valve_angle", 20, 5, 31, false, "from the first spoke, degrees; 36 would be midway"},
         {"tread", 3, 1, 8, true, "lugs around the tyre: 5 (2 tread + 1), so that the tyre has not the bolts' symmetry"},
