@@ -38,7 +38,7 @@ class AnnotationWriter {
   static std::string number(double value) {
     if (!std::isfinite(value)) throw InputError("", "annotation", "holds a number that is not finite");
     std::string text;
-    append_number(text, value);
+    append_number(text, value == 0 ? 0.0 : value);  // no -0, which only puzzles
     return text;
   }
   // In a string, characters outside of UTF-8 are replaced.

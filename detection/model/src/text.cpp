@@ -105,7 +105,7 @@ std::optional<long long> parse_integer(std::string_view text) {
 
 void append_number(std::string& text, double number) {
   char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, number == 0 ? 0.0 : number);
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, number);
   text.append(buffer, result.ptr);
 }
 

@@ -46,7 +46,7 @@ class WordReader {
 std::optional<double> parse_number(std::string_view text);
 std::optional<long long> parse_integer(std::string_view text);
 
-/// Shortest text that reads back as the same number; -0 is written as 0.
+/// Shortest text that reads back as the same number.
 void append_number(std::string& text, double number);
 void append_number(std::string& text, long long number);
 

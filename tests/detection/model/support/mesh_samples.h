@@ -19,6 +19,7 @@ inline Mesh ragged_mesh() {
   for (double& coordinate : mesh.vertices.reshaped()) coordinate = random.uniform(-3, 1e3) / 7;
   mesh.vertices.row(7) = mesh.vertices.row(3);
   mesh.vertices(2, 1) = 0;
+  mesh.vertices(2, 2) = -0.0;
   mesh.vertices(4, 0) = 1e-300;
   mesh.vertices(5, 2) = -12345678901234567.0;
   mesh.faces.resize(60, 3);
