@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -148,6 +149,7 @@ class Detector {
     if (already_known(placement, seed)) return;
     std::vector<int> grown =
         permuted_components(prepared_, survey_, *whole_index_, placement, seed, options_.tolerance, context_);
+    if (seed.size() == 1) drop_siblings(grown, seed.front());
     if (grown.size() > seed.size()) {
       const SurfacePatch patch =
           make_patch(prepared_, faces_of(grown), kPartSamples, options_.tolerance, context_, "grown");
@@ -160,6 +162,15 @@ class Detector {
     const double area = area_of(grown);
     if (area < kLeastShare * prepared_.area) return;
     found_.push_back({placement, grown, area, grown.size() == seed.size() ? name : name_of(grown)});
+  }
+
+  // Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of
+  // symmetry.
+  void drop_siblings(std::vector<int>& grown, int part) const {
+    const auto kind = std::ranges::find_if(
+        survey_.classes, [&](const CongruenceClass& each) { return std::ranges::binary_search(each.members, part); });
+    if (kind == survey_.classes.end()) return;
+    std::erase_if(grown, [&](int c) { return c != part && std::ranges::binary_search(kind->members, c); });
   }
 
   static std::string name_of(const std::vector<int>& components) {
@@ -214,6 +225,14 @@ class Detector {
     add(group->placement, kind.members, name_of(kind.members));
   }
 
+  // Whether the region lies in the other but for a sliver.
+  bool covers(const Found& outer, const Found& inner) const {
+    if (inner.area > 1.02 * outer.area) return false;
+    std::vector<int> common;
+    std::ranges::set_intersection(outer.components, inner.components, std::back_inserter(common));
+    return area_of(common) >= 0.95 * inner.area;
+  }
+
   // A region inside another one whose group holds all its elements says nothing new, whichever was found first.
   void remove_repeats() {
     std::vector<Found> kept;
@@ -223,10 +242,10 @@ class Detector {
       const double tolerance = options_.tolerance * std::min(1.0, 4 * moments.diagonal);
       bool repeats = false;
       for (std::size_t j = 0; j < found_.size() && !repeats; ++j) {
-        if (i == j || !std::ranges::includes(found_[j].components, mine.components)) continue;
+        if (i == j || !covers(found_[j], mine)) continue;
         if (!contains_group(found_[j].placement, mine.placement, moments.centroid, moments.radius, tolerance)) continue;
-        const bool equal = found_[j].components == mine.components && found_[j].placement.group == mine.placement.group;
-        repeats = !equal || j < i;
+        const bool mutual = found_[j].placement.group == mine.placement.group && covers(mine, found_[j]);
+        repeats = !mutual || j < i;
       }
       if (!repeats) kept.push_back(mine);
     }

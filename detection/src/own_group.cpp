@@ -50,6 +50,16 @@ double radius_about(const SurfacePatch& patch, const Vector3d& axis, const Vecto
   return largest;
 }
 
+// A small turn keeps flat sides within the tolerance; its larger multiples do not.
+std::vector<int> judged_powers(int n) {
+  std::vector<int> powers{1};
+  for (const double share : {0.5, 0.382, 0.236, 0.146, 0.472}) {
+    const int k = static_cast<int>(std::lround(share * n));
+    if (k > 1 && k < n) powers.push_back(k);
+  }
+  return powers;
+}
+
 /// The search for one patch: directions found so far, and the best group.
 class Search {
  public:
@@ -221,22 +231,46 @@ class Search {
       const GroupFrame frame = frame_about(axis);
       if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
     }
-    std::vector<int> orders = rotation_orders(patch_, axis, centre_, kSlack);
+    const std::vector<int> orders = rotation_orders(patch_, axis, centre_, kSlack);
     if (orders.empty()) return;
-    // The axis is better known once its rotations have been fitted; the orders are then asked again.
-    const Vector3d better = coarse({Family::Cn, orders.back()}, axis).frame.col(2);
-    Vector3d chosen = axis;
-    if (better.cross(axis).norm() < 0.15) {
-      std::vector<int> again = rotation_orders(patch_, better, centre_, kSlack);
-      if (!again.empty() && again.front() >= orders.front()) {
-        orders = std::move(again);
-        chosen = better;
+    // The axis is better known once the rotations that fit best have been fitted; the orders are then ranked.
+    const std::vector<RankedOrder> first = ranked(orders, axis);
+    const Vector3d better =
+        coarse({Family::Cn, first.empty() ? orders.back() : first.front().order}, axis).frame.col(2);
+    std::vector<RankedOrder> ranking = ranked(orders, better);
+    Vector3d chosen = better;
+    if (ranking.empty() || (!first.empty() && first.front().share > ranking.front().share + 0.02)) {
+      ranking = first;
+      chosen = axis;
+    }
+    constexpr std::size_t kMostTries = 12;
+    for (std::size_t i = 0; i < std::min(kMostTries, ranking.size()); ++i) {
+      if (add_rotation(chosen, ranking[i].order)) return;
+    }
+  }
+
+  struct RankedOrder {
+    int order;
+    double share;
+  };
+
+  // Orders by how well they fit at the tolerance itself: the nearly perfect ones first, high before low.
+  std::vector<RankedOrder> ranked(const std::vector<int>& orders, const Vector3d& axis) const {
+    constexpr int kRankSamples = 250;
+    constexpr double kLeastShare = 0.88;
+    constexpr double kNearlyPerfect = 0.985;
+    std::vector<RankedOrder> result;
+    for (const int n : orders) {
+      double share = 1;
+      for (const int k : judged_powers(n)) {
+        const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre_);
+        share = std::min(share, kept_share(patch_, turn, 1.2 * patch_.tolerance, kRankSamples, kLeastShare));
+        if (share < kLeastShare) break;
       }
+      if (share >= kLeastShare) result.push_back({n, share});
     }
-    constexpr int kMostTries = 12;
-    for (int i = 0; i < std::min(kMostTries, static_cast<int>(orders.size())); ++i) {
-      if (add_rotation(chosen, orders[static_cast<std::size_t>(i)])) return;
-    }
+    std::ranges::stable_partition(result, [](const RankedOrder& r) { return r.share >= kNearlyPerfect; });
+    return result;
   }
 
   bool add_rotation(const Vector3d& axis, int n) {
@@ -386,10 +420,8 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
     return kept_share(patch, turn, slack * patch.tolerance, kScreenSamples, kScreenShare) >= kScreenShare;
   };
   for (int n = highest; n >= 2; --n) {
-    // A small turn keeps flat sides within the tolerance; its larger multiples do not.
-    std::vector<int> powers{1, n / 2};
-    for (const double share : {0.382, 0.236, 0.146, 0.472}) powers.push_back(static_cast<int>(std::lround(share * n)));
-    if (std::ranges::all_of(powers, [&](int k) { return k < 1 || kept(k, n); })) result.push_back(n);
+    const std::vector<int> powers = judged_powers(n);
+    if (std::ranges::all_of(powers, [&](int k) { return kept(k, n); })) result.push_back(n);
   }
   return result;
 }

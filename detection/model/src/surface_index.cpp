@@ -26,6 +26,9 @@ constexpr double kCullMargin = 1e-6;
 // Squared sine of a corner below which Ericson's method, whose products grow with the fourth power, loses digits.
 constexpr double kSliver = 1e-2;
 
+// From far away a ray begins anew at a sphere of this radius about the box, where single precision resolves the faces.
+constexpr double kSphere = 2;
+
 using Device = std::shared_ptr<RTCDeviceTy>;
 
 // One device serves all indices for as long as one lives. It builds on the calling thread alone.
@@ -339,8 +342,6 @@ SurfaceIndex::Implementation::LocalRay SurfaceIndex::Implementation::local_ray(c
                                                                                double max_distance) const {
   LocalRay local{};
   Eigen::Vector3d start = scale * origin - centre;
-  // From far away the ray begins anew at a sphere about the box, where single precision resolves the faces.
-  constexpr double kSphere = 2;
   if (start.cwiseAbs().maxCoeff() > kSphere) {
     const double along = start.dot(unit_direction);
     const Eigen::Vector3d closest = start - along * unit_direction;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
@@ -12,6 +13,9 @@
 namespace orbifit {
 
 namespace {
+
+// A cross product of differences is rounded at this fraction of the longest side squared.
+constexpr double kRounding = 1e-15;
 
 using Cell = std::array<std::int64_t, 3>;
 
@@ -97,7 +101,7 @@ struct EdgeUse {
   std::array<int, 2> vertices;  // ascending
   int face;
 
-  auto operator<=>(const EdgeUse&) const = default;
+  bool operator<(const EdgeUse& other) const { return std::tie(vertices, face) < std::tie(other.vertices, other.face); }
 };
 
 // Every side of every face that has two ends, by vertices, then face.
@@ -162,8 +166,6 @@ int count_duplicate_faces(const Mesh& mesh, const Weld& weld) {
 }
 
 int count_degenerate_faces(const Mesh& mesh, const Weld& weld) {
-  // A cross product of differences is rounded at this fraction of the longest side squared.
-  constexpr double kRounding = 1e-15;
   const Eigen::VectorXd areas = face_areas(mesh);
   int count = 0;
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
