@@ -88,6 +88,7 @@ std::string TextTable::text() const {
 }
 
 void print(const std::string& text) {
+  if (::isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);  // a progress bar may stand there
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     throw InputError("standard output", "", "cannot be written");
   }

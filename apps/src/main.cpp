@@ -47,7 +47,7 @@ constexpr std::array kCommands{
     Command{"generate", "Build a model whose symmetries are known.",
             "orbifit generate --list\n"
             "orbifit generate chair -o models\n"
-            "orbifit generate wheel --param spokes=7 -o models",
+            "orbifit generate chair --param slats=6 --param back_tilt=12 -o models",
             commands::generate},
     Command{"scan", "Scan a mesh with a virtual depth camera.",
             "orbifit scan chair.obj -o scan.ply\n"
@@ -157,6 +157,8 @@ int refuse_call(const CLI::ParseError& error, const std::string& command) {
     reason = "unexpected argument" + (colon == std::string::npos ? "" : " " + reason.substr(colon + 2));
   } else if (reason.starts_with("A subcommand")) {
     reason = "a command is needed";
+  } else if (const std::size_t counts = reason.find(" required but received"); counts != std::string::npos) {
+    reason = reason.substr(0, reason.find(':')) + ": wrong number of values";
   }
   console.error(reason + " (see " + help + ")");
   return kUsage;

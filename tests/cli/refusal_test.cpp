@@ -124,6 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"ParameterRange", "generate bar --param length=1e9 -o out", 2, "length"},
         Refusal{"Views", "scan cube.ply --views 0 -o out.ply", 2, "views"},
         Refusal{"Up", "scan cube.ply --up 0 0 0 -o out.ply", 2, "--up must be three numbers, not all 0"},
+        Refusal{"UpShort", "scan cube.ply --up 0 1 -o out.ply", 2, "--up: wrong number of values"},
         Refusal{"Ending", "scan cube.ply -o out.obj", 2, "out.obj: the ending must be .ply, .pcd, .xyz or .pts"},
         Refusal{"OverwritesInput", "scan cube.ply -o cube.ply", 2, "would overwrite the input cube.ply"},
         Refusal{"Region", "render cube.ply --annotation cube.json --region 7 -o out.png", 2, "--region is 7"}),

@@ -142,7 +142,10 @@ CommandBody detect(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
   app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
-  app.add_option("--up", arguments->up, "Upward direction of the preview")->type_size(3)->type_name("X Y Z");
+  app.add_option("--up", arguments->up, "Upward direction of the preview")
+      ->type_size(3)
+      ->expected(1)
+      ->type_name("X Y Z");
   return [arguments](CommandContext& context) {
     arguments->options.validate();
     to_direction("--up", arguments->up);

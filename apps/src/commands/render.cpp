@@ -68,7 +68,11 @@ CommandBody render(CLI::App& app) {
   app.add_option("--compare", arguments->compare, "Second mesh, drawn beside the first at the same scale")
       ->type_name("FILE");
   app.add_flag("--edges", arguments->edges, "Draw the edges of the triangles");
-  app.add_option("--up", arguments->up, "Upward direction")->type_size(3)->type_name("X Y Z")->default_str("0 0 1");
+  app.add_option("--up", arguments->up, "Upward direction")
+      ->type_size(3)
+      ->expected(1)
+      ->type_name("X Y Z")
+      ->default_str("0 0 1");
   app.add_option("--azimuth", view.azimuth, "Degrees about the upward direction")->capture_default_str();
   app.add_option("--elevation", view.elevation, "Degrees above the horizon")->capture_default_str();
   app.add_option("--width", view.width, "Pixels of one picture (480 where there are several)")

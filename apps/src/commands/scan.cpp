@@ -41,7 +41,11 @@ CommandBody scan(CLI::App& app) {
   number("--height", options.height, "Pixels");
   number("--field-of-view", options.field_of_view, "Vertical, degrees");
   number("--grazing-limit", options.grazing_limit, "Degrees between ray and normal above which nothing is seen");
-  app.add_option("--up", arguments->up, "Upward direction")->type_size(3)->type_name("X Y Z")->default_str("0 0 1");
+  app.add_option("--up", arguments->up, "Upward direction")
+      ->type_size(3)
+      ->expected(1)
+      ->type_name("X Y Z")
+      ->default_str("0 0 1");
   return [arguments](CommandContext& context) {
     arguments->options.up = to_direction("--up", arguments->up);
     arguments->options.validate();

@@ -244,8 +244,7 @@ TEST(Gltf, RefusesWhatItCannotRead) {
   expect(R"("count": 3, "type": "VEC3")", R"("count": 4, "type": "VEC3")",
          "accessors[0]: reaches beyond its bufferView");
   expect(R"("count": 3, "type": "VEC3")", R"("count": 4000000000, "type": "VEC3")", "reaches beyond");
-  expect(R"("count": 3, "type": "VEC3")", R"("count": 2, "type": "VEC3")",
-         "vertex index 2 is out of range");
+  expect(R"("count": 3, "type": "VEC3")", R"("count": 2, "type": "VEC3")", "vertex index 2 is out of range");
   expect(R"("byteOffset": 36)", R"("byteOffset": 37)", "reaches beyond its buffer");
   expect("a.bin", "b.bin", "b.bin: no such file");
   expect("a.bin", "http://a/b.bin", "only files are read");
