@@ -43,7 +43,7 @@ struct SymmetryReport {
   bool vertices_onto_vertices = false;  ///< every pair of every region
   std::vector<RegionResidual> regions;
   std::vector<PatternResidual> patterns;
-  double worst_floor = 0, worst_deformed = 0, worst_excess = 0;
+  double worst_floor = 0, worst_deformed = 0, worst_excess = 0;  ///< over the regions
 };
 
 /// How far the regions and patterns are from symmetric, at rest and, if `deformed` is not null, after a deformation
