@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -46,7 +47,8 @@ void fill(Image& image, float left, float top, float right, float bottom) {
       const float share = covered(left, right, x) * covered(top, bottom, y);
       std::uint8_t* target = pixel(image, x, y);
       for (std::size_t k = 0; k < 3; ++k) {
-        target[k] = static_cast<std::uint8_t>((1 - share) * target[k] + share * static_cast<float>(kInk[k]) + 0.5F);
+        target[k] =
+            static_cast<std::uint8_t>(std::lround((1 - share) * target[k] + share * static_cast<float>(kInk[k])));
       }
     }
   }
@@ -83,9 +85,9 @@ void draw_text(Image& image, float x, float y, std::string text) {
   std::vector<Corner> corners(4 * (text.size() * 32 + 16));
   const int quads = stb_easy_font_print(0, 0, text.data(), nullptr, corners.data(),
                                         static_cast<int>(corners.size() * sizeof(Corner)));
-  for (int q = 0; q < quads; ++q) {
-    const Corner& low = corners[static_cast<std::size_t>(4 * q)];
-    const Corner& high = corners[static_cast<std::size_t>(4 * q + 2)];
+  for (std::size_t q = 0; q < static_cast<std::size_t>(quads); ++q) {
+    const Corner& low = corners[4 * q];
+    const Corner& high = corners[4 * q + 2];
     fill(image, x + kTextScale * low.x, y + kTextScale * low.y, x + kTextScale * high.x, y + kTextScale * high.y);
   }
 }
@@ -133,11 +135,12 @@ Image contact_sheet(const std::vector<Image>& images, const std::vector<std::str
   for (int i = 0; i < count; ++i) {
     const Image& image = images[static_cast<std::size_t>(i)];
     const int left = kGap + i % across * (cell_width + kGap);
-    const int top = kGap + i / across * (cell_height + kCaptionHeight + kGap);
+    const int row = i / across;
+    const int top = kGap + row * (cell_height + kCaptionHeight + kGap);
     paste(sheet, image, left + (cell_width - image.width) / 2, top + (cell_height - image.height) / 2);
     const std::string caption = fitted(captions[static_cast<std::size_t>(i)], cell_width);
-    draw_text(sheet, static_cast<float>(left + (cell_width - text_width(caption)) / 2),
-              static_cast<float>(top + cell_height + 9), caption);
+    const int indent = (cell_width - text_width(caption)) / 2;
+    draw_text(sheet, static_cast<float>(left + indent), static_cast<float>(top + cell_height + 9), caption);
   }
   return sheet;
 }

@@ -34,7 +34,7 @@ Eigen::Vector2f unit_square_point(int cell, int ray) {
 }
 
 // The order in which the cells of a tile are numbered: neighbours get far directions (Bayer's matrix).
-constexpr std::array<int, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+constexpr int kBayer[kTile * kTile] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
 
 struct Basis {
   Eigen::Vector3f first, second, normal;
@@ -117,8 +117,7 @@ void trace_row(LightBuffer& buffer, const RayScene& scene, const Camera& camera,
       pixel = {PixelSurface::Kind::ground, position, ground.up, Eigen::Vector3f::Ones(), distance};
       origin = position;
     }
-    const auto cell_number = static_cast<std::size_t>(y % kTile * kTile + x % kTile);
-    const int cell = kBayer[cell_number];
+    const int cell = kBayer[y % kTile * kTile + x % kTile];
     Light& light = buffer.lights[place];
     light.sky = open_share(scene.occluded(origin, sky_directions(pixel.normal, cell).data(), kRays, kSkyReach));
     light.key = 0;
@@ -130,7 +129,7 @@ void trace_row(LightBuffer& buffer, const RayScene& scene, const Camera& camera,
 
 // The mean over a window as wide as a tile and centred: its outermost pixels count half.
 void smooth_row(const LightBuffer& raw, std::vector<Light>& smooth, float pixel_width, int y) {
-  constexpr int kReach = kTile / 2;
+  constexpr int reach = kTile / 2;
   for (int x = 0; x < raw.width; ++x) {
     const PixelSurface& pixel = raw.at(x, y);
     if (pixel.kind == PixelSurface::Kind::nothing) continue;
@@ -138,14 +137,14 @@ void smooth_row(const LightBuffer& raw, std::vector<Light>& smooth, float pixel_
     float sky = 0;
     float key = 0;
     float total = 0;
-    for (int j = -kReach; j <= kReach; ++j) {
-      for (int i = -kReach; i <= kReach; ++i) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
         const int u = x + i;
         const int v = y + j;
         if (u < 0 || v < 0 || u >= raw.width || v >= raw.height) continue;
         float weight = likeness(raw.at(u, v), pixel.position, pixel.normal, pixel.kind, pixel_size);
-        if (std::abs(i) == kReach) weight *= 0.5F;
-        if (std::abs(j) == kReach) weight *= 0.5F;
+        if (std::abs(i) == reach) weight *= 0.5F;
+        if (std::abs(j) == reach) weight *= 0.5F;
         const Light& light =
             raw.lights[static_cast<std::size_t>(v) * static_cast<std::size_t>(raw.width) + static_cast<std::size_t>(u)];
         sky += weight * light.sky;

@@ -133,7 +133,7 @@ void add_plane(const Points& points, const Region& region, const Eigen::Vector3d
 
 Colour region_colour(int number) {
   // Ordered so that neighbours differ in hue and in lightness.
-  static const std::array<Colour, 24> kColours{{
+  static const std::array<Colour, 24> colours{{
       {0.26F, 0.52F, 0.86F}, {0.95F, 0.55F, 0.20F}, {0.30F, 0.69F, 0.38F}, {0.86F, 0.31F, 0.33F}, {0.56F, 0.42F, 0.80F},
       {0.96F, 0.79F, 0.26F}, {0.18F, 0.69F, 0.71F}, {0.90F, 0.47F, 0.68F}, {0.58F, 0.43F, 0.31F}, {0.60F, 0.77F, 0.28F},
       {0.22F, 0.35F, 0.62F}, {0.98F, 0.67F, 0.56F}, {0.13F, 0.47F, 0.37F}, {0.70F, 0.53F, 0.90F}, {0.74F, 0.20F, 0.47F},
@@ -141,7 +141,7 @@ Colour region_colour(int number) {
       {0.45F, 0.60F, 0.72F}, {0.99F, 0.86F, 0.55F}, {0.40F, 0.50F, 0.20F}, {0.84F, 0.70F, 0.84F},
   }};
   if (number < 0) return kGrey;
-  if (static_cast<std::size_t>(number) < kColours.size()) return kColours[static_cast<std::size_t>(number)];
+  if (static_cast<std::size_t>(number) < colours.size()) return colours[static_cast<std::size_t>(number)];
   // Steps of the golden ratio around the circle of hues never repeat.
   return from_hue(std::fmod(number * 0.6180339887498949, 1.0), number % 2 == 0 ? 0.55 : 0.75,
                   number % 3 == 0 ? 0.70 : 0.88);
@@ -150,15 +150,15 @@ Colour region_colour(int number) {
 Colour heat_colour(double value) {
   if (std::isnan(value)) return kGrey;
   // Moreland's diverging map: blue, light grey, red.
-  static const std::array<Colour, 5> kStops{{{0.230F, 0.299F, 0.754F},
-                                             {0.552F, 0.690F, 0.996F},
-                                             {0.875F, 0.870F, 0.862F},
-                                             {0.958F, 0.603F, 0.482F},
-                                             {0.706F, 0.016F, 0.150F}}};
+  static const std::array<Colour, 5> stops{{{0.230F, 0.299F, 0.754F},
+                                            {0.552F, 0.690F, 0.996F},
+                                            {0.875F, 0.870F, 0.862F},
+                                            {0.958F, 0.603F, 0.482F},
+                                            {0.706F, 0.016F, 0.150F}}};
   const double place = 4 * std::clamp(value, 0.0, 1.0);
   const auto stop = static_cast<std::size_t>(std::min(place, 3.0));
   const auto share = static_cast<float>(place - static_cast<double>(stop));
-  return (1 - share) * kStops[stop] + share * kStops[stop + 1];
+  return (1 - share) * stops[stop] + share * stops[stop + 1];
 }
 
 Scene region_scene(const Mesh& mesh, const Region& region) {

@@ -134,7 +134,8 @@ std::string html(const ReportTable& table) {
   const auto cells = [&](const std::vector<std::string>& row, const std::string& tag) {
     std::string result = "<tr>";
     for (std::size_t c = 0; c < columns; ++c) {
-      result += "<" + tag + (numeric[c] ? " class=\"number\">" : ">") + escaped(row[c]) + "</" + tag + ">";
+      result.append("<").append(tag).append(numeric[c] ? " class=\"number\">" : ">");
+      result.append(escaped(row[c])).append("</").append(tag).append(">");
     }
     return result + "</tr>\n";
   };
@@ -160,7 +161,7 @@ std::string html(const ReportSection& section, std::size_t number) {
 }  // namespace
 
 std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string result;
   result.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -169,7 +170,7 @@ std::string base64(const std::string& bytes) {
       triple = triple << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      result += i + k > bytes.size() ? '=' : kDigits[triple >> (18 - 6 * k) & 63U];
+      result += i + k > bytes.size() ? '=' : digits[triple >> (18 - 6 * k) & 63U];
     }
   }
   return result;
