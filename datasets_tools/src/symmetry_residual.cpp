@@ -119,6 +119,7 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
                                          const std::vector<RegionPairs>& pairs, CarriedMotions motions,
                                          const RunContext& context) {
   std::vector<CarriedFrame> frames;
+  frames.reserve(regions.size());
   for (const Region& region : regions) frames.push_back(at_rest(region));
   if (motions == CarriedMotions::fixed) return frames;
 
@@ -128,9 +129,10 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
     if (!pairs[r].places.empty()) measured.push_back(r);
     elements += pairs[r].elements.size();
   }
-  if (measured.empty()) return frames;
+  if (measured.empty() || elements == 0) return frames;
   const int points = std::clamp(kFitBudget / static_cast<int>(elements), kFewestFitPoints, kMostFitPoints);
   std::vector<RegionSample> samples;
+  samples.reserve(measured.size());
   for (const std::size_t r : measured) samples.push_back(sample_of(deformed, regions[r], pairs[r], points));
 
   const double scale = diagonal(deformed.vertices);

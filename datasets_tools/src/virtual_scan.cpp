@@ -136,6 +136,7 @@ PointCloud virtual_scan(const Mesh& mesh, const ScanOptions& options, RunContext
   const double deviation = options.noise * diagonal_length / (centre_depth * centre_depth);
 
   std::vector<Camera> cameras;
+  cameras.reserve(static_cast<std::size_t>(options.views));
   for (int view = 0; view < options.views; ++view) {
     cameras.push_back(camera_of_view(options, view, centre, diagonal_length));
   }
