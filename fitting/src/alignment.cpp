@@ -15,9 +15,10 @@ namespace {
 
 constexpr int kIterations = 40;
 constexpr int kFewestPairs = 6;
-constexpr double kFirstReach = 0.25;    // of the diagonal: pairs farther apart are not the same place
-constexpr double kLeastRobust = 0.004;  // of the diagonal
-constexpr double kStill = 1e-6;         // of the diagonal: ICP stops at smaller steps
+constexpr double kFirstReach = 0.25;       // of the diagonal: pairs farther apart are not the same place
+constexpr double kDirectionNoise = 0.003;  // of the diagonal
+constexpr double kLeastRobust = 0.004;     // of the diagonal
+constexpr double kStill = 1e-6;            // of the diagonal: ICP stops at smaller steps
 
 double median_distance(const std::vector<Correspondence>& pairs) {
   std::vector<double> distances;
@@ -59,6 +60,7 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
     context.progress("alignment", double(iteration) / kIterations);
     CorrespondenceOptions options;
     options.max_distance = kFirstReach * size;
+    options.direction_noise = kDirectionNoise * size;
     options.robust_scale = robust;
     options.trim = 0.85;
     const Points points = to_template(pose, scan.points);

@@ -5,6 +5,20 @@
 
 namespace orbifit {
 
+namespace {
+
+// The gradient of the distance to the surface: the face's normal where the foot lies within the face, but across an
+// edge it points from the edge to the scan point, so that a part seen from one side alone still finds its width.
+// Offsets below `noise` do not tell a direction.
+Eigen::Vector3d distance_direction(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal, double noise) {
+  const double sign = offset.dot(normal) < 0 ? -1 : 1;
+  const Eigen::Vector3d direction = sign * offset + noise * normal;
+  const double length = direction.norm();
+  return length > 0 ? Eigen::Vector3d(direction / length) : normal;
+}
+
+}  // namespace
+
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
                                                  const RunContext& context) {
@@ -17,9 +31,14 @@ std::vector<Correspondence> find_correspondences(const MatchSurface& surface, co
                                        options.min_normal_cosine, options.max_distance, !options.signed_normals);
       if (nearest.face < 0) continue;
       const double ratio = nearest.distance / options.robust_scale;
-      all[i] = {static_cast<int>(i), nearest.face,
-                nearest.barycentric, surface.normals.row(nearest.face).transpose(),
-                nearest.distance,    1 / ((1 + ratio * ratio) * (1 + ratio * ratio))};
+      Correspondence& pair = all[i];
+      pair.scan_point = static_cast<int>(i);
+      pair.face = nearest.face;
+      pair.barycentric = nearest.barycentric;
+      pair.normal = distance_direction(scan_points.row(row).transpose() - nearest.point,
+                                       surface.normals.row(nearest.face).transpose(), options.direction_noise);
+      pair.distance = nearest.distance;
+      pair.weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
     }
   });
   std::erase_if(all, [](const Correspondence& pair) { return pair.face < 0; });

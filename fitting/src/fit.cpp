@@ -18,10 +18,18 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kFirstReach = 0.15;    // of the diagonal: correspondences farther apart are none, at the start
-constexpr double kLastReach = 0.04;     // and at the end
-constexpr double kLeastRobust = 0.003;  // of the diagonal
-constexpr double kStill = 2e-5;         // of the diagonal: the fit has settled when no sample moves more
+constexpr double kFirstReach = 0.15;       // of the diagonal: correspondences farther apart are none, at the start
+constexpr double kLastReach = 0.04;        // and at the end
+constexpr double kDirectionNoise = 0.003;  // of the diagonal
+// Offsets far above the robust scale hardly count. It shrinks last: parts that the soft template has yet to reach
+// would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
+constexpr double kFirstRobust = 0.05;
+constexpr double kSoftRobust = 0.02;
+constexpr double kLastRobust = 0.007;
+constexpr double kRobustDecay = 0.8;  // an iteration, from the soft to the last
+constexpr double kStill = 1e-4;       // of the diagonal: the fit has settled when no sample moves more,
+constexpr double kSameRms = 5e-3;     // or when the rms changes by less than this share
+constexpr int kSameIterations = 4;    // in so many iterations
 
 class Stopwatch {
  public:
@@ -76,6 +84,19 @@ std::vector<Pull> pulls_towards(const FitInput& input, const Similarity& pose, d
   return pulls;
 }
 
+// \param settling iterations since the stiffness is at its last value
+double robust_scale(double progress, int settling) {
+  if (settling <= 0) return kFirstRobust * std::pow(kSoftRobust / kFirstRobust, progress);
+  return std::max(kLastRobust, kSoftRobust * std::pow(kRobustDecay, settling));
+}
+
+bool same_rms(const std::vector<FitIteration>& iterations) {
+  if (iterations.size() <= kSameIterations) return false;
+  const double now = iterations.back().rms;
+  return std::all_of(iterations.end() - kSameIterations - 1, iterations.end(),
+                     [&](const FitIteration& other) { return std::abs(other.rms - now) <= kSameRms * now; });
+}
+
 // Pose and coordinates, improved in place; the loop of the fit.
 struct Iterate {
   Similarity pose;
@@ -88,7 +109,6 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
   FitSystem system(subspace, input.mesh, options.stretch);
   const bool signed_normals = signs_agree(input.mesh, scan, state.pose, context);
   const int scheduled = options.levels * options.iterations;
-  double robust = 0.05 * size;
   Points displacements = sample_displacements(subspace, state.q);
   for (int i = 0; i < options.most_iterations; ++i) {
     context.progress("fit", double(i) / options.most_iterations);
@@ -99,9 +119,11 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
     CorrespondenceOptions matching;
     matching.max_distance = (kFirstReach + (kLastReach - kFirstReach) * progress) * size;
     matching.signed_normals = signed_normals;
-    matching.trim = options.trim;
+    // Far points are left out while the template is far; in the end the robust weights judge each by itself.
+    matching.trim = options.trim + (1 - options.trim) * progress;
     matching.never_trim = 0.005 * size;
-    matching.robust_scale = robust;
+    matching.direction_noise = kDirectionNoise * size;
+    matching.robust_scale = robust_scale(progress, i - scheduled) * size;
     const Points points = to_template(state.pose, scan.points);
     const auto pairs = find_correspondences(MatchSurface(deformed_template(input.mesh, subspace, state.q)), points,
                                             normals_to_template(state.pose, scan.normals), matching, context);
@@ -122,10 +144,14 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
     record.correspondences = static_cast<int>(pairs.size());
     record.rms = weighted_rms(pairs) / size;
     record.energy = solution.energy;
-    robust = std::max(kLeastRobust * size, std::min(robust, 3 * record.rms * size));
     result.iterations.push_back(record);
-    if (i + 1 >= scheduled && record.change < kStill) {
-      result.stopped_because = "settled: no sample moves by more than " + std::to_string(kStill) + " of the diagonal";
+    if (i + 1 < scheduled) continue;
+    if (record.change < kStill) {
+      result.stopped_because = "settled: no sample moves by more than 0.01 % of the diagonal";
+      return;
+    }
+    if (same_rms(result.iterations)) {
+      result.stopped_because = "settled: the distances to the scan no longer change";
       return;
     }
   }

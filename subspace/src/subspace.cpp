@@ -16,7 +16,7 @@ constexpr int kDefaultSamples = 600;
 constexpr int kDefaultDegreesOfFreedom = 200;
 constexpr double kVertexOntoVertex = 1e-6;  // of the diagonal
 constexpr int kSearchRounds = 6;
-constexpr Eigen::Index kMostResidualPairs = 50000;
+constexpr Eigen::Index kMostResidualPairs = 20000;
 
 // Samples with the radius asked for, or with one found by a few rounds of secant steps on n ~ r^-2.
 SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, const SubspaceOptions& options,

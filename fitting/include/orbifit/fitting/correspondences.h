@@ -15,6 +15,7 @@ struct CorrespondenceOptions {
   bool signed_normals = false;     ///< normals must agree in sign too
   double trim = 0.9;               ///< share of the nearest that is kept, in (0, 1]
   double never_trim = 0;           ///< distances below this are always kept, template units
+  double direction_noise = 0;      ///< offsets across an edge below this do not turn the normal, template units
   double robust_scale = 0;         ///< Geman-McClure's, template units, > 0
 };
 
@@ -23,7 +24,7 @@ struct Correspondence {
   int scan_point = -1;
   int face = -1;
   Eigen::Vector3d barycentric;  ///< of the surface point on the face
-  Eigen::Vector3d normal;       ///< unit, of the face
+  Eigen::Vector3d normal;       ///< unit: of the face, or from its edge to the scan point across that edge
   double distance = 0;          ///< between the two, template units
   double weight = 0;            ///< 1 / (1 + (distance / robust_scale)^2)^2 (Geman and McClure)
 };

@@ -68,7 +68,7 @@ SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, cons
 
 /// How well the displacement field itself is symmetric: |u(g p) - O u(p) - (I - O) t| over vertices p of a region
 /// and elements g, evaluated in space at g p, as a fraction of the diagonal. This has no floor from the tessellation.
-/// Of a large region every k-th vertex is taken, so that about 50 000 pairs (p, g) are.
+/// Of a large region every k-th vertex is taken, so that about 20 000 pairs (p, g) are.
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const Eigen::VectorXd& q, const RunContext& context);
 
