@@ -122,7 +122,7 @@ Head build_head(ModelBuilder& builder, const ModelValues& values, const Vector3d
   const Motion place{head_frame(), middle};
   Head head;
   // Facets of the turned parts: a multiple of 4, of the blades' and of the wires' number.
-  const int least = std::lcm(4, std::lcm(blades, wires));
+  const int least = std::max(4, std::lcm(4, std::lcm(blades, wires)));
   head.facets = least * std::max(1, (100 + least - 1) / least);
 
   const auto turned = [&](const Mesh& part) { head.turned.push_back(builder.add(part, place)); };

@@ -20,7 +20,7 @@ const std::vector<ModelDefinition>& definitions() {
 template <typename Named>
 std::string names(const std::vector<Named>& all) {
   std::string text;
-  for (const Named& one : all) text += (text.empty() ? "" : ", ") + one.name;
+  for (const Named& one : all) text.append(text.empty() ? "" : ", ").append(one.name);
   return text;
 }
 
@@ -59,7 +59,11 @@ GeneratedModel generate(const std::string& name, const std::map<std::string, dou
   for (const auto& [key, value] : parameters) {
     const auto parameter = std::ranges::find(known, key, &GeneratorParameter::name);
     if (parameter == known.end()) {
-      throw UsageError(name + ": unknown parameter '" + key + "'; there are " + names(known));
+      std::string text = name;
+      text += ": unknown parameter '";
+      text += key;
+      text += "'; there are ";
+      throw UsageError(text.append(names(known)));
     }
     check(name, *parameter, value);
     values[key] = value;

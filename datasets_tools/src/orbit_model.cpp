@@ -69,6 +69,7 @@ GeneratedModel generate_orbit(const PointGroup& group, const OrbitOptions& optio
 
   ModelBuilder builder;
   std::vector<PartFaces> copies;
+  copies.reserve(linear.size());
   for (const Matrix3d& element : linear) copies.push_back(builder.add(part, {element, options.centre}));
   if (group.order() > 1) {
     builder.declare("whole", group, {options.frame, options.centre}, joined(copies));

@@ -73,6 +73,7 @@ int facets_about(const Vector3d& axis, const Tessellation& tessellation, double 
   for (int n = 5; n <= kMostFacets; ++n) trials.push_back(n);
   trials.insert(trials.end(), kFurtherFacets.begin(), kFurtherFacets.end());
   std::vector<double> errors;
+  errors.reserve(trials.size());
   for (const int n : trials) errors.push_back(tessellation.error(axis_rotation(axis, 2 * std::numbers::pi / n)));
   const double least = *std::ranges::min_element(errors);
   int result = trials.front();
