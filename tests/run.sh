@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test. Arguments go to ctest: ./tests/run.sh -R point_group
+source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
+
+build_release -DORBIFIT_BUILD_TESTS=ON
+ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@"
