@@ -12,6 +12,7 @@
 
 #include "orbifit/detection/candidates.h"
 #include "orbifit/detection/components.h"
+#include "orbifit/detection/featureless.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/patterns.h"
 #include "orbifit/detection/region_growth.h"
@@ -65,6 +66,7 @@ class Detector {
       remove_repeats();
       find_patterns(annotation);
     }
+    remove_featureless();
     write_regions(annotation);
     context_.progress("regions", 1);
     return annotation;
@@ -225,6 +227,16 @@ class Detector {
     add(group->placement, kind.members, name_of(kind.members));
   }
 
+  // Only border and position give a piece of a larger plane or cylinder its group. The whole is never such a piece.
+  void remove_featureless() {
+    std::erase_if(found_, [&](const Found& found) {
+      if (found.area > 0.5 * prepared_.area) return false;
+      const SurfacePatch patch =
+          make_patch(prepared_, faces_of(found.components), 400, options_.tolerance, context_, "slip");
+      return featureless(patch, found.placement, *whole_index_, options_.tolerance, context_);
+    });
+  }
+
   // Whether the region lies in the other but for a sliver.
   bool covers(const Found& outer, const Found& inner) const {
     if (inner.area > 1.02 * outer.area) return false;
@@ -277,7 +289,10 @@ class Detector {
       const double tolerance = options_.tolerance * std::min(1.0, 4 * moments.diagonal);
       const GroupPlacement* own = own_groups_[c] ? &*own_groups_[c] : nullptr;
       const Arrangement arrangement = arrange(kind.motions, own, moments.centroid, moments.radius, tolerance);
-      const bool lattice = arrangement.kind != Pattern::Kind::congruent && arrangement.kind != Pattern::Kind::rotation;
+      // A group says more than a pattern, unless the pattern is a true row or grid.
+      const bool lattice = arrangement.kind != Pattern::Kind::congruent &&
+                           arrangement.kind != Pattern::Kind::rotation &&
+                           kind.members.size() > (std::size_t{1} << arrangement.generators.size());
       if (!lattice && related_by_a_region(kind)) continue;
       Pattern pattern;
       pattern.id = static_cast<int>(annotation.patterns.size());

@@ -22,6 +22,9 @@ constexpr double kSameDirection = 0.03;  // radians
 constexpr int kHighestOrder = 180;
 // A rotation that moves no point by more than this many tolerances cannot be told from none.
 constexpr double kLeastMove = 6;
+// Low orders move far around the axis what they move little along it: for them less will do.
+constexpr double kLowOrder = 6;
+constexpr double kLeastMoveLow = 2;
 
 constexpr double kClassifyTolerance = 0.02;
 
@@ -412,9 +415,9 @@ std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const Directio
 std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre,
                                  double slack) {
   std::vector<int> result;
-  const double radius = radius_about(patch, axis, centre);
-  const auto highest =
-      static_cast<int>(std::min<double>(kHighestOrder, 2 * std::numbers::pi * radius / (kLeastMove * patch.tolerance)));
+  const double around = 2 * std::numbers::pi * radius_about(patch, axis, centre) / patch.tolerance;
+  const int highest = static_cast<int>(
+      std::min<double>(kHighestOrder, std::max(around / kLeastMove, std::min(around / kLeastMoveLow, kLowOrder))));
   const auto kept = [&](int k, int n) {
     const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
     return kept_share(patch, turn, slack * patch.tolerance, kScreenSamples, kScreenShare) >= kScreenShare;
@@ -427,7 +430,7 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
 }
 
 double continuous_tolerance(const SurfacePatch& patch) {
-  return patch.relative_tolerance * std::min(1.0, patch.moments.diagonal);
+  return patch.relative_tolerance * std::min(1.0, 2.5 * patch.moments.diagonal);
 }
 
 bool continuous_about(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre,

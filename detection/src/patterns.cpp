@@ -89,7 +89,9 @@ std::optional<Lattice> fit_lattice(const std::vector<Vector3d>& offsets, std::ve
     for (Eigen::Index k = 0; k < dimension; ++k) place[k] = static_cast<int>(places(k, i));
     result.places.push_back(place);
   }
-  // A lattice of which little is filled is a coincidence: at least half of the box of places must hold a copy.
+  // A lattice of which little is filled is a coincidence: at least half of the box of places must hold a copy,
+  // and any three points span some lattice of two steps.
+  if (offsets.size() < (std::size_t{1} << steps.size())) return std::nullopt;
   double box = 1;
   for (Eigen::Index k = 0; k < dimension; ++k) {
     const double extent = places.row(k).maxCoeff() - places.row(k).minCoeff();

@@ -1,0 +1,58 @@
+#include "orbifit/detection/own_group.h"
+
+#include <gtest/gtest.h>
+
+#include "shapes.h"
+
+namespace orbifit {
+namespace {
+
+std::string symbol_of(const Mesh& mesh, double tolerance = 0.005) {
+  const PreparedMesh prepared = prepare(mesh);
+  const RunContext context;
+  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 2500, tolerance, context, "test");
+  const DirectionSet screen = hemisphere_directions(2000);
+  const std::optional<OwnGroup> group = find_own_group(patch, &screen, {}, context);
+  return group ? group->placement.group.symbol() : "C1";
+}
+
+class Prisms : public testing::TestWithParam<int> {};
+
+TEST_P(Prisms, HaveTheirSides) {
+  const int n = GetParam();
+  EXPECT_EQ(symbol_of(test::prism(n, 1, 1.4)), "D" + std::to_string(n) + "h");
+}
+
+INSTANTIATE_TEST_SUITE_P(Sides, Prisms, testing::Values(3, 5, 6, 7, 9, 12));
+
+TEST(OwnGroup, ManyFacetsAreACylinder) {
+  EXPECT_EQ(symbol_of(test::prism(64, 1, 1.4)), "Dinfh");
+  EXPECT_EQ(symbol_of(test::prism(64, 1, 0.2)), "Dinfh");
+}
+
+TEST(OwnGroup, TheToleranceDecidesWhatIsRound) {
+  EXPECT_EQ(symbol_of(test::prism(24, 1, 1), 0.01), "Dinfh");
+  EXPECT_EQ(symbol_of(test::prism(24, 1, 1), 0.0005), "D24h");
+}
+
+TEST(OwnGroup, NearMissesAreTold) {
+  EXPECT_EQ(symbol_of(test::box(1, 1.006, 2), 0.0008), "D2h");
+  EXPECT_EQ(symbol_of(test::box(1, 1.006, 2), 0.005), "D4h");
+  EXPECT_EQ(symbol_of(test::box(1, 1, 1)), "Oh");
+  EXPECT_EQ(symbol_of(test::box(1, 1.05, 1.1)), "D2h");
+}
+
+TEST(OwnGroup, NoneWhereThereIsNone) {
+  EXPECT_EQ(symbol_of(test::scalene()), "C1");
+}
+
+TEST(RotationOrders, DoNotTakeSmallTurnsForSymmetries) {
+  const Mesh mesh = test::prism(6, 1, 2);
+  const PreparedMesh prepared = prepare(mesh);
+  const RunContext context;
+  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 1000, 0.005, context, "test");
+  EXPECT_EQ(rotation_orders(patch, Eigen::Vector3d::UnitZ(), patch.moments.centroid, 1), (std::vector<int>{6, 3, 2}));
+}
+
+}  // namespace
+}  // namespace orbifit

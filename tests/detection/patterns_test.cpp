@@ -1,0 +1,66 @@
+#include "orbifit/detection/patterns.h"
+
+#include <gtest/gtest.h>
+
+#include "shapes.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+Arrangement named(const std::vector<Motion>& motions, const GroupPlacement* own = nullptr) {
+  return arrange(motions, own, {0.1, 0.2, 0}, 0.1, 0.002);
+}
+
+TEST(Arrange, RowsGridsAndBlocks) {
+  std::vector<Motion> row, grid, block;
+  for (int i = 0; i < 5; ++i) row.push_back(test::shift(0.3 * i, 0.1 * i, 0));
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 4; ++j) grid.push_back(test::shift(0.3 * i, 0.05 * i + 0.2 * j, 0));
+  }
+  for (int i = 0; i < 8; ++i) block.push_back(test::shift((i & 1) * 0.3, (i & 2) * 0.2, (i & 4) * 0.1));
+  EXPECT_EQ(named(row).kind, Pattern::Kind::translation_1d);
+  EXPECT_EQ(named(grid).kind, Pattern::Kind::translation_2d);
+  EXPECT_EQ(named(block).kind, Pattern::Kind::translation_3d);
+  EXPECT_LT((named(row).generators[0].translation.cwiseAbs() - Vector3d(0.3, 0.1, 0)).norm(), 1e-12);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    EXPECT_LT((named(grid).motions[i].translation - grid[i].translation).norm(), 1e-12);
+  }
+}
+
+TEST(Arrange, TwoCopiesOrScatteredOnesAreNoLattice) {
+  EXPECT_EQ(named({Motion{}, test::shift(0.3, 0, 0)}).kind, Pattern::Kind::congruent);
+  EXPECT_EQ(named({Motion{}, test::shift(0.3, 0, 0), test::shift(0.71, 0, 0)}).kind, Pattern::Kind::congruent);
+}
+
+TEST(Arrange, AGapLeavesARowARow) {
+  EXPECT_EQ(named({Motion{}, test::shift(0.2, 0, 0), test::shift(0.6, 0, 0)}).kind, Pattern::Kind::translation_1d);
+}
+
+TEST(Arrange, AnArcOfRotations) {
+  std::vector<Motion> arc;
+  for (int i = 0; i < 4; ++i) arc.push_back(Motion::rotation({0, 0, 1}, 0.4 * i, {1, 0, 0}));
+  const Arrangement found = named(arc);
+  ASSERT_EQ(found.kind, Pattern::Kind::rotation);
+  EXPECT_LT(motion_distance(found.generators[0], arc[1], {0, 0, 0}, 1), 1e-9);
+}
+
+TEST(Arrange, TheOwnGroupStraightensACopy) {
+  const GroupPlacement own{*PointGroup::parse("D4h"), GroupFrame::Identity(), Vector3d(0.1, 0.2, 0)};
+  std::vector<Motion> motions{Motion{}};
+  for (int i = 1; i < 4; ++i) {
+    motions.push_back(test::shift(0.3 * i, 0, 0) * Motion::rotation({0, 0, 1}, i * std::numbers::pi / 2, own.centre));
+  }
+  EXPECT_EQ(named(motions, &own).kind, Pattern::Kind::translation_1d);
+  const GroupPlacement round{*PointGroup::parse("Cinfv"), GroupFrame::Identity(), Vector3d(0.1, 0.2, 0)};
+  for (int i = 1; i < 4; ++i) {
+    motions[static_cast<std::size_t>(i)] =
+        test::shift(0.3 * i, 0, 0) * Motion::rotation({0, 0, 1}, 0.7 * i, round.centre);
+  }
+  EXPECT_EQ(named(motions, &round).kind, Pattern::Kind::translation_1d);
+  EXPECT_NE(named(motions).kind, Pattern::Kind::translation_1d);
+}
+
+}  // namespace
+}  // namespace orbifit

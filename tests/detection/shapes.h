@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+
+namespace orbifit::test {
+
+inline Mesh box(double x, double y, double z) {
+  Mesh mesh;
+  mesh.vertices.resize(8, 3);
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.row(i) << ((i & 1) != 0 ? x : -x) / 2, ((i & 2) != 0 ? y : -y) / 2, ((i & 4) != 0 ? z : -z) / 2;
+  }
+  mesh.faces.resize(12, 3);
+  mesh.faces << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7,
+      5;
+  return mesh;
+}
+
+// A right prism over a regular n-gon of circumradius r, with its two ends closed by fans from a corner.
+inline Mesh prism(int n, double radius, double height) {
+  Mesh mesh;
+  mesh.vertices.resize(2 * n, 3);
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    mesh.vertices.row(i) << radius * std::cos(angle), radius * std::sin(angle), -height / 2;
+    mesh.vertices.row(n + i) << radius * std::cos(angle), radius * std::sin(angle), height / 2;
+  }
+  mesh.faces.resize(2 * n + 2 * (n - 2), 3);
+  int row = 0;
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    mesh.faces.row(row++) << i, j, n + j;
+    mesh.faces.row(row++) << i, n + j, n + i;
+  }
+  for (int i = 1; i + 1 < n; ++i) {
+    mesh.faces.row(row++) << 0, i + 1, i;
+    mesh.faces.row(row++) << n, n + i, n + i + 1;
+  }
+  return mesh;
+}
+
+// A tetrahedron with six different edges: no symmetry at all.
+inline Mesh scalene() {
+  Mesh mesh;
+  mesh.vertices.resize(4, 3);
+  mesh.vertices << 0, 0, 0, 1, 0.07, 0.03, 0.21, 0.8, -0.05, 0.33, 0.26, 0.55;
+  mesh.faces.resize(4, 3);
+  mesh.faces << 0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3;
+  return mesh;
+}
+
+inline Mesh moved(Mesh mesh, const Motion& motion) {
+  mesh.vertices = (mesh.vertices * motion.linear.transpose()).rowwise() + motion.translation.transpose();
+  if (motion.linear.determinant() < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
+  return mesh;
+}
+
+inline Mesh joined(const std::vector<Mesh>& parts) {
+  Mesh mesh;
+  for (const Mesh& part : parts) {
+    const auto first = static_cast<int>(mesh.vertices.rows());
+    const Eigen::Index faces = mesh.faces.rows();
+    mesh.vertices.conservativeResize(first + part.vertices.rows(), 3);
+    mesh.vertices.bottomRows(part.vertices.rows()) = part.vertices;
+    mesh.faces.conservativeResize(faces + part.faces.rows(), 3);
+    mesh.faces.bottomRows(part.faces.rows()) = part.faces.array() + first;
+  }
+  return mesh;
+}
+
+inline std::vector<int> all_faces(const Mesh& mesh) {
+  std::vector<int> faces(static_cast<std::size_t>(mesh.faces.rows()));
+  std::iota(faces.begin(), faces.end(), 0);
+  return faces;
+}
+
+inline Motion shift(double x, double y, double z) {
+  return {Eigen::Matrix3d::Identity(), {x, y, z}};
+}
+
+}  // namespace orbifit::test
