@@ -310,9 +310,10 @@ class GltfReader {
     const std::int64_t first = builder_.vertices();
     const Accessor points = accessor(position, 3);
     if (first + points.count > kMostVertices) refuse(where, "too many vertices");
+    const bool moved = !world.isIdentity(0);
     for (std::int64_t v = 0; v < points.count; ++v) {
-      const Eigen::Vector4d local(points.value(v, 0), points.value(v, 1), points.value(v, 2), 1);
-      const Eigen::Vector3d point = (world * local).head<3>();
+      const Eigen::Vector3d local(points.value(v, 0), points.value(v, 1), points.value(v, 2));
+      const Eigen::Vector3d point = moved ? Eigen::Vector3d((world * local.homogeneous()).head<3>()) : local;
       builder_.add_vertex({point.x(), point.y(), point.z()}, 0);
     }
     std::vector<std::int64_t> corners;
