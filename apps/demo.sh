@@ -76,7 +76,7 @@ echo "== A generated chair"
 cat >chair_handles.json <<'JSON'
 { "handles": [ { "name": "seat", "centre": [0, 0, 0.43], "radius": 0.2, "translation": [0, 0, 0.06] },
                { "name": "one foot", "centre": [0.23, 0.23, 0], "radius": 0.08, "translation": [0.02, 0.02, 0] },
-               { "name": "crest", "centre": [0, 0.27, 0.93], "radius": 0.12, "translation": [0, 0.02, 0.12] } ] }
+               { "name": "crest", "centre": [0, 0.27, 0.93], "radius": 0.12, "translation": [0, 0.01, 0.09] } ] }
 JSON
 run chair_generate generate chair -o models
 run chair_detect detect models/chair.ply -o chair.json --preview chair_regions.png

@@ -11,7 +11,7 @@ namespace orbifit {
 namespace {
 
 // Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal.
-constexpr double kHold = 1e-10;
+constexpr double kHold = 1e-12;
 
 // A handle counts as the samples within r of its vertices, and at least as three.
 double weight_of(const Handle& handle, const Mesh& mesh, const PointIndex& samples, double radius) {

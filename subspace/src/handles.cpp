@@ -89,7 +89,11 @@ Handle read_handle(const Reader& reader, const Json& object, const std::string& 
   if (!object.is_object()) reader.fail(key, "must be an object");
   const std::string inside = key + ".";
   Handle handle;
-  handle.name = object.value("name", key);
+  handle.name = key;
+  if (object.contains("name")) {
+    if (!object.at("name").is_string()) reader.fail(inside + "name", "must be a text");
+    handle.name = object.at("name").get<std::string>();
+  }
   if (object.contains("vertices")) {
     handle.vertices = listed_vertices(reader, object.at("vertices"), inside + "vertices", mesh);
   } else {

@@ -1,0 +1,110 @@
+#include "orbifit/subspace/orbit.h"
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/orbit_model.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
+#include "orbifit/subspace/symmetric_basis.h"
+
+namespace orbifit {
+namespace {
+
+// One triangle, so that a point's regions are known, with two regions of the groups given.
+RegionMap two_regions(const std::vector<Motion>& a, const std::vector<Motion>& b, Mesh& mesh) {
+  mesh.vertices.resize(3, 3);
+  mesh.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  mesh.faces.resize(1, 3);
+  mesh.faces << 0, 1, 2;
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  annotation.regions.resize(2);
+  annotation.regions[0].name = "left";
+  annotation.regions[0].elements = a;
+  annotation.regions[1].name = "right";
+  annotation.regions[1].elements = b;
+  for (Region& region : annotation.regions) {
+    region.group = PointGroup{PointGroup::Family::Cs, 1};
+    region.faces = {0};
+  }
+  return {mesh, annotation, RunContext{}};
+}
+
+std::vector<Motion> mirror(const Eigen::Vector3d& normal, const Eigen::Vector3d& point) {
+  return {Motion{}, Motion::reflection(normal, point)};
+}
+
+TEST(Orbit, TwoMirrorsAtARightAngleGiveFourPoints) {
+  Mesh mesh;
+  const RegionMap regions = two_regions(mirror({1, 0, 0}, {0, 0, 0}), mirror({0, 1, 0}, {0, 0, 0}), mesh);
+  const Orbit orbit = orbit_of({0.3, 0.2, 0}, 0, regions, {});
+  EXPECT_EQ(orbit.points.size(), 4U);
+  EXPECT_TRUE(orbit.constraints.empty());
+}
+
+TEST(Orbit, MirrorsAtThirtyDegreesCloseToADihedralOrbit) {
+  Mesh mesh;
+  const RegionMap regions = two_regions(
+      mirror({1, 0, 0}, {0, 0, 0}), mirror(axis_rotation(Eigen::Vector3d::UnitZ(), M_PI / 6).col(0), {0, 0, 0}), mesh);
+  EXPECT_EQ(orbit_of({0.3, 0.2, 0}, 0, regions, {}).points.size(), 12U);
+}
+
+TEST(Orbit, RegionsThatDoNotCloseAreNamed) {
+  Mesh mesh;
+  const RegionMap regions = two_regions(mirror({1, 0, 0}, {0, 0, 0}), mirror({1, 0, 0}, {0.7, 0, 0}), mesh);
+  try {
+    orbit_of({0.3, 0.2, 0}, 0, regions, {});
+    FAIL() << "an endless orbit was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("left"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("right"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Orbit, APointOnAMirrorIsReachedTwice) {
+  Mesh mesh;
+  const RegionMap regions = two_regions(mirror({1, 0, 0}, {0, 0, 0}), {Motion{}}, mesh);
+  const Orbit orbit = orbit_of({0, 0.2, 0}, 0, regions, {});
+  ASSERT_EQ(orbit.points.size(), 1U);
+  ASSERT_EQ(orbit.constraints.size(), 1U);
+  EXPECT_EQ(orbit.constraints[0].other.frame, Eigen::Matrix3d(Eigen::Vector3d(-1, 1, 1).asDiagonal()));
+}
+
+TEST(Orbit, FixedPointIsFixedAndNearest) {
+  const Motion a = Motion::reflection({1, 0, 0}, {0.1, 0, 0});
+  const Motion b = Motion::reflection({0, 1, 0}, {0, -0.2, 0});
+  const Eigen::Vector3d fixed = fixed_point({0.3, 0.4, 0.5}, {a, b});
+  EXPECT_LT((fixed - Eigen::Vector3d(0.1, -0.2, 0.5)).norm(), 1e-14);
+}
+
+class OrbitOfGroup : public testing::TestWithParam<const char*> {};
+
+TEST_P(OrbitOfGroup, OfAGenericPointHasTheGroupsOrderAndFrames) {
+  OrbitOptions options;
+  options.frame = Random(3, GetParam()).rotation();
+  options.centre = {0.3, -0.2, 0.7};
+  const PointGroup group = PointGroup::parse(GetParam()).value();
+  const GeneratedModel model = generate_orbit(group, options);
+  const RegionMap regions(model.mesh, model.truth, RunContext{});
+  const Eigen::Vector3d seed = model.mesh.vertices.row(0);
+  const Orbit orbit = orbit_of(seed, 0, regions, {});
+  ASSERT_EQ(static_cast<int>(orbit.points.size()), group.order());
+  EXPECT_TRUE(orbit.constraints.empty());
+  for (const OrbitPoint& point : orbit.points) {
+    EXPECT_LT((point.motion(seed) - point.position).norm(), 1e-13);
+    EXPECT_LT((point.motion.linear - point.transport.frame).norm(), 1e-13);
+    // A common translation t of seed and group moves every image by t: frame t + (1 - frame) t.
+    ASSERT_LE(point.transport.carried.size(), 1U);
+    if (!point.transport.carried.empty()) {
+      EXPECT_LT((point.transport.frame + point.transport.carried[0].second - Eigen::Matrix3d::Identity()).norm(),
+                1e-13);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Groups, OrbitOfGroup,
+                         testing::Values("Cs", "Ci", "C2", "C5", "C4v", "C6h", "D3", "D4h", "D3d", "S4", "S6", "T",
+                                         "Td", "Th", "O", "Oh", "I", "Ih"));
+
+}  // namespace
+}  // namespace orbifit
