@@ -15,6 +15,8 @@ namespace {
 std::atomic<bool> interrupted{false};  // NOLINT(readability-identifier-naming): written by the signal handler
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+constexpr int kWidth = 30;  // of the bar, characters
+
 void write_line(const std::string& line) {
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
@@ -30,7 +32,6 @@ Console::~Console() {
 
 void Console::progress(std::string_view stage, double fraction) {
   if (quiet_ || !terminal_) return;
-  constexpr int kWidth = 30;
   const double part = std::clamp(fraction, 0.0, 1.0);
   const int filled = static_cast<int>(std::lround(part * kWidth));
   std::string line = std::string(stage) + " [" + std::string(static_cast<std::size_t>(filled), '#') +

@@ -16,14 +16,15 @@ namespace orbifit::commands {
 
 namespace {
 
+constexpr std::array<std::string_view, 3> kScanEndings{".pcd", ".xyz", ".pts"};
+
 struct ConvertArguments {
   std::string input, output;
   bool points = false;
 };
 
 bool is_scan_file(const std::string& file) {
-  constexpr std::array<std::string_view, 3> kEndings{".pcd", ".xyz", ".pts"};
-  return std::ranges::find(kEndings, lower_extension(file)) != kEndings.end();
+  return std::ranges::find(kScanEndings, lower_extension(file)) != kScanEndings.end();
 }
 
 }  // namespace

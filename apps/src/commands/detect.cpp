@@ -16,6 +16,8 @@ namespace orbifit::commands {
 
 namespace {
 
+constexpr std::size_t kMostPictures = 24;  // in one preview
+
 struct DetectArguments {
   std::string mesh, output, preview, colour;
   std::vector<double> up{0, 0, 1};
@@ -94,7 +96,6 @@ Points region_colours(const Mesh& mesh, const std::vector<Region>& regions) {
 
 void write_preview(const DetectArguments& arguments, const Mesh& mesh, const SymmetryAnnotation& found,
                    const RunContext& run) {
-  constexpr std::size_t kMostPictures = 24;
   ViewOptions view;
   view.width = 480;
   view.height = 360;

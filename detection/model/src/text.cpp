@@ -9,6 +9,8 @@ namespace orbifit {
 
 namespace {
 
+constexpr std::size_t kLongest = 40;  // of a quotation
+
 bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
@@ -127,7 +129,6 @@ std::string place(long long line, std::string_view element, long long number) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
   std::string result(text.substr(0, kLongest));
   std::ranges::replace_if(
       result, [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e; }, '?');
