@@ -13,20 +13,13 @@ namespace orbifit {
 
 namespace {
 
-constexpr int kIterations = 40;
+constexpr int kIterations = 60;
 constexpr int kFewestPairs = 6;
 constexpr double kFirstReach = 0.25;       // of the diagonal: pairs farther apart are not the same place
 constexpr double kDirectionNoise = 0.003;  // of the diagonal
+constexpr double kRobustDecay = 0.92;      // an iteration: what is far at first may be near later
 constexpr double kLeastRobust = 0.004;     // of the diagonal
 constexpr double kStill = 1e-6;            // of the diagonal: ICP stops at smaller steps
-
-double median_distance(const std::vector<Correspondence>& pairs) {
-  std::vector<double> distances;
-  for (const Correspondence& pair : pairs) distances.push_back(pair.distance);
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -62,7 +55,7 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
     options.max_distance = kFirstReach * size;
     options.direction_noise = kDirectionNoise * size;
     options.robust_scale = robust;
-    options.trim = 0.85;
+    options.trim = 0.95;
     const Points points = to_template(pose, scan.points);
     const auto pairs = find_correspondences(surface, points, normals_to_template(pose, scan.normals), options, context);
     if (static_cast<int>(pairs.size()) < kFewestPairs) return start;
@@ -82,8 +75,8 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
     const Motion motion = small_motion(step.head<3>() / size, step.tail<3>(), pivot);
     // The motion moves the scan in the template's frame: pose^-1 becomes motion pose^-1.
     pose = pose * Similarity{1, motion.linear.transpose(), -(motion.linear.transpose() * motion.translation)};
-    robust = std::max(kLeastRobust * size, std::min(robust, 2.5 * median_distance(pairs)));
-    if (step.norm() < kStill * size) break;
+    robust = std::max(kLeastRobust * size, kRobustDecay * robust);
+    if (step.norm() < kStill * size && robust <= kLeastRobust * size) break;
   }
   return pose;
 }

@@ -1,0 +1,118 @@
+#include "orbifit/fitting/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/virtual_scan.h"
+#include "orbifit/fitting/correspondences.h"
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+namespace {
+
+double worst_offset(const Similarity& a, const Similarity& b, const Points& points) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    worst = std::max(worst, (a(points.row(i).transpose()) - b(points.row(i).transpose())).norm());
+  }
+  return worst / diagonal(points);
+}
+
+Similarity random_similarity(Random& random, double scale, double angle, double shift) {
+  return {scale, axis_rotation(random.direction(), angle), shift * random.direction()};
+}
+
+TEST(Alignment, LandmarksGiveTheSimilarityBack) {
+  const Mesh mesh = generate("chair").mesh;
+  Random random(2);
+  const Similarity truth = random_similarity(random, 2.5, 2.2, 4);
+  std::vector<Landmark> landmarks;
+  for (const int vertex : {3, 700, 4000, 9000}) {
+    landmarks.push_back({vertex, truth(mesh.vertices.row(vertex).transpose())});
+  }
+  EXPECT_LT(worst_offset(align_landmarks(mesh, landmarks), truth, mesh.vertices), 1e-12);
+}
+
+TEST(Alignment, FewLandmarksGiveATranslation) {
+  const Mesh mesh = generate("chair").mesh;
+  const Eigen::Vector3d shift(1, 2, 3);
+  const Similarity found = align_landmarks(
+      mesh, {{5, mesh.vertices.row(5).transpose() + shift}, {90, mesh.vertices.row(90).transpose() + shift}});
+  EXPECT_LT(worst_offset(found, {1, Eigen::Matrix3d::Identity(), shift}, mesh.vertices), 1e-12);
+}
+
+class RigidAlignment : public testing::TestWithParam<int> {};
+
+// The truth perturbed by less than half the distance between slats, beyond which one slat is taken for the next.
+TEST_P(RigidAlignment, FindsASmallMotionFromOneSide) {
+  const Mesh mesh = generate("chair").mesh;
+  RunContext context;
+  Random random(static_cast<std::uint64_t>(GetParam()));
+  const Similarity truth = random_similarity(random, 1, 0.06, 0.03);
+  ScanOptions options;
+  options.views = 2;
+  PointCloud scan = virtual_scan(mesh, options, context);
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    scan.points.row(i) = truth(scan.points.row(i).transpose()).transpose();
+  }
+  scan.viewpoints.resize(0, 3);
+  const PreparedScan prepared = prepare_scan(scan, {}, context);
+  EXPECT_LT(worst_offset(align_rigidly(mesh, prepared, Similarity{}, context), truth, mesh.vertices), 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RigidAlignment, testing::Values(1, 2, 3, 4));
+
+TEST(Alignment, TemplateFrameIsTheInverseOfThePose) {
+  Random random(8);
+  const Similarity pose = random_similarity(random, 0.3, 1.1, 5);
+  const Mesh mesh = generate("bar").mesh;
+  Points posed = mesh.vertices;
+  for (Eigen::Index i = 0; i < posed.rows(); ++i) posed.row(i) = pose(posed.row(i).transpose()).transpose();
+  EXPECT_LT((to_template(pose, posed) - mesh.vertices).norm(), 1e-10);
+}
+
+TEST(Correspondences, OfPointsBesideAFlatFaceAreTheirFeet) {
+  Mesh mesh;
+  mesh.vertices.resize(3, 3);
+  mesh.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  mesh.faces.resize(1, 3);
+  mesh.faces << 0, 1, 2;
+  Points points(4, 3);
+  points << 0.2, 0.2, 0.1, 0.2, 0.2, -0.3, 0.2, 0.2, 0.2, 0.2, 0.2, 5;
+  Points normals(4, 3);
+  normals << 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1;  // the third does not face the triangle, the fourth is too far
+  CorrespondenceOptions options;
+  options.max_distance = 1;
+  options.robust_scale = 0.1;
+  options.trim = 1;
+  const auto pairs = find_correspondences(MatchSurface(mesh), points, normals, options, RunContext{});
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_EQ(pairs[0].scan_point, 0);
+  EXPECT_NEAR(pairs[0].distance, 0.1, 1e-15);
+  EXPECT_NEAR(pairs[0].weight, 0.25, 1e-12);  // 1 / (1 + 1)^2
+  EXPECT_EQ(pairs[1].scan_point, 1);
+  options.trim = 0.5;
+  EXPECT_EQ(find_correspondences(MatchSurface(mesh), points, normals, options, RunContext{}).size(), 1U);
+}
+
+TEST(Correspondences, AcrossAnEdgePointAwayFromIt) {
+  Mesh mesh;
+  mesh.vertices.resize(3, 3);
+  mesh.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  mesh.faces.resize(1, 3);
+  mesh.faces << 0, 1, 2;
+  Points points(1, 3);
+  points << 0.3, -0.5, 0;
+  Points normals(1, 3);
+  normals << 0, 0, 1;
+  CorrespondenceOptions options;
+  options.max_distance = 1;
+  options.robust_scale = 1;
+  options.direction_noise = 1e-6;
+  const auto pairs = find_correspondences(MatchSurface(mesh), points, normals, options, RunContext{});
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_GT(std::abs(pairs[0].normal.y()), 0.999);
+}
+
+}  // namespace
+}  // namespace orbifit

@@ -1,0 +1,143 @@
+#include "orbifit/fitting/fit.h"
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/datasets_tools/virtual_scan.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* model;
+  std::map<std::string, double> parameters;  // of the truth; the template has the defaults
+};
+
+class FitOfModel : public testing::TestWithParam<Case> {
+ protected:
+  FitOfModel() : template_(generate(GetParam().model)), truth_(generate(GetParam().model, GetParam().parameters)) {
+    ScanOptions options;
+    options.noise = 0.0005;
+    scan_ = virtual_scan(truth_.mesh, options, context_);
+    result_ = fit({template_.mesh, template_.truth, scan_, Similarity{}, {}, {}}, {}, context_);
+  }
+
+  RunContext context_;
+  GeneratedModel template_, truth_;
+  PointCloud scan_;
+  FitResult result_;
+};
+
+TEST_P(FitOfModel, ExplainsTheScanAndCompletesWhatItDidNotSee) {
+  ASSERT_TRUE(result_.converged) << result_.stopped_because;
+  EXPECT_GT(result_.inlier_fraction, 0.97);
+  EXPECT_GT(result_.hidden_fraction, 0.2);
+  const Eigen::VectorXd errors =
+      (result_.fitted.vertices - truth_.mesh.vertices).rowwise().norm() / diagonal(truth_.mesh.vertices);
+  double hidden = 0;
+  int count = 0;
+  for (Eigen::Index v = 0; v < errors.size(); ++v) {
+    if (result_.seen[static_cast<std::size_t>(v)] != 0) continue;
+    hidden += errors[v];
+    ++count;
+  }
+  const Eigen::VectorXd before =
+      (template_.mesh.vertices - truth_.mesh.vertices).rowwise().norm() / diagonal(truth_.mesh.vertices);
+  EXPECT_LT(hidden / count, 0.015);
+  EXPECT_LT(hidden / count, 0.5 * before.mean());
+}
+
+TEST_P(FitOfModel, KeepsTheWholesGroupExactly) {
+  SymmetryAnnotation whole = result_.annotation;
+  whole.patterns.clear();
+  std::erase_if(whole.regions, [&](const Region& region) {
+    return static_cast<Eigen::Index>(region.faces.size()) != template_.mesh.faces.rows();
+  });
+  ASSERT_FALSE(whole.regions.empty());
+  EXPECT_LT(symmetry_residual(result_.fitted, whole, nullptr, CarriedMotions::fixed, context_).worst_floor, 1e-12);
+}
+
+TEST_P(FitOfModel, IsTheSameWithTwoThreads) {
+  RunContext two;
+  two.threads = 2;
+  const FitResult again = fit({template_.mesh, template_.truth, scan_, Similarity{}, {}, {}}, {}, two);
+  EXPECT_EQ(again.fitted.vertices, result_.fitted.vertices);
+}
+
+std::string case_name(const testing::TestParamInfo<Case>& info) {
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, FitOfModel,
+    testing::Values(Case{"table", "table", {{"width", 1.0}, {"height", 0.78}}},
+                    Case{"chair", "chair", {{"seat_width", 0.48}, {"seat_depth", 0.48}, {"leg_height", 0.46}}}),
+    case_name);
+
+TEST(Fit, OfTheTemplateToItsOwnScanIsTheTemplate) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  ScanOptions options;
+  options.views = 3;
+  const PointCloud scan = virtual_scan(model.mesh, options, context);
+  const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}, {}, {}}, {}, context);
+  EXPECT_TRUE(result.converged);
+  const double worst = (result.fitted.vertices - model.mesh.vertices).rowwise().norm().maxCoeff();
+  EXPECT_LT(worst, 0.01 * diagonal(model.mesh.vertices));
+}
+
+TEST(Fit, OfAScanOfSomethingElseSaysThatItFailed) {
+  RunContext context;
+  const GeneratedModel model = generate("chair");
+  PointCloud scan;
+  Random random(5);
+  scan.points.resize(3000, 3);
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    scan.points.row(i) = (Eigen::Vector3d(4, 4, 4) + 2 * random.direction()).transpose();
+  }
+  const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}, {}, {}}, {}, context);
+  EXPECT_FALSE(result.converged);
+  EXPECT_FALSE(result.stopped_because.empty());
+}
+
+TEST(Fit, LandmarksTakePrecedenceOverThePose) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  const Similarity far{1.5, axis_rotation(Eigen::Vector3d::UnitX(), 2), {10, -3, 5}};
+  PointCloud scan = virtual_scan(model.mesh, {}, context);
+  for (Points* points : {&scan.points, &scan.viewpoints}) {
+    for (Eigen::Index i = 0; i < points->rows(); ++i) {
+      points->row(i) = far(points->row(i).transpose()).transpose();
+    }
+  }
+  FitInput input{model.mesh, model.truth, scan, Similarity{}, {}, {}};
+  for (const int vertex : {0, 1500, 3000, 5000}) {
+    input.landmarks.push_back({vertex, far(model.mesh.vertices.row(vertex).transpose())});
+  }
+  const FitResult result = fit(input, {}, context);
+  EXPECT_TRUE(result.converged) << result.stopped_because;
+  EXPECT_LT(result.landmark_rms, 0.01);
+  EXPECT_NEAR(result.pose.scale, 1.5, 1e-9);
+}
+
+TEST(Fit, RefusesAnEmptyScanAndOptionsThatMakeNoSense) {
+  const GeneratedModel model = generate("bar");
+  const PointCloud empty;
+  EXPECT_THROW(fit({model.mesh, model.truth, empty, Similarity{}, {}, {}}, {}, RunContext{}), InputError);
+  FitOptions options;
+  options.trim = 0;
+  EXPECT_THROW(options.validate(), UsageError);
+  options = {};
+  options.last_stiffness = 20;
+  EXPECT_THROW(options.validate(), UsageError);
+  options = {};
+  options.most_iterations = 5;
+  EXPECT_THROW(options.validate(), UsageError);
+}
+
+}  // namespace
+}  // namespace orbifit

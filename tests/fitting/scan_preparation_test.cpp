@@ -1,0 +1,64 @@
+#include "orbifit/fitting/scan_preparation.h"
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+namespace {
+
+PointCloud sphere_scan(int count, const Eigen::Vector3d& centre) {
+  Random random(3);
+  PointCloud scan;
+  scan.points.resize(count, 3);
+  for (int i = 0; i < count; ++i) scan.points.row(i) = (centre + random.direction()).transpose();
+  return scan;
+}
+
+class PreparedSphere : public testing::TestWithParam<double> {};
+
+TEST_P(PreparedSphere, HasTheSpheresNormalsHoweverFarItLies) {
+  const Eigen::Vector3d centre = GetParam() * Eigen::Vector3d(1, -2, 0.5);
+  PointCloud scan = sphere_scan(4000, centre);
+  const PreparedScan prepared = prepare_scan(scan, {}, RunContext{});
+  ASSERT_EQ(prepared.normals.rows(), prepared.points.rows());
+  EXPECT_FALSE(prepared.normals_oriented);
+  for (Eigen::Index i = 0; i < prepared.points.rows(); ++i) {
+    const Eigen::Vector3d radial = (prepared.points.row(i).transpose() - centre).normalized();
+    EXPECT_GT(std::abs(radial.dot(prepared.normals.row(i).transpose())), 0.97);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Offsets, PreparedSphere, testing::Values(0.0, 1e4));
+
+TEST(ScanPreparation, TurnsNormalsTowardsTheViewpoint) {
+  PointCloud scan = sphere_scan(1000, {0, 0, 0});
+  scan.viewpoints.resize(1, 3);
+  scan.viewpoints << 0, 0, 9;
+  const PreparedScan prepared = prepare_scan(scan, {}, RunContext{});
+  EXPECT_TRUE(prepared.normals_oriented);
+  for (Eigen::Index i = 0; i < prepared.points.rows(); ++i) {
+    EXPECT_GE(prepared.normals.row(i).dot(scan.viewpoints.row(0) - prepared.points.row(i)), 0);
+  }
+}
+
+TEST(ScanPreparation, KeepsNearlyAsManyPointsAsAllowedAndSpreadsThem) {
+  ScanPreparationOptions options;
+  options.most_points = 500;
+  const PreparedScan prepared = prepare_scan(sphere_scan(20000, {0, 0, 0}), options, RunContext{});
+  EXPECT_LE(prepared.points.rows(), 500);
+  EXPECT_GT(prepared.points.rows(), 400);
+  EXPECT_GT(prepared.spacing, 0.03);
+}
+
+TEST(ScanPreparation, RefusesTooFewPointsAndPointsAtOnePlace) {
+  EXPECT_THROW(prepare_scan(sphere_scan(9, {0, 0, 0}), {}, RunContext{}), InputError);
+  PointCloud one;
+  one.points = Points::Ones(50, 3);
+  EXPECT_THROW(prepare_scan(one, {}, RunContext{}), InputError);
+}
+
+}  // namespace
+}  // namespace orbifit
