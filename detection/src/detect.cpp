@@ -54,6 +54,7 @@ class Detector {
     context_.progress("parts", 0);
     survey_ = survey_components(prepared_, options_.tolerance, kLeastShare, context_);
     if (survey_.moments.size() > 1) {
+      mover_.emplace(prepared_, survey_, *whole_index_, options_.tolerance, context_);
       own_groups_.resize(survey_.classes.size());
       for (std::size_t c = 0; c < survey_.classes.size() && !late(); ++c) {
         context_.progress("parts", static_cast<double>(c) / static_cast<double>(survey_.classes.size()));
@@ -63,6 +64,8 @@ class Detector {
         context_.progress("sets", static_cast<double>(c) / static_cast<double>(survey_.classes.size()));
         find_set_group(c);
       }
+      context_.progress("subgroups", 0);
+      find_subgroup_regions();
       remove_repeats();
       find_patterns(annotation);
     }
@@ -119,7 +122,7 @@ class Detector {
 
   // Principal axes suffice unless variances are close, or the part is a large share of the whole.
   bool needs_screen(const SurfaceMoments& moments) const {
-    if (moments.area > 0.05 * prepared_.area) return true;
+    if (moments.area > 0.1 * prepared_.area) return true;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
     const Vector3d d = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
     return d[2] - d[0] < 0.05 * d[2];
@@ -146,21 +149,40 @@ class Detector {
     });
   }
 
+  bool verified(const GroupPlacement& placement, const std::vector<int>& components) const {
+    const SurfacePatch patch =
+        make_patch(prepared_, faces_of(components), kPartSamples, options_.tolerance, context_, "grown");
+    const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    return passes(verify(patch, motions, tolerance, 0, VerificationLimits{}.joint, context_));
+  }
+
+  // Smaller groups on more of the surface: a subgroup may permute parts that the group itself does not.
+  void find_subgroup_regions() {
+    constexpr std::size_t kMostGroups = 30;
+    constexpr double kMaterial = 1.05;
+    std::ranges::stable_sort(found_, std::greater<>(), &Found::area);
+    const std::vector<Found> groups(found_.begin(),
+                                    found_.begin() + static_cast<std::ptrdiff_t>(std::min(found_.size(), kMostGroups)));
+    for (const Found& each : groups) {
+      if (late()) return;
+      for (SubgroupRegion& region : mover_->subgroup_regions(each.placement, each.components)) {
+        if (each.components.size() == 1) drop_siblings(region.components, each.components.front());
+        const double area = area_of(region.components);
+        if (area < kMaterial * each.area || already_known(region.placement, region.components)) continue;
+        if (verified(region.placement, region.components)) {
+          found_.push_back({region.placement, region.components, area, name_of(region.components)});
+        }
+      }
+    }
+  }
+
   // Adds a region for a group known on `seed`, grown to all components that the group permutes.
   void add(const GroupPlacement& placement, const std::vector<int>& seed, const std::string& name) {
     if (already_known(placement, seed)) return;
-    std::vector<int> grown =
-        permuted_components(prepared_, survey_, *whole_index_, placement, seed, options_.tolerance, context_);
+    std::vector<int> grown = mover_->permuted(placement, seed);
     if (seed.size() == 1) drop_siblings(grown, seed.front());
-    if (grown.size() > seed.size()) {
-      const SurfacePatch patch =
-          make_patch(prepared_, faces_of(grown), kPartSamples, options_.tolerance, context_, "grown");
-      double tolerance = patch.tolerance;
-      if (placement.group.continuous()) tolerance = continuous_tolerance(patch);
-      const Verification verification =
-          verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0, 0, context_);
-      if (!passes(verification)) grown = seed;
-    }
+    if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
     if (area < kLeastShare * prepared_.area) return;
     found_.push_back({placement, grown, area, grown.size() == seed.size() ? name : name_of(grown)});
@@ -222,7 +244,8 @@ class Detector {
         make_patch(prepared_, faces_of(kind.members),
                    kPartSamples + 40 * static_cast<int>(std::min<std::size_t>(kind.members.size(), 40)),
                    options_.tolerance, context_, "set");
-    const std::optional<OwnGroup> group = find_own_group(patch, &screen_, hints(), context_);
+    const std::optional<OwnGroup> group =
+        find_own_group(patch, needs_screen(patch.moments) ? &screen_ : nullptr, hints(), context_);
     if (!group) return;
     add(group->placement, kind.members, name_of(kind.members));
   }
@@ -349,6 +372,7 @@ class Detector {
   DirectionSet screen_;
   std::shared_ptr<const SurfaceIndex> whole_index_;
   ComponentSurvey survey_;
+  std::optional<ComponentMover> mover_;
   std::vector<std::optional<GroupPlacement>> own_groups_;  // of each class's first member
   std::vector<Found> found_;
 };

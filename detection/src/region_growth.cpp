@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "orbifit/detection/verification.h"
-#include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {
@@ -25,6 +26,50 @@ constexpr double kKeptShare = 0.9;
 
 bool rotates_all(const PointGroup& group) {
   return group.family == Family::K || group.family == Family::Kh;
+}
+
+constexpr int kMostElements = 150;
+constexpr std::size_t kMostMasks = 12;
+
+// Subgroups whose elements all lie in one of the masks, largest first: closures of pairs of elements.
+std::vector<std::vector<char>> subgroups_within(const std::vector<Matrix3d>& linear,
+                                                const std::vector<std::vector<char>>& masks) {
+  const std::size_t order = linear.size();
+  std::vector<std::vector<std::size_t>> product(order, std::vector<std::size_t>(order, 0));
+  for (std::size_t a = 0; a < order; ++a) {
+    for (std::size_t b = 0; b < order; ++b) {
+      const Matrix3d wanted = linear[a] * linear[b];
+      for (std::size_t c = 0; c < order; ++c) {
+        if ((linear[c] - wanted).cwiseAbs().maxCoeff() < 1e-6) product[a][b] = c;
+      }
+    }
+  }
+  std::vector<std::vector<char>> found;
+  for (const std::vector<char>& mask : masks) {
+    for (std::size_t a = 1; a < order; ++a) {
+      for (std::size_t b = a; b < order; ++b) {
+        if (mask[a] == 0 || mask[b] == 0) continue;
+        std::vector<char> members(order, 0);
+        members[0] = 1;
+        std::vector<std::size_t> open{0};
+        bool inside = true;
+        while (!open.empty() && inside) {
+          const std::size_t last = open.back();
+          open.pop_back();
+          for (const std::size_t next : {product[a][last], product[b][last]}) {
+            if (members[next] != 0) continue;
+            inside = inside && mask[next] != 0;
+            members[next] = 1;
+            open.push_back(next);
+          }
+        }
+        if (inside && std::ranges::find(found, members) == found.end()) found.push_back(members);
+      }
+    }
+  }
+  std::ranges::stable_sort(found, std::greater<>(),
+                           [](const std::vector<char>& m) { return std::ranges::count(m, 1); });
+  return found;
 }
 
 // Whether the element is one of the continuous group about the axis, to an angle.
@@ -80,57 +125,76 @@ bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, co
   });
 }
 
-std::vector<int> permuted_components(const PreparedMesh& prepared, const ComponentSurvey& survey,
-                                     const SurfaceIndex& whole, const GroupPlacement& placement,
-                                     const std::vector<int>& seed, double tolerance, const RunContext& context) {
-  const std::size_t count = survey.moments.size();
+ComponentMover::ComponentMover(const PreparedMesh& prepared, const ComponentSurvey& survey, const SurfaceIndex& whole,
+                               double tolerance, const RunContext& context)
+    : prepared_(prepared),
+      survey_(survey),
+      whole_(whole),
+      tolerance_(tolerance),
+      context_(context),
+      samples_(survey.moments.size()) {
+  Points centroids(static_cast<Eigen::Index>(survey.moments.size()), 3);
+  for (std::size_t c = 0; c < survey.moments.size(); ++c) {
+    centroids.row(static_cast<Eigen::Index>(c)) = survey.moments[c].centroid;
+  }
+  centroids_ = std::make_unique<PointIndex>(centroids);
+}
+
+int ComponentMover::image(std::size_t component, const Motion& motion, double reach) {
+  const SurfaceMoments& mine = survey_.moments[component];
+  if (mine.area <= 0) return -1;
+  int target = -1;
+  for (const PointIndex::Neighbour& near : centroids_->within(motion(mine.centroid), 1.5 * reach)) {
+    const SurfaceMoments& other = survey_.moments[static_cast<std::size_t>(near.index)];
+    if (std::abs(other.area - mine.area) > 0.05 * mine.area) continue;
+    if (std::abs(other.radius - mine.radius) > 2 * reach) continue;
+    target = near.index;
+    break;
+  }
+  if (target < 0) return -1;
+  SurfaceSamples& samples = samples_[component];
+  if (samples.faces.empty()) {
+    std::vector<int> visible;
+    for (const int f : prepared_.components.faces[component]) {
+      if (prepared_.areas[f] > 0) visible.push_back(f);
+    }
+    Random random(context_.seed, "growth");
+    samples = sample_surface(prepared_.mesh, kComponentSamples, random, visible);
+  }
+  int hits = 0;
+  for (Eigen::Index s = 0; s < samples.points.rows(); ++s) {
+    const Vector3d normal = motion.linear * samples.normals.row(s).transpose();
+    const Vector3d place = motion(samples.points.row(s));
+    if (whole_.nearest_facing(place, normal, kNormalCosine, reach, true).face >= 0) ++hits;
+    if (s + 1 - hits > (1 - kKeptShare) * kComponentSamples) return -1;
+  }
+  return target;
+}
+
+double ComponentMover::reach_of(std::size_t component, const PointGroup& group) const {
+  const SurfaceMoments& moments = survey_.moments[component];
+  const double reach = tolerance_ * std::min(1.0, 4 * moments.diagonal);
+  return group.continuous() ? std::min(reach, 2 * tolerance_ * std::max(moments.radius, 1e-9)) : reach;
+}
+
+std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const std::vector<int>& seed) {
+  const std::size_t count = survey_.moments.size();
   std::vector<char> in(count, 0);
   for (const int c : seed) in[static_cast<std::size_t>(c)] = 1;
   if (seed.size() == count) return seed;
-  Points centroids(static_cast<Eigen::Index>(count), 3);
-  for (std::size_t c = 0; c < count; ++c) centroids.row(static_cast<Eigen::Index>(c)) = survey.moments[c].centroid;
-  const PointIndex index(centroids);
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-
-  // images[c]: the components onto which the group carries c; empty when it does not.
+  // images[c]: the components onto which the group carries c; empty for the seed.
   std::vector<std::vector<int>> images(count);
   for (std::size_t c = 0; c < count; ++c) {
-    context.check();
-    const SurfaceMoments& mine = survey.moments[c];
-    if (in[c] != 0 || mine.area <= 0) continue;
-    const double close = tolerance * std::min(1.0, 4 * mine.diagonal);
+    context_.check();
+    if (in[c] != 0) continue;
+    const double reach = reach_of(c, placement.group);
     std::vector<int> targets;
-    const bool placed = std::ranges::all_of(motions, [&](const Motion& motion) {
-      for (const PointIndex::Neighbour& near : index.within(motion(mine.centroid), 1.5 * close)) {
-        const SurfaceMoments& other = survey.moments[static_cast<std::size_t>(near.index)];
-        if (std::abs(other.area - mine.area) > 0.05 * mine.area) continue;
-        if (std::abs(other.radius - mine.radius) > 2 * close) continue;
-        targets.push_back(near.index);
-        return true;
-      }
-      return false;
-    });
-    if (!placed) continue;
-    std::vector<int> visible;
-    for (const int f : prepared.components.faces[c]) {
-      if (prepared.areas[f] > 0) visible.push_back(f);
-    }
-    Random random(context.seed, "growth");
-    const SurfaceSamples samples = sample_surface(prepared.mesh, kComponentSamples, random, visible);
-    const double bound =
-        placement.group.continuous() ? std::min(close, 2 * tolerance * std::max(mine.radius, 1e-9)) : close;
     const bool kept = std::ranges::all_of(motions, [&](const Motion& motion) {
-      int hits = 0;
-      for (Eigen::Index s = 0; s < samples.points.rows(); ++s) {
-        const Vector3d normal = motion.linear * samples.normals.row(s).transpose();
-        const Vector3d image = motion(samples.points.row(s));
-        if (whole.nearest_facing(image, normal, kNormalCosine, bound, true).face >= 0) ++hits;
-      }
-      return hits >= kKeptShare * kComponentSamples;
+      targets.push_back(image(c, motion, reach));
+      return targets.back() >= 0;
     });
     if (!kept) continue;
-    std::ranges::sort(targets);
-    targets.erase(std::ranges::unique(targets).begin(), targets.end());
     images[c] = std::move(targets);
     in[c] = 1;
   }
@@ -138,8 +202,7 @@ std::vector<int> permuted_components(const PreparedMesh& prepared, const Compone
     changed = false;
     for (std::size_t c = 0; c < count; ++c) {
       if (in[c] == 0 || images[c].empty()) continue;
-      const bool stays = std::ranges::all_of(images[c], [&](int t) { return in[static_cast<std::size_t>(t)] != 0; });
-      if (stays) continue;
+      if (std::ranges::all_of(images[c], [&](int t) { return in[static_cast<std::size_t>(t)] != 0; })) continue;
       in[c] = 0;
       changed = true;
     }
@@ -147,6 +210,75 @@ std::vector<int> permuted_components(const PreparedMesh& prepared, const Compone
   std::vector<int> result;
   for (std::size_t c = 0; c < count; ++c) {
     if (in[c] != 0) result.push_back(static_cast<int>(c));
+  }
+  return result;
+}
+
+std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacement& placement,
+                                                             const std::vector<int>& seed) {
+  std::vector<SubgroupRegion> result;
+  if (placement.group.continuous() || placement.group.order() < 4 || placement.group.order() > kMostElements)
+    return result;
+  std::vector<Matrix3d> linear = elements(placement.group, placement.frame);
+  const std::size_t order = linear.size();
+  const std::size_t count = survey_.moments.size();
+  std::vector<char> in_seed(count, 0);
+  for (const int c : seed) in_seed[static_cast<std::size_t>(c)] = 1;
+
+  // images[c][g]: where element g carries c, -1 for nowhere. What is in the seed stays in it.
+  std::vector<std::vector<int>> images(count);
+  std::vector<std::vector<char>> distinct;
+  for (std::size_t c = 0; c < count; ++c) {
+    context_.check();
+    if (in_seed[c] != 0) continue;
+    const double reach = reach_of(c, placement.group);
+    images[c].assign(order, -1);
+    images[c][0] = static_cast<int>(c);
+    std::vector<char> mask(order, 0);
+    mask[0] = 1;
+    bool moved = false;
+    for (std::size_t g = 1; g < order; ++g) {
+      images[c][g] = image(c, Motion::about(linear[g], placement.centre), reach);
+      mask[g] = images[c][g] >= 0 ? 1 : 0;
+      moved = moved || mask[g] != 0;
+    }
+    if (moved && std::ranges::find(distinct, mask) == distinct.end()) distinct.push_back(mask);
+  }
+  if (distinct.empty() || distinct.size() > kMostMasks) return result;
+
+  for (const std::vector<char>& members : subgroups_within(linear, distinct)) {
+    std::vector<char> in(count, 0);
+    for (std::size_t c = 0; c < count; ++c) {
+      in[c] = in_seed[c];
+      if (images[c].empty()) continue;
+      in[c] = 1;
+      for (std::size_t g = 0; g < order; ++g) {
+        if (members[g] != 0 && images[c][g] < 0) in[c] = 0;
+      }
+    }
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::size_t c = 0; c < count; ++c) {
+        if (in[c] == 0 || images[c].empty()) continue;
+        for (std::size_t g = 0; g < order; ++g) {
+          if (members[g] == 0 || in[static_cast<std::size_t>(images[c][g])] != 0) continue;
+          in[c] = 0;
+          changed = true;
+          break;
+        }
+      }
+    }
+    std::vector<Matrix3d> kept;
+    for (std::size_t g = 0; g < order; ++g) {
+      if (members[g] != 0) kept.push_back(linear[g]);
+    }
+    const std::optional<ClassifiedGroup> known = classify(kept);
+    if (!known) continue;
+    SubgroupRegion region{{known->group, known->frame, placement.centre}, {}};
+    for (std::size_t c = 0; c < count; ++c) {
+      if (in[c] != 0) region.components.push_back(static_cast<int>(c));
+    }
+    if (region.components.size() > seed.size()) result.push_back(std::move(region));
   }
   return result;
 }

@@ -32,7 +32,7 @@ TEST(ContainsGroup, FollowsTheSubgroups) {
   EXPECT_FALSE(holds(placed("Dinfh"), placed("Ci", Eigen::Vector3d::UnitZ(), {0, 0, 0.1})));
 }
 
-TEST(PermutedComponents, TakesWhatTheGroupMovesOntoItselfAndNothingElse) {
+TEST(ComponentMover, TakesWhatTheGroupMovesOntoItselfAndNothingElse) {
   std::vector<Mesh> parts{test::prism(40, 1, 0.3)};
   for (int i = 0; i < 5; ++i) {
     const Mesh bolt = test::moved(test::box(0.1, 0.14, 0.2), test::shift(0.7, 0, 0.25));
@@ -44,11 +44,28 @@ TEST(PermutedComponents, TakesWhatTheGroupMovesOntoItselfAndNothingElse) {
   const ComponentSurvey survey = survey_components(prepared, 0.005, 0, context);
   const SurfaceIndex whole(prepared.mesh);
   const Eigen::Vector3d centre = -prepared.input_of_normalised.translation / prepared.input_of_normalised.scale;
+  ComponentMover mover(prepared, survey, whole, 0.005, context);
   const GroupPlacement five{*PointGroup::parse("C5"), GroupFrame::Identity(), centre};
-  EXPECT_EQ(permuted_components(prepared, survey, whole, five, {1, 2, 3, 4, 5}, 0.005, context),
-            (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(mover.permuted(five, {1, 2, 3, 4, 5}), (std::vector<int>{0, 1, 2, 3, 4, 5}));
   const GroupPlacement three{*PointGroup::parse("C3"), GroupFrame::Identity(), centre};
-  EXPECT_EQ(permuted_components(prepared, survey, whole, three, {0}, 0.005, context), (std::vector<int>{0}));
+  EXPECT_EQ(mover.permuted(three, {0}), (std::vector<int>{0}));
+}
+
+TEST(ComponentMover, ASubgroupTakesMoreParts) {
+  // A square plate with D4h; two blocks on it, which only half a turn and two mirrors carry onto one another.
+  const Mesh plate = test::box(2, 2, 0.1);
+  const Mesh block = test::box(0.3, 0.2, 0.4);
+  const PreparedMesh prepared = prepare(test::joined(
+      {plate, test::moved(block, test::shift(0.6, 0, 0.3)), test::moved(block, test::shift(-0.6, 0, 0.3))}));
+  const RunContext context;
+  const ComponentSurvey survey = survey_components(prepared, 0.005, 0, context);
+  const SurfaceIndex whole(prepared.mesh);
+  ComponentMover mover(prepared, survey, whole, 0.005, context);
+  const GroupPlacement placement{*PointGroup::parse("D4h"), GroupFrame::Identity(), survey.moments[0].centroid};
+  const std::vector<SubgroupRegion> regions = mover.subgroup_regions(placement, {0});
+  ASSERT_FALSE(regions.empty());
+  EXPECT_EQ(regions.front().placement.group.symbol(), "C2v");
+  EXPECT_EQ(regions.front().components, (std::vector<int>{0, 1, 2}));
 }
 
 }  // namespace

@@ -1,21 +1,50 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/refinement.h"
 #include "orbifit/detection/surface_patch.h"
+#include "orbifit/model/point_index.h"
 #include "orbifit/model/run_context.h"
 
 namespace orbifit {
 
-/// The components that a group permutes: the orbit test of S(G) (method of maximal regions) on whole components. A
-/// component stays when every element carries it onto a component of like size that stays too.
-/// \param seed components that are known to belong
-/// \return component numbers, ascending
-std::vector<int> permuted_components(const PreparedMesh& prepared, const ComponentSurvey& survey,
-                                     const SurfaceIndex& whole, const GroupPlacement& placement,
-                                     const std::vector<int>& seed, double tolerance, const RunContext& context);
+struct SubgroupRegion {
+  GroupPlacement placement;
+  std::vector<int> components;  ///< ascending
+};
+
+/// Finds maximal regions S(G) among whole components by the orbit test: a component stays when the elements carry it
+/// onto components of like size that stay too.
+class ComponentMover {
+ public:
+  /// All arguments are kept by reference. \param whole index of the whole mesh \param tolerance a length
+  ComponentMover(const PreparedMesh& prepared, const ComponentSurvey& survey, const SurfaceIndex& whole,
+                 double tolerance, const RunContext& context);
+
+  /// The components that the group permutes, ascending.
+  /// \param seed components known to belong
+  std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed);
+
+  /// For subgroups H of a finite group known on `seed`: the components that H permutes where they are more than the
+  /// seed, largest subgroup first.
+  std::vector<SubgroupRegion> subgroup_regions(const GroupPlacement& placement, const std::vector<int>& seed);
+
+ private:
+  // The component onto which the motion carries this one, -1 for none.
+  int image(std::size_t component, const Motion& motion, double reach);
+  double reach_of(std::size_t component, const PointGroup& group) const;
+
+  const PreparedMesh& prepared_;
+  const ComponentSurvey& survey_;
+  const SurfaceIndex& whole_;
+  double tolerance_;
+  const RunContext& context_;
+  std::unique_ptr<PointIndex> centroids_;
+  std::vector<SurfaceSamples> samples_;  // of each component, drawn when first needed
+};
 
 /// Whether every element of `inner` is one of `outer` on points within `reach` of `centre`, to `tolerance` (a length).
 bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, const Eigen::Vector3d& centre,
