@@ -10,7 +10,7 @@ build=$root/build/release
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libpcl-dev libceres-dev libflann-dev liblz4-dev libopenmesh-dev libgtest-dev
-  libembree-dev libcli11-dev nlohmann-json3-dev libstb-dev libtinygltf-dev
+  libembree-dev libcli11-dev nlohmann-json3-dev libstb-dev
   libcgal-demo # real meshes
 )
 
