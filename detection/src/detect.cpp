@@ -356,13 +356,30 @@ class Detector {
       const GroupPlacement& placement = found.placement;
       Region region = make_region(placement.group, prepared_.input_of_normalised(placement.centre), placement.frame,
                                   faces, found.name);
-      region.id = static_cast<int>(annotation.regions.size());
       const SurfacePatch patch = make_patch(prepared_, faces, 1000, options_.tolerance, context_, "residual");
       region.residual =
           measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context_);
       annotation.regions.push_back(std::move(region));
     }
+    drop_coincidences(annotation.regions);
+    for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
     set_parents(annotation.regions);
+  }
+
+  // A region that is far less exact than one that contains it is symmetric by coincidence: the shape around it shows
+  // how exact this mesh is. Kept, its group would also clash with the exact ones. A turned part's residual is that of
+  // its facets and says nothing.
+  void drop_coincidences(std::vector<Region>& regions) const {
+    constexpr double kFarLess = 20;
+    const double least = 0.01 * options_.tolerance;
+    const std::vector<Region> all = regions;
+    std::erase_if(regions, [&](const Region& region) {
+      return !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
+        return around.faces.size() > region.faces.size() &&
+               region.residual.max > kFarLess * std::max(around.residual.max, least) &&
+               std::ranges::includes(around.faces, region.faces);
+      });
+    });
   }
 
   const DetectOptions& options_;
