@@ -381,8 +381,8 @@ class Search {
   bool polish() {
     const GroupPlacement before = best_->placement;
     RefinementOptions options;
-    options.samples = 1500;
-    options.iterations = 20;
+    options.samples = std::clamp(static_cast<int>(patch_.at_crease.size() * 2 / 5), 300, 1500);
+    options.iterations = 12;
     options.first_width = 1.5;
     options.last_width = 1;
     for (const GroupPlacement& placement : {refine_on_vertices(patch_, refine(patch_, before, options)), before}) {

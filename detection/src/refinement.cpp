@@ -114,7 +114,7 @@ GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, co
     }
     if (equations.weight < 20) break;
     const double moved = apply(equations, scale, placement);
-    if (progress >= 1 && moved < 1e-12 * scale) break;
+    if (progress >= 1 && moved < 1e-10 * scale) break;
   }
   return placement;
 }

@@ -183,7 +183,7 @@ double kept_share(const SurfacePatch& patch, const Motion& motion, double tolera
 }
 
 Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context) {
-  constexpr std::size_t kQueries = 40000;
+  constexpr std::size_t kQueries = 16000;
   const std::size_t count = std::clamp<std::size_t>(kQueries / std::max<std::size_t>(1, motions.size()), 100, 2000);
   const std::vector<std::size_t> chosen = spread(patch.at_crease.size(), static_cast<int>(count));
   std::vector<double> square(chosen.size(), 0);
