@@ -10,6 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "orbifit/detection/axis_orders.h"
 #include "orbifit/detection/candidates.h"
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/featureless.h"

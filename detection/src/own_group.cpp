@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "orbifit/detection/axis_orders.h"
+
 namespace orbifit {
 
 namespace {
@@ -19,13 +21,6 @@ constexpr double kSlack = 2.5;         // tolerances, while directions are not r
 constexpr double kScreenShare = 0.80;  // of the samples, likewise
 constexpr int kScreenSamples = 96;
 constexpr double kSameDirection = 0.03;  // radians
-constexpr int kHighestOrder = 180;
-// A rotation that moves no point by more than this many tolerances cannot be told from none.
-constexpr double kLeastMove = 6;
-// Low orders move far around the axis what they move little along it: for them less will do.
-constexpr double kLowOrder = 6;
-constexpr double kLeastMoveLow = 2;
-
 constexpr double kClassifyTolerance = 0.02;
 
 Matrix3d mirror(const Vector3d& normal) {
@@ -42,25 +37,6 @@ int size_of(const PointGroup& group) {
 
 bool same_line(const Vector3d& a, const Vector3d& b) {
   return a.cross(b).norm() < kSameDirection;
-}
-
-double radius_about(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre) {
-  double largest = 0;
-  for (Eigen::Index i = 0; i < patch.samples.points.rows(); ++i) {
-    const Vector3d from = patch.samples.points.row(i).transpose() - centre;
-    largest = std::max(largest, (from - axis * axis.dot(from)).norm());
-  }
-  return largest;
-}
-
-// A small turn keeps flat sides within the tolerance; its larger multiples do not.
-std::vector<int> judged_powers(int n) {
-  std::vector<int> powers{1};
-  for (const double share : {0.5, 0.382, 0.236, 0.146, 0.472}) {
-    const int k = static_cast<int>(std::lround(share * n));
-    if (k > 1 && k < n) powers.push_back(k);
-  }
-  return powers;
 }
 
 /// The search for one patch: directions found so far, and the best group.
@@ -230,17 +206,17 @@ class Search {
 
   void find_rotations(const Vector3d& axis) {
     context_.check();
-    if (continuous_about(patch_, axis, centre_, context_)) {
+    if (continuous_about(patch_, axis, centre_)) {
       const GroupFrame frame = frame_about(axis);
       if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
     }
     const std::vector<int> orders = rotation_orders(patch_, axis, centre_, kSlack);
     if (orders.empty()) return;
     // The axis is better known once the rotations that fit best have been fitted; the orders are then ranked.
-    const std::vector<RankedOrder> first = ranked(orders, axis);
+    const std::vector<RankedOrder> first = rank_orders(patch_, orders, axis, centre_);
     const Vector3d better =
         coarse({Family::Cn, first.empty() ? orders.back() : first.front().order}, axis).frame.col(2);
-    std::vector<RankedOrder> ranking = ranked(orders, better);
+    std::vector<RankedOrder> ranking = rank_orders(patch_, orders, better, centre_);
     Vector3d chosen = better;
     if (ranking.empty() || (!first.empty() && first.front().share > ranking.front().share + 0.02)) {
       ranking = first;
@@ -250,30 +226,6 @@ class Search {
     for (std::size_t i = 0; i < std::min(kMostTries, ranking.size()); ++i) {
       if (add_rotation(chosen, ranking[i].order)) return;
     }
-  }
-
-  struct RankedOrder {
-    int order;
-    double share;
-  };
-
-  // Orders by how well they fit at the tolerance itself: the nearly perfect ones first, high before low.
-  std::vector<RankedOrder> ranked(const std::vector<int>& orders, const Vector3d& axis) const {
-    constexpr int kRankSamples = 250;
-    constexpr double kLeastShare = 0.88;
-    constexpr double kNearlyPerfect = 0.985;
-    std::vector<RankedOrder> result;
-    for (const int n : orders) {
-      double share = 1;
-      for (const int k : judged_powers(n)) {
-        const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre_);
-        share = std::min(share, kept_share(patch_, turn, 1.2 * patch_.tolerance, kRankSamples, kLeastShare));
-        if (share < kLeastShare) break;
-      }
-      if (share >= kLeastShare) result.push_back({n, share});
-    }
-    std::ranges::stable_partition(result, [](const RankedOrder& r) { return r.share >= kNearlyPerfect; });
-    return result;
   }
 
   bool add_rotation(const Vector3d& axis, int n) {
@@ -410,38 +362,6 @@ class Search {
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,
                                        const RunContext& context) {
   return Search(patch, context, false).run(screen, hints);
-}
-
-std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre,
-                                 double slack) {
-  std::vector<int> result;
-  const double around = 2 * std::numbers::pi * radius_about(patch, axis, centre) / patch.tolerance;
-  const int highest = static_cast<int>(
-      std::min<double>(kHighestOrder, std::max(around / kLeastMove, std::min(around / kLeastMoveLow, kLowOrder))));
-  const auto kept = [&](int k, int n) {
-    const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
-    return kept_share(patch, turn, slack * patch.tolerance, kScreenSamples, kScreenShare) >= kScreenShare;
-  };
-  for (int n = highest; n >= 2; --n) {
-    const std::vector<int> powers = judged_powers(n);
-    if (std::ranges::all_of(powers, [&](int k) { return kept(k, n); })) result.push_back(n);
-  }
-  return result;
-}
-
-double continuous_tolerance(const SurfacePatch& patch) {
-  return patch.relative_tolerance * std::min(1.0, 2.5 * patch.moments.diagonal);
-}
-
-bool continuous_about(const SurfacePatch& patch, const Vector3d& axis, const Vector3d& centre,
-                      const RunContext& context) {
-  (void)context;
-  const double tolerance = 1.5 * continuous_tolerance(patch);
-  for (const double turns : {0.1180, 0.2918, 0.3820, 0.4721, 0.0557, 0.0213}) {
-    const Motion motion = Motion::rotation(axis, 2 * std::numbers::pi * turns, centre);
-    if (kept_share(patch, motion, tolerance, 150, 0.9) < 0.9) return false;
-  }
-  return true;
 }
 
 }  // namespace orbifit

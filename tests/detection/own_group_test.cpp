@@ -46,13 +46,5 @@ TEST(OwnGroup, NoneWhereThereIsNone) {
   EXPECT_EQ(symbol_of(test::scalene()), "C1");
 }
 
-TEST(RotationOrders, DoNotTakeSmallTurnsForSymmetries) {
-  const Mesh mesh = test::prism(6, 1, 2);
-  const PreparedMesh prepared = prepare(mesh);
-  const RunContext context;
-  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 1000, 0.005, context, "test");
-  EXPECT_EQ(rotation_orders(patch, Eigen::Vector3d::UnitZ(), patch.moments.centroid, 1), (std::vector<int>{6, 3, 2}));
-}
-
 }  // namespace
 }  // namespace orbifit

@@ -30,18 +30,4 @@ struct OwnGroup {
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,
                                        const RunContext& context);
 
-/// Orders n >= 2 such that the rotation by 2 pi / n about the axis through `centre` keeps the patch, descending, judged
-/// coarsely (`slack` tolerances, few samples). Orders whose step is too small to tell from none are left out.
-std::vector<int> rotation_orders(const SurfacePatch& patch, const Eigen::Vector3d& axis, const Eigen::Vector3d& centre,
-                                 double slack);
-
-/// Whether every rotation about the axis keeps the patch, facets allowed for: their sagitta must stay below the
-/// continuous tolerance. Judged coarsely, on a few angles.
-bool continuous_about(const SurfacePatch& patch, const Eigen::Vector3d& axis, const Eigen::Vector3d& centre,
-                      const RunContext& context);
-
-/// The tolerance at which a continuous group of the patch is judged, a length: the relative tolerance at the scale of
-/// the patch itself, so that a small faceted part is not called round because the mesh is large.
-double continuous_tolerance(const SurfacePatch& patch);
-
 }  // namespace orbifit
