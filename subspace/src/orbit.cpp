@@ -112,6 +112,7 @@ Orbit orbit_of(const Eigen::Vector3d& seed, int face, const RegionMap& regions, 
     for (std::size_t r = 0; r < orbit.points[static_cast<std::size_t>(at)].regions.size(); ++r) {
       const int region = orbit.points[static_cast<std::size_t>(at)].regions[r];
       if (holds(closed[static_cast<std::size_t>(at)], region)) continue;
+      if (options.followed != nullptr && (*options.followed)[static_cast<std::size_t>(region)] == 0) continue;
       for (const Motion& element : regions.elements(region)) {
         const OrbitPoint& from = orbit.points[static_cast<std::size_t>(at)];
         const Eigen::Vector3d position = element(from.position);

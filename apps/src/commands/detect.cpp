@@ -9,6 +9,7 @@
 #include "orbifit/apps/render.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/mesh_io.h"
+#include "orbifit/subspace/closable.h"
 
 #include "../commands.h"
 
@@ -155,7 +156,8 @@ CommandBody detect(CLI::App& app) {
     if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
     const Mesh mesh = read_mesh(arguments->mesh);
     context.run.check();
-    const SymmetryAnnotation found = orbifit::detect(mesh, arguments->options, context.run);
+    const SymmetryAnnotation found =
+        closable(mesh, orbifit::detect(mesh, arguments->options, context.run), context.run);
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
     if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);

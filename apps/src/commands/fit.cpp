@@ -12,6 +12,7 @@
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
+#include "orbifit/subspace/closable.h"
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
@@ -86,9 +87,9 @@ CommandBody fit(CLI::App& app) {
     if (scan.dropped > 0) {
       context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
     }
-    const SymmetryAnnotation annotation = arguments->annotation.empty()
-                                              ? orbifit::detect(mesh, DetectOptions{}, context.run)
-                                              : read_annotation(arguments->annotation, mesh);
+    const SymmetryAnnotation annotation =
+        arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
+                                      : read_annotation(arguments->annotation, mesh);
     FitInput input{mesh, annotation, scan, Similarity{}, {}, {}};
     if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
     if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;

@@ -49,6 +49,8 @@ struct ClosureOptions {
   double doublet = 1e-9;    ///< points closer than this are one, mesh units, > 0
   double snap = 0;          ///< motions that move the seed by less count as its stabilisers, mesh units
   int most_points = 20000;  ///< an orbit with more never closes
+  /// Regions to follow, by number; null: all. Not owned.
+  const std::vector<char>* followed = nullptr;
 };
 
 /// \param face the face on which the seed lies: it says in which regions the seed is

@@ -1,0 +1,74 @@
+#include "orbifit/subspace/closable.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/subspace/orbit.h"
+#include "orbifit/subspace/region_map.h"
+#include "orbifit/subspace/shared_axes.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr std::size_t kTrialPoints = 128;  // of each region
+constexpr double kDoublet = 1e-4;         // of the diagonal, as in the sampling
+
+// Orbits of groups that fit together have no more points than the product of the orders of the regions on the way, and
+// a few times that where mirrors meet at an angle.
+int most_points(const RegionMap& regions, const std::vector<char>& followed, const std::vector<int>& here) {
+  constexpr double kLeast = 64;
+  constexpr double kMost = 6000;
+  double product = 4;
+  for (const int region : here) {
+    if (followed[static_cast<std::size_t>(region)] == 0) continue;
+    product = std::min(kMost, product * static_cast<double>(regions.elements(region).size()));
+  }
+  return static_cast<int>(std::max(kLeast, product));
+}
+
+bool closes(const Mesh& mesh, const Region& region, const RegionMap& regions, const std::vector<char>& followed) {
+  ClosureOptions options;
+  options.doublet = kDoublet * diagonal(mesh.vertices);
+  options.followed = &followed;
+  const std::size_t step = 1 + region.faces.size() / kTrialPoints;
+  for (std::size_t i = 0; i < region.faces.size(); i += step) {
+    const int face = region.faces[i];
+    const Eigen::Vector3d centroid = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
+    options.most_points = most_points(regions, followed, regions.regions_of_face(face));
+    try {
+      orbit_of(centroid, face, regions, options);
+    } catch (const InputError&) {  // the orbit has more points than it may
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
+  const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance);
+  const RegionMap regions(mesh, annotation, context);
+  std::vector<char> followed(annotation.regions.size(), 0);
+  SymmetryAnnotation result = annotation;
+  result.regions.clear();
+  for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
+    context.progress("closure", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
+    followed[i] = 1;
+    if (!closes(mesh, annotation.regions[i], regions, followed)) {
+      followed[i] = 0;
+      context.message("left out region \"" + regions.name(static_cast<int>(i)) + "\" (" +
+                      annotation.regions[i].group.symbol() +
+                      "): its group does not close with those of larger regions");
+      continue;
+    }
+    result.regions.push_back(annotation.regions[i]);
+  }
+  set_parents(result.regions);
+  return result;
+}
+
+}  // namespace orbifit

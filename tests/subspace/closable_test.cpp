@@ -1,0 +1,69 @@
+#include "orbifit/subspace/closable.h"
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/random.h"
+#include "orbifit/subspace/shared_axes.h"
+#include "orbifit/subspace/subspace.h"
+
+namespace orbifit {
+namespace {
+
+// The truth of a model with every region's group moved a little, as a detector within a tolerance would have it.
+SymmetryAnnotation perturbed(const GeneratedModel& model, double size) {
+  Random random(6);
+  SymmetryAnnotation result = model.truth;
+  for (Region& region : result.regions) {
+    const Motion frame{axis_rotation(random.direction(), size), size * 0.2 * random.direction()};
+    for (Motion& element : region.elements) element = conjugate(frame, element);
+    for (Motion& element : region.generators) element = conjugate(frame, element);
+    region.centre = frame(region.centre);
+    region.axis = frame.linear * region.axis;
+  }
+  return result;
+}
+
+class NearlySharedAxes : public testing::TestWithParam<const char*> {};
+
+TEST_P(NearlySharedAxes, AreSharedSoThatNoRegionIsLost) {
+  const GeneratedModel model = generate(GetParam());
+  const SymmetryAnnotation annotation = perturbed(model, 5e-4);
+  RunContext context;
+  std::string said;
+  context.on_message = [&](std::string_view text) { said += std::string(text) + "\n"; };
+  const SymmetryAnnotation kept = closable(model.mesh, annotation, context);
+  EXPECT_EQ(kept.regions.size(), annotation.regions.size()) << said;
+  EXPECT_GT(build_subspace(model.mesh, kept, {}, RunContext{}).degrees_of_freedom(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, NearlySharedAxes, testing::Values("bar", "table"));
+
+TEST(SharedAxes, LeaveAnExactAnnotationAsItIs) {
+  const GeneratedModel model = generate("table");
+  const SymmetryAnnotation shared = share_axes(model.mesh, model.truth, 0.005);
+  ASSERT_EQ(shared.regions.size(), model.truth.regions.size());
+  for (std::size_t i = 0; i < shared.regions.size(); ++i) {
+    EXPECT_LT((shared.regions[i].centre - model.truth.regions[i].centre).norm(), 1e-12);
+    EXPECT_EQ(shared.regions[i].group, model.truth.regions[i].group);
+  }
+}
+
+TEST(Closable, LeavesOutARegionThatClashesAndSaysSo) {
+  const GeneratedModel model = generate("table");
+  SymmetryAnnotation annotation = model.truth;
+  const std::vector<int> faces = annotation.regions[1].faces;
+  Region clash = make_region(PointGroup{PointGroup::Family::Cs, 1}, {0.2, 0, 0}, frame_about(Eigen::Vector3d::UnitX()),
+                             faces, "clash");
+  clash.id = 99;
+  annotation.regions.push_back(clash);
+  RunContext context;
+  std::string said;
+  context.on_message = [&](std::string_view text) { said += text; };
+  const SymmetryAnnotation kept = closable(model.mesh, annotation, context);
+  EXPECT_EQ(kept.regions.size(), model.truth.regions.size());
+  EXPECT_NE(said.find("clash"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace orbifit
