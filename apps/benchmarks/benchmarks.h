@@ -1,0 +1,11 @@
+#pragma once
+
+#include "command.h"
+
+namespace orbifit::benchmarks {
+
+/// The subcommands: each adds its options to `app` and returns what runs it.
+CommandBody table1(CLI::App& app);
+CommandBody scaling(CLI::App& app);
+
+}  // namespace orbifit::benchmarks

@@ -1,0 +1,87 @@
+#include <array>
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "orbifit/model/errors.h"
+
+#include "benchmarks.h"
+#include "console.h"
+
+namespace {
+
+using namespace orbifit;
+
+constexpr std::array kBenchmarks{
+    Command{"table1", "The paper's Table 1 beside ours, with the memory floor and the peers.",
+            "orbifit-benchmark table1\n"
+            "orbifit-benchmark table1 --models bar,car --threads 1 --json table1.json",
+            benchmarks::table1},
+    Command{"scaling", "Time and memory of building the subspace against the number of vertices.",
+            "orbifit-benchmark scaling\n"
+            "orbifit-benchmark scaling --most 1000000 --json scaling.json",
+            benchmarks::scaling},
+};
+
+int run(const CommandBody& body, bool quiet) {
+  Console console(quiet);
+  const auto fail = [&](const std::exception& error, int code) {
+    console.error(error.what());
+    return code;
+  };
+  try {
+    CommandContext context;
+    context.quiet = quiet;
+    context.run.interrupted = &interruption();
+    context.run.on_message = [&console](std::string_view text) { console.message(text); };
+    return body(context);
+  } catch (const UsageError& error) {
+    return fail(error, kUsage);
+  } catch (const InputError& error) {
+    return fail(error, kBadInput);
+  } catch (const InterruptedError& error) {
+    return fail(error, kInterrupted);
+  } catch (const std::exception& error) {
+    return fail(error, kNoResult);
+  }
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("Measure Orbifit against the paper, the memory's bandwidth and its peers.", "orbifit-benchmark");
+  app.require_subcommand(1);
+  bool quiet = false;
+  std::array<CommandBody, kBenchmarks.size()> bodies;
+  for (std::size_t i = 0; i < kBenchmarks.size(); ++i) {
+    CLI::App* sub = app.add_subcommand(kBenchmarks[i].name, kBenchmarks[i].summary);
+    std::string examples = kBenchmarks[i].examples;
+    for (std::size_t at = 0; (at = examples.find('\n', at)) != std::string::npos; at += 3)
+      examples.insert(at + 1, "  ");
+    sub->footer("Examples:\n  " + examples);
+    bodies[i] = kBenchmarks[i].define(*sub);
+    sub->add_flag("--quiet", quiet, "No notes on standard error");
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    Console(false).error(std::string(error.what()) + " (see 'orbifit-benchmark --help')");
+    return kUsage;
+  }
+  for (std::size_t i = 0; i < kBenchmarks.size(); ++i) {
+    if (app.got_subcommand(kBenchmarks[i].name)) return run(bodies[i], quiet);
+  }
+  return kUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const std::exception& error) {
+    Console(false).error(std::string("internal error: ") + error.what());
+    return kNoResult;
+  }
+}

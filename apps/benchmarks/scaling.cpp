@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/file.h"
+
+#include "benchmarks.h"
+#include "refined.h"
+#include "stopwatch.h"
+#include "subject.h"
+
+namespace orbifit::benchmarks {
+
+namespace {
+
+constexpr int kSamples = 600;
+constexpr double kSizes[] = {1e4, 1e5, 1e6, 1e7};
+
+struct ScalingOptions {
+  double most = 1e7;
+  std::string model = "chair";
+  std::string json;
+  int threads = 1;
+};
+
+struct ScalingRow {
+  double vertices = 0, samples = 0, degrees_of_freedom = 0;
+  double seconds = 0;
+  double mesh_bytes = 0;  ///< held by the process before the subspace is built
+  double peak_bytes = 0;  ///< most that it held while building
+};
+
+double status_bytes(const char* key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(key)) return 1024 * std::stod(line.substr(std::string(key).size() + 1));
+  }
+  return 0;
+}
+
+// Makes the peak that the kernel keeps start from what is held now. Where that is refused the peak may be the
+// generator's.
+void reset_peak() {
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+ScalingRow measure(const GeneratedModel& base, int cuts, const ScalingOptions& options, const RunContext& context) {
+  GeneratedModel generated = refined(base, cuts);
+  const BenchmarkModel model{options.model, std::move(generated.mesh), std::move(generated.truth), {}, {}};
+  // The same radius for every size: the surface is the same.
+  const double radius = std::sqrt(face_areas(base.mesh).sum() / (0.7 * kSamples));
+  ScalingRow row;
+  row.vertices = static_cast<double>(model.mesh.vertices.rows());
+  reset_peak();
+  row.mesh_bytes = status_bytes("VmRSS:");
+  const double start = seconds_now();
+  const Subject subject(model, radius, GroupMode::floating, context);
+  row.seconds = seconds_now() - start;
+  row.peak_bytes = status_bytes("VmHWM:");
+  if (row.peak_bytes == 0) {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    row.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  }
+  row.samples = subject.samples();
+  row.degrees_of_freedom = subject.degrees_of_freedom();
+  return row;
+}
+
+// In a process of its own, so that no size sees what another one left in memory.
+std::optional<ScalingRow> measure_apart(const GeneratedModel& base, int cuts, const ScalingOptions& options,
+                                        const RunContext& context) {
+  int ends[2];
+  if (::pipe(ends) != 0) throw NoResultError("no pipe to a process of its own");
+  const pid_t child = ::fork();
+  if (child < 0) throw NoResultError("no process of its own");
+  if (child == 0) {
+    ::close(ends[0]);
+    int code = kNoResult;
+    try {
+      const ScalingRow row = measure(base, cuts, options, context);
+      if (::write(ends[1], &row, sizeof(row)) == static_cast<ssize_t>(sizeof(row))) code = kDone;
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "orbifit-benchmark: %s\n", error.what());
+    }
+    ::_exit(code);
+  }
+  ::close(ends[1]);
+  ScalingRow row;
+  const bool whole = ::read(ends[0], &row, sizeof(row)) == static_cast<ssize_t>(sizeof(row));
+  ::close(ends[0]);
+  ::waitpid(child, nullptr, 0);
+  return whole ? std::optional(row) : std::nullopt;
+}
+
+// Slope of log(seconds) over log(vertices) by least squares.
+double fitted_exponent(const std::vector<ScalingRow>& rows) {
+  double n = 0;
+  double x = 0;
+  double y = 0;
+  double xx = 0;
+  double xy = 0;
+  for (const ScalingRow& row : rows) {
+    const double a = std::log(row.vertices);
+    const double b = std::log(row.seconds);
+    n += 1;
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+std::string text_of(const std::vector<ScalingRow>& rows, const ScalingOptions& options) {
+  TextTable table({"vertices", "samples", "DoF", "seconds", "vertices/s", "MB before", "MB peak", "bytes/vertex",
+                   "bytes/vertex of the peak"});
+  for (const ScalingRow& row : rows) {
+    table.add({short_number(row.vertices, 9), short_number(row.samples), short_number(row.degrees_of_freedom),
+               short_number(row.seconds, 3), short_number(std::round(row.vertices / row.seconds), 8),
+               short_number(1e-6 * row.mesh_bytes, 3), short_number(1e-6 * row.peak_bytes, 4),
+               short_number((row.peak_bytes - row.mesh_bytes) / row.vertices, 3),
+               short_number(row.peak_bytes / row.vertices, 4)});
+  }
+  std::string text =
+      "Building the subspace of the " + options.model + ", " + count_of(options.threads, "thread") + "\n";
+  text += table.text();
+  if (rows.size() > 1) {
+    text += "  seconds ~ vertices^" + short_number(fitted_exponent(rows), 3) + " over all sizes, vertices^" +
+            short_number(fitted_exponent({rows.end() - 2, rows.end()}), 3) + " over the last two.\n";
+  }
+  return text +
+         "  MB before: the process with the mesh and its annotation; MB peak: the most while building, that included;\n"
+         "  bytes/vertex: what building adds to the former. Triangles of one model are cut ever finer; same radius.\n";
+}
+
+std::string json_of(const std::vector<ScalingRow>& rows, const ScalingOptions& options) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const ScalingRow& row : rows) {
+    list.push_back({{"model", options.model},
+                    {"threads", options.threads},
+                    {"vertices", row.vertices},
+                    {"samples", row.samples},
+                    {"dof", row.degrees_of_freedom},
+                    {"seconds", row.seconds},
+                    {"vertices_per_second", row.vertices / row.seconds},
+                    {"bytes_before", row.mesh_bytes},
+                    {"bytes_peak", row.peak_bytes},
+                    {"bytes_per_vertex", (row.peak_bytes - row.mesh_bytes) / row.vertices},
+                    {"bytes_peak_per_vertex", row.peak_bytes / row.vertices}});
+  }
+  nlohmann::json result{{"rows", list}};
+  if (rows.size() > 1) result["exponent"] = fitted_exponent(rows);
+  return result.dump(2) + "\n";
+}
+
+int run(const ScalingOptions& options, const CommandContext& context) {
+  if (!(options.most >= 1e3 && options.most <= 1e9)) {
+    throw UsageError("--most is " + short_number(options.most) + ": must be from 1000 to 1e9");
+  }
+  if (options.threads < 1 || options.threads > 4096) {
+    throw UsageError("--threads is " + std::to_string(options.threads) + ": must be from 1 to 4096");
+  }
+  if (!options.json.empty()) check_output(options.json);
+  const GeneratedModel base = generate(options.model);
+  RunContext stages = context.run;
+  stages.on_message = nullptr;
+  stages.threads = options.threads;
+  std::vector<ScalingRow> rows;
+  int last = 0;
+  for (const double size : kSizes) {
+    const double wanted = std::min(size, options.most);
+    const int cuts = std::max(1, static_cast<int>(std::lround(std::sqrt(wanted / base.mesh.vertices.rows()))));
+    if (cuts == last) continue;
+    last = cuts;
+    context.run.check();
+    context.run.message("about " + short_number(wanted, 9) + " vertices");
+    const auto row = measure_apart(base, cuts, options, stages);
+    if (!row) throw NoResultError("the subspace of about " + short_number(wanted, 9) + " vertices could not be built");
+    rows.push_back(*row);
+  }
+  if (!options.json.empty()) write_file(options.json, json_of(rows, options));
+  print(text_of(rows, options));
+  return kDone;
+}
+
+}  // namespace
+
+CommandBody scaling(CLI::App& app) {
+  auto options = std::make_shared<ScalingOptions>();
+  app.add_option("--most", options->most, "Largest number of vertices")->type_name("V")->capture_default_str();
+  app.add_option("--model", options->model, "A model that 'orbifit generate --list' names")
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--threads", options->threads, "Threads to use")->type_name("N")->capture_default_str();
+  app.add_option("--json", options->json, "Write the rows to a file")->type_name("FILE");
+  return [options](CommandContext& context) { return run(*options, context); };
+}
+
+}  // namespace orbifit::benchmarks

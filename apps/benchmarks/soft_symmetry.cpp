@@ -1,0 +1,114 @@
+#include "soft_symmetry.h"
+
+#include <algorithm>
+
+#include "orbifit/model/errors.h"
+
+namespace orbifit::benchmarks {
+
+namespace {
+
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+// Keeps what nothing holds where it is: relative to the mean of the diagonal.
+constexpr double kHold = 1e-12;
+
+void add_block(Entries& entries, Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (block(i, j) != 0) entries.emplace_back(row + i, column + j, block(i, j));
+    }
+  }
+}
+
+// sign * the displacement that the transport makes of the seed's and of the regions' translations.
+void add_transport(Entries& entries, Eigen::Index row, const Transport& transport, Eigen::Index seed,
+                   Eigen::Index translations, double sign) {
+  add_block(entries, row, 3 * seed, sign * transport.frame);
+  for (const auto& [region, carried] : transport.carried) {
+    add_block(entries, row, translations + 3 * region, sign * carried);
+  }
+}
+
+Eigen::SparseMatrix<double> penalty_rows(const SymmetricSampling& sampling, Eigen::Index unknowns) {
+  const Eigen::Index translations = 3 * sampling.points.rows();
+  Entries entries;
+  Eigen::Index row = 0;
+  for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
+    const int seed = sampling.first_sample[static_cast<std::size_t>(orbit)];
+    for (int s = seed + 1; s < sampling.first_sample[static_cast<std::size_t>(orbit) + 1]; ++s, row += 3) {
+      add_block(entries, row, Eigen::Index{3} * s, Eigen::Matrix3d::Identity());
+      add_transport(entries, row, sampling.transports[static_cast<std::size_t>(s)], seed, translations, -1);
+    }
+  }
+  for (const SymmetricSampling::Constraint& constraint : sampling.constraints) {
+    const int seed = sampling.first_sample[static_cast<std::size_t>(constraint.orbit)];
+    add_transport(entries, row, constraint.left, seed, translations, 1);
+    add_transport(entries, row, constraint.right, seed, translations, -1);
+    row += 3;
+  }
+  Eigen::SparseMatrix<double> rows(row, unknowns);
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
+}
+
+// K (x) I_3, with as many more rows and columns of zeros as there are further unknowns.
+Eigen::SparseMatrix<double> for_each_coordinate(const Eigen::SparseMatrix<double>& scalar, Eigen::Index unknowns) {
+  Entries entries;
+  entries.reserve(3 * static_cast<std::size_t>(scalar.nonZeros()));
+  for (Eigen::Index k = 0; k < scalar.outerSize(); ++k) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(scalar, k); entry; ++entry) {
+      for (int c = 0; c < 3; ++c) entries.emplace_back(3 * entry.row() + c, 3 * entry.col() + c, entry.value());
+    }
+  }
+  Eigen::SparseMatrix<double> result(unknowns, unknowns);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+}  // namespace
+
+SoftSymmetry::SoftSymmetry(const Subspace& subspace, double weight)
+    : corotation_(corotation(subspace.sampling.points, 2 * subspace.sampling.radius)) {
+  const Eigen::Index unknowns = 3 * subspace.sampling.points.rows() + subspace.basis.carried.rows();
+  penalty_ = penalty_rows(subspace.sampling, unknowns);
+  const Eigen::SparseMatrix<double> bending = corotation_.laplacian.transpose() * corotation_.laplacian;
+  const Eigen::SparseMatrix<double> symmetry = penalty_.transpose() * penalty_;
+  energy_ = for_each_coordinate(bending, unknowns) + weight * symmetry;
+}
+
+void SoftSymmetry::set_handles(const LiftWeights& rows, const Eigen::VectorXd& weights, double alpha) {
+  handle_rows_ = rows;
+  handle_weights_ = weights;
+  alpha_ = alpha;
+  const Eigen::SparseMatrix<double> weighted = handle_weights_.asDiagonal() * handle_rows_;
+  const Eigen::SparseMatrix<double> gram = handle_rows_.transpose() * weighted;
+  Eigen::SparseMatrix<double> system = energy_ + alpha * for_each_coordinate(gram, energy_.cols());
+  Eigen::SparseMatrix<double> hold(system.rows(), system.cols());
+  hold.setIdentity();
+  system += kHold * system.diagonal().mean() * hold;
+  factor_.compute(system);
+  if (factor_.info() != Eigen::Success) throw NoResultError("the soft constraints' system could not be factorised");
+}
+
+Points SoftSymmetry::solve(const Points& targets, int iterations) {
+  const Points handle_pull = alpha_ * (handle_rows_.transpose() * (handle_weights_.asDiagonal() * targets));
+  std::vector<Eigen::Matrix3d> rotations(corotation_.neighbours.size(), Eigen::Matrix3d::Identity());
+  Points displacements = Points::Zero(corotation_.rest.rows(), 3);
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(energy_.cols());
+    right.head(displacements.size()) = stacked(corotated_pull(corotation_, rotations) + handle_pull);
+    solution_ = factor_.solve(right);
+    displacements = Eigen::Map<const Points>(solution_.data(), displacements.rows(), 3);
+    rotations = local_rotations(corotation_, corotation_.rest + displacements, rotations);
+  }
+  return displacements;
+}
+
+double SoftSymmetry::symmetry_residual() const {
+  const Eigen::VectorXd left = penalty_ * solution_;
+  if (left.size() == 0) return 0;
+  return Eigen::Map<const Points>(left.data(), left.size() / 3, 3).rowwise().norm().maxCoeff();
+}
+
+}  // namespace orbifit::benchmarks

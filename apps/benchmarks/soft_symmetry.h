@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/subspace/corotation.h"
+#include "orbifit/subspace/lift.h"
+#include "orbifit/subspace/subspace.h"
+
+namespace orbifit::benchmarks {
+
+/// What the subspace is compared with: co-rotated Laplace editing (paper, section 6) on the full sampling, 3#S unknowns
+/// and, where groups float, the 3#regions translations that carry them. Symmetry is asked for by least squares instead:
+/// weight * |u(g p) - O u(p) - (I - O) t|^2 for each sample g p and the seed p of its orbit, and for each place that is
+/// reached by two ways.
+class SoftSymmetry {
+ public:
+  /// Assembles the Laplace energy and the penalty.
+  /// \param weight of the penalty, >= 0; 0: no symmetry
+  SoftSymmetry(const Subspace& subspace, double weight);
+
+  /// Factorises L^T L + weight C^T C + alpha A^T W A by sparse Cholesky.
+  /// \param rows    A, #H by #S, displacements of the handles' points from those of the samples
+  /// \param weights diagonal of W, #H
+  /// \throw NoResultError where the system cannot be factorised
+  void set_handles(const LiftWeights& rows, const Eigen::VectorXd& weights, double alpha);
+
+  /// The samples' displacements, #S by 3, after so many iterations from the rest pose.
+  /// \param targets of the handles' points, #H by 3
+  Points solve(const Points& targets, int iterations);
+
+  /// The largest |u(g p) - O u(p) - (I - O) t| that the last solve() left, mesh units.
+  double symmetry_residual() const;
+
+  Eigen::Index unknowns() const { return penalty_.cols(); }
+  Eigen::Index non_zeros() const { return energy_.nonZeros(); }
+
+ private:
+  Corotation corotation_;
+  Eigen::SparseMatrix<double> penalty_;  ///< C, three rows a constraint
+  Eigen::SparseMatrix<double> energy_;   ///< L^T L on each coordinate, + weight C^T C
+  Eigen::SparseMatrix<double> handle_rows_;
+  Eigen::VectorXd handle_weights_;
+  double alpha_ = 0;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
+  Eigen::VectorXd solution_;
+};
+
+}  // namespace orbifit::benchmarks
