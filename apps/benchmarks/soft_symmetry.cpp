@@ -10,7 +10,8 @@ namespace {
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-// Keeps what nothing holds where it is: relative to the mean of the diagonal.
+// Keeps what nothing holds where it is: samples relative to the Laplace energy's diagonal, whatever the weight;
+// translations relative to the penalty's, which is all that they appear in.
 constexpr double kHold = 1e-12;
 
 void add_block(Entries& entries, Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
@@ -74,7 +75,11 @@ SoftSymmetry::SoftSymmetry(const Subspace& subspace, double weight)
   penalty_ = penalty_rows(subspace.sampling, unknowns);
   const Eigen::SparseMatrix<double> bending = corotation_.laplacian.transpose() * corotation_.laplacian;
   const Eigen::SparseMatrix<double> symmetry = penalty_.transpose() * penalty_;
-  energy_ = for_each_coordinate(bending, unknowns) + weight * symmetry;
+  Eigen::SparseMatrix<double> hold(unknowns, unknowns);
+  hold.setIdentity();
+  hold *= kHold * bending.diagonal().mean();
+  for (Eigen::Index t = 3 * bending.rows(); t < unknowns; ++t) hold.coeffRef(t, t) *= 1 + weight;
+  energy_ = for_each_coordinate(bending, unknowns) + weight * symmetry + hold;
 }
 
 void SoftSymmetry::set_handles(const LiftWeights& rows, const Eigen::VectorXd& weights, double alpha) {
@@ -83,10 +88,7 @@ void SoftSymmetry::set_handles(const LiftWeights& rows, const Eigen::VectorXd& w
   alpha_ = alpha;
   const Eigen::SparseMatrix<double> weighted = handle_weights_.asDiagonal() * handle_rows_;
   const Eigen::SparseMatrix<double> gram = handle_rows_.transpose() * weighted;
-  Eigen::SparseMatrix<double> system = energy_ + alpha * for_each_coordinate(gram, energy_.cols());
-  Eigen::SparseMatrix<double> hold(system.rows(), system.cols());
-  hold.setIdentity();
-  system += kHold * system.diagonal().mean() * hold;
+  const Eigen::SparseMatrix<double> system = energy_ + alpha * for_each_coordinate(gram, energy_.cols());
   factor_.compute(system);
   if (factor_.info() != Eigen::Success) throw NoResultError("the soft constraints' system could not be factorised");
 }

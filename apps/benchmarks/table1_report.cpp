@@ -37,18 +37,39 @@ std::string ratio(double other, double ours) {
   return ours > 0 ? figure(other / ours) + "x" : "-";
 }
 
-std::string sizes(const std::vector<Table1Row>& rows) {
-  TextTable table({"model", "vertices", "(paper)", "triangles", "(paper)", "groups", "(paper)", "samples", "(paper)",
-                   "DoF", "(paper)", "radius", "field resid.", "mesh resid.", "handles"});
+std::string whole(int value) {
+  return std::to_string(value);
+}
+
+// The first row of each model.
+std::vector<const Table1Row*> models(const std::vector<Table1Row>& rows) {
+  std::vector<const Table1Row*> result;
   std::set<std::string> seen;
   for (const Table1Row& row : rows) {
-    if (!seen.insert(row.model).second) continue;
-    const PaperRow& paper = row.paper;
-    table.add({row.model, std::to_string(row.vertices), std::to_string(paper.vertices), std::to_string(row.triangles),
-               std::to_string(paper.triangles), std::to_string(row.groups), std::to_string(paper.groups),
-               std::to_string(row.samples), std::to_string(paper.samples), std::to_string(row.degrees_of_freedom),
-               std::to_string(paper.degrees_of_freedom), figure(row.radius), exponent(row.field_residual),
-               exponent(row.mesh_residual), exponent(row.handle_error)});
+    if (seen.insert(row.model).second) result.push_back(&row);
+  }
+  return result;
+}
+
+std::string sizes(const std::vector<Table1Row>& rows) {
+  TextTable table(
+      {"model", "vertices", "paper", "triangles", "paper", "groups", "paper", "samples", "paper", "DoF", "paper", "r"});
+  for (const Table1Row* row : models(rows)) {
+    const PaperRow& paper = row->paper;
+    table.add({row->model, whole(row->vertices), whole(paper.vertices), whole(row->triangles), whole(paper.triangles),
+               whole(row->groups), whole(paper.groups), whole(row->samples), whole(paper.samples),
+               whole(row->degrees_of_freedom), whole(paper.degrees_of_freedom), figure(row->radius)});
+  }
+  return table.text();
+}
+
+std::string residuals(const std::vector<Table1Row>& rows) {
+  TextTable table({"model", "field", "mesh", "handles", "soft, weight 1", "soft, 100", "soft, 1e4"});
+  for (const Table1Row* row : models(rows)) {
+    std::vector<std::string> cells{row->model, exponent(row->field_residual), exponent(row->mesh_residual),
+                                   exponent(row->handle_error)};
+    for (const SoftRow& soft : row->soft) cells.push_back(exponent(soft.residual));
+    table.add(cells);
   }
   return table.text();
 }
@@ -68,60 +89,55 @@ std::string times(const std::vector<Table1Row>& rows, int threads) {
 }
 
 std::string peers(const std::vector<Table1Row>& rows) {
-  TextTable table({"model", "prefactor: CGAL", "ours", "soft", "ours", "5 iter.: CGAL", "ours", "soft", "ours",
-                   "left by soft at 1", "100", "1e4"});
-  std::set<std::string> seen;
+  TextTable table(
+      {"model", "prefactor: CGAL", "/ours", "soft", "/ours", "5 iterations: CGAL", "/ours", "soft", "/ours"});
   std::string notes;
-  for (const Table1Row& row : rows) {
-    if (row.soft.empty() || !seen.insert(row.model).second) continue;
+  bool any = false;
+  for (const Table1Row* row : models(rows)) {
+    if (row->soft.empty()) continue;
+    any = true;
     const auto peer = [](const std::optional<double>& time) { return time ? figure(*time) : std::string("n/a"); };
     const auto by = [](const std::optional<double>& time, double ours) {
       return time ? ratio(*time, ours) : std::string("-");
     };
-    const ArapTimes arap = row.arap.value_or(ArapTimes{});
-    const SoftRow& soft = row.soft[row.soft.size() / 2];
-    std::vector<std::string> cells{row.model,
-                                   peer(arap.prefactor_ms),
-                                   by(arap.prefactor_ms, row.prefactor_ms),
-                                   figure(soft.prefactor_ms),
-                                   ratio(soft.prefactor_ms, row.prefactor_ms),
-                                   peer(arap.solve5_ms),
-                                   by(arap.solve5_ms, row.solve5_ms),
-                                   figure(soft.solve5_ms),
-                                   ratio(soft.solve5_ms, row.solve5_ms)};
-    for (const SoftRow& each : row.soft) cells.push_back(exponent(each.residual));
-    table.add(cells);
-    if (!arap.note.empty()) notes += "  CGAL, " + row.model + ": " + arap.note + ".\n";
+    const ArapTimes arap = row->arap.value_or(ArapTimes{});
+    const SoftRow& soft = row->soft[row->soft.size() / 2];
+    table.add({row->model, peer(arap.prefactor_ms), by(arap.prefactor_ms, row->prefactor_ms), figure(soft.prefactor_ms),
+               ratio(soft.prefactor_ms, row->prefactor_ms), peer(arap.solve5_ms), by(arap.solve5_ms, row->solve5_ms),
+               figure(soft.solve5_ms), ratio(soft.solve5_ms, row->solve5_ms)});
+    if (!arap.note.empty()) notes += "  CGAL, " + row->model + ": " + arap.note + ".\n";
   }
-  return seen.empty() ? "" : table.text() + notes;
+  return any ? table.text() + notes : "";
 }
+
+constexpr const char* kResidualNotes =
+    "  field: worst |u(g p) - O u(p)| in space, over all regions and elements; mesh: the same between vertices that "
+    "were\n"
+    "  images of one another, above what they were at rest; soft: on the samples, what symmetry as least squares "
+    "leaves;\n"
+    "  handles: root mean square distance from their targets.\n";
+constexpr const char* kTimeNotes =
+    "  build: the subspace from mesh and annotation; setup: once a subspace; prefactor: once a set of handles; lift: "
+    "from\n"
+    "  samples to all vertices. Paper: one thread of a Xeon E5-1620 at 3.6 GHz. ratio: paper / ours.\n"
+    "  floor: the lift's own bytes (MB) streamed through memory by as many threads; lift/floor: 1x is the bound.\n";
+constexpr const char* kPeerNotes =
+    "  CGAL: Surface_mesh_deformation (as rigid as possible) on all vertices, without symmetry. soft: the paper's "
+    "editing\n"
+    "  on all samples, symmetry as least squares of weight 100. /ours: their time by ours with the fewest threads "
+    "above.\n";
 
 }  // namespace
 
 std::string table1_text(const std::vector<Table1Row>& rows) {
-  std::string text =
-      "Models\n" + sizes(rows) +
-      "  radius: of the samples, residuals, handles: fractions of the diagonal, after five iterations.\n"
-      "  field: worst |u(g p) - O u(p)| in space; mesh: the same between vertices that were images of one\n"
-      "  another, above what they were at rest; handles: root mean square distance from their targets.\n";
+  std::string text = "Models; r: sampling radius, fraction of the diagonal\n" + sizes(rows);
   std::set<int> threads;
   for (const Table1Row& row : rows) threads.insert(row.threads);
-  for (const int count : threads) {
-    text += "\nTimes in ms, " + count_of(count, "thread") + "\n" + times(rows, count);
-  }
-  text +=
-      "  build: the subspace from mesh and annotation; setup: what editing needs once a subspace; prefactor: once a "
-      "set of\n"
-      "  handles. Paper: one thread of a Xeon E5-1620. ratio: paper / ours, above 1 where ours is faster.\n"
-      "  floor: the lift's own bytes (MB) streamed through memory by as many threads; lift/floor: 1x is the bound.\n";
+  for (const int count : threads) text += "\nTimes in ms, " + count_of(count, "thread") + "\n" + times(rows, count);
+  text += kTimeNotes;
   const std::string others = peers(rows);
-  if (others.empty()) return text;
-  return text + "\nPeers, ms on one thread; ours: how many times longer than ours, with the fewest threads above\n" +
-         others +
-         "  CGAL: Surface_mesh_deformation (as rigid as possible) on all vertices, no symmetry. soft: the paper's "
-         "editing\n"
-         "  on all samples, symmetry as least squares of weight 100. left by soft: its worst |u(g p) - O u(p)| on the\n"
-         "  samples by weight, fraction of the diagonal.\n";
+  if (!others.empty()) text += "\nPeers in ms, one thread\n" + others + kPeerNotes;
+  return text + "\nWhat is left after five iterations, fractions of the diagonal\n" + residuals(rows) + kResidualNotes;
 }
 
 std::string table1_json(const std::vector<Table1Row>& rows) {

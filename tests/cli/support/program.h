@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -24,6 +25,8 @@ struct ProgramResult {
 /// Runs the program in a folder of the test's own, where the tests' files lie.
 class Program {
  public:
+  explicit Program(std::string name = ORBIFIT_PROGRAM) : name_(std::move(name)) {}
+
   const TemporaryFolder& folder() const { return folder_; }
 
   ProgramResult run(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
@@ -62,7 +65,7 @@ class Program {
   }
 
   pid_t start(const std::vector<std::string>& arguments) const {
-    std::string name = ORBIFIT_PROGRAM;
+    std::string name = name_;
     std::vector<std::string> copies = arguments;
     std::vector<char*> pointers{name.data()};
     for (std::string& argument : copies) pointers.push_back(argument.data());
@@ -89,6 +92,7 @@ class Program {
     return result;
   }
 
+  std::string name_;
   TemporaryFolder folder_, logs_;
 };
 

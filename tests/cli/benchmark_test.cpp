@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/model/file.h"
+
+#include "program.h"
+
+namespace orbifit {
+namespace {
+
+using nlohmann::json;
+
+class BenchmarkProgram : public testing::Test {
+ protected:
+  json result_of(const std::string& line) const {
+    const ProgramResult result = program_.run(line + " --quiet --json result.json");
+    EXPECT_EQ(result.code, 0) << line << "\n" << result.errors;
+    EXPECT_EQ(result.errors, "");
+    text_ = result.output;
+    return json::parse(read_file(program_.folder().file("result.json")));
+  }
+
+  Program program_{ORBIFIT_BENCHMARK};
+  mutable std::string text_;
+};
+
+TEST_F(BenchmarkProgram, Table1HasARowForEachModelAndNumberOfThreads) {
+  const json rows = result_of("table1 --models bar --no-peers --repeat 1");
+  ASSERT_EQ(rows.size(), 2U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const json& row = rows[i];
+    EXPECT_EQ(row["model"], "bar");
+    EXPECT_EQ(row["threads"], static_cast<int>(i) + 1);
+    EXPECT_EQ(row["groups"], 1);
+    EXPECT_NEAR(row["vertices"], 4000, 500);
+    EXPECT_NEAR(row["triangles"], 8000, 1000);
+    EXPECT_EQ(row["paper_samples"], 96);
+    EXPECT_NEAR(row["samples"], 96, 9.6);
+    EXPECT_GT(row["dof"], 5);
+    EXPECT_LT(row["dof"], 60);
+    for (const char* key :
+         {"build_ms", "prefactor_ms", "solve5_ms", "lift_ms", "lift_floor_ms", "paper_vertices", "paper_triangles",
+          "paper_groups", "paper_dof", "paper_prefactor_ms", "paper_solve5_ms", "paper_lift_ms"}) {
+      ASSERT_TRUE(row.contains(key)) << key;
+      EXPECT_GT(row[key], 0) << key;
+    }
+    EXPECT_LT(row["field_residual"], 1e-12);
+    EXPECT_FALSE(row.contains("soft_solve5_ms"));
+  }
+  EXPECT_EQ(rows[0]["samples"], rows[1]["samples"]);
+  EXPECT_EQ(rows[0]["field_residual"], rows[1]["field_residual"]);
+}
+
+TEST_F(BenchmarkProgram, Table1MeasuresThePeers) {
+  const json rows = result_of("table1 --models bar --threads 1 --repeat 1");
+  ASSERT_EQ(rows.size(), 1U);
+  const json& row = rows[0];
+  EXPECT_GT(row["soft_prefactor_ms"], 0);
+  EXPECT_GT(row["soft_solve5_ms"], 0);
+  ASSERT_EQ(row["soft"].size(), 3U);
+  for (std::size_t i = 1; i < 3; ++i) EXPECT_LT(row["soft"][i]["residual"], row["soft"][i - 1]["residual"]);
+  // CGAL need not be there; without figures there is a reason.
+  ASSERT_TRUE(row.contains("arap_prefactor_ms"));
+  ASSERT_TRUE(row.contains("arap_solve5_ms"));
+  EXPECT_EQ(row["arap_prefactor_ms"].is_null(), row["arap_solve5_ms"].is_null());
+  EXPECT_TRUE(!row["arap_solve5_ms"].is_null() || row["arap_note"] != "");
+}
+
+TEST_F(BenchmarkProgram, TablesFitAScreen) {
+  result_of("table1 --models bar --repeat 1");
+  std::istringstream lines(text_);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 120U) << line;
+  EXPECT_GT(count, 10);
+}
+
+TEST_F(BenchmarkProgram, ScalingCountsVertices) {
+  const json result = result_of("scaling --most 100000");
+  const json& rows = result["rows"];
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_NEAR(rows[0]["vertices"], 1e4, 3e3);
+  EXPECT_NEAR(rows[1]["vertices"], 1e5, 3e4);
+  for (const json& row : rows) {
+    EXPECT_GT(row["seconds"], 0);
+    EXPECT_GT(row["bytes_peak"], row["bytes_before"]);
+    EXPECT_GE(row["samples"], 100);
+  }
+  EXPECT_TRUE(std::isfinite(result["exponent"].get<double>()));
+}
+
+TEST_F(BenchmarkProgram, RefusesWhatItCannotMeasure) {
+  for (const char* line : {"", "table2", "table1 --models teapot", "table1 --repeat 0", "table1 --threads 0",
+                           "scaling --most 3", "scaling --most nan", "scaling --model teapot"}) {
+    const ProgramResult result = program_.run(line);
+    EXPECT_EQ(result.code, 2) << line;
+    EXPECT_TRUE(result.errors.starts_with("orbifit")) << result.errors;
+  }
+  EXPECT_EQ(program_.run("table1 --models bar --json missing/table.json").code, 3);
+}
+
+}  // namespace
+}  // namespace orbifit
