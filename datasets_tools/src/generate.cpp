@@ -13,7 +13,9 @@ namespace orbifit {
 namespace {
 
 const std::vector<ModelDefinition>& definitions() {
-  static const std::vector<ModelDefinition> all{bar_model(), chair_model(), fan_model(), table_model(), wheel_model()};
+  static const std::vector<ModelDefinition> all{
+      armchair_model(), bar_model(),   car_model(),   centre_piece_model(), chair_model(),     desk_fan_model(),
+      fan_model(),      plane_model(), table_model(), wheel_model(),        wind_mill_model(), yard_tool_model()};
   return all;
 }
 

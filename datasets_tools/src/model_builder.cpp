@@ -14,7 +14,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kSmallestArea = 0.0025;
+constexpr Eigen::Index kMostMeasured = 1000000;  // vertices
 
 double area_of(const Eigen::VectorXd& areas, const std::vector<int>& faces) {
   return areas(faces).sum();
@@ -91,15 +91,24 @@ Mesh ModelBuilder::mesh() const {
 
 GeneratedModel ModelBuilder::finish() const {
   GeneratedModel model{mesh(), {}};
+  if (doubled_) {
+    model.mesh.faces.conservativeResize(2 * faces_, 3);
+    model.mesh.faces.bottomRows(faces_) = model.mesh.faces.topRows(faces_);
+    model.mesh.faces.bottomRows(faces_).col(1).swap(model.mesh.faces.bottomRows(faces_).col(2));
+  }
   model.truth = empty_annotation(model.mesh, 0.005);
   const Eigen::VectorXd areas = face_areas(model.mesh);
   // Products of exact motions add rounding only: to measure the generators is enough, and quick.
   SymmetryAnnotation measured = model.truth;
   for (const Declared& declared : regions_) {
-    if (area_of(areas, declared.region.faces) < kSmallestArea * areas.sum()) continue;
+    if (area_of(areas, declared.region.faces) < smallest_share_ * areas.sum()) continue;
     model.truth.regions.push_back(declared.region);
+    if (doubled_) {
+      PartFaces& faces = model.truth.regions.back().faces;
+      for (std::size_t i = 0, front = faces.size(); i < front; ++i) faces.push_back(faces[i] + faces_);
+    }
     model.truth.regions.back().id = static_cast<int>(model.truth.regions.size()) - 1;
-    measured.regions.push_back(declared.region);
+    measured.regions.push_back(model.truth.regions.back());
     measured.regions.back().group = {};
     measured.regions.back().elements = declared.measured;
   }
@@ -109,6 +118,7 @@ GeneratedModel ModelBuilder::finish() const {
   }
   measured.patterns = model.truth.patterns;
   set_parents(model.truth.regions);
+  if (model.mesh.vertices.rows() > kMostMeasured) return model;
   RunContext context;
   const SymmetryReport report = symmetry_residual(model.mesh, measured, nullptr, CarriedMotions::fixed, context);
   for (std::size_t r = 0; r < report.regions.size(); ++r) model.truth.regions[r].residual = report.regions[r].floor;

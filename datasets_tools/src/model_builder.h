@@ -30,11 +30,15 @@ Placement image(const Motion& motion, const Placement& placement);
 /// Puts a model together from parts and says what is symmetric.
 class ModelBuilder {
  public:
+  /// \param smallest_share of the model's area that a region needs; smaller ones are left out
+  explicit ModelBuilder(double smallest_share = 0.0025) : smallest_share_(smallest_share) {}
+
   /// The part's image under `motion`; its faces.
   PartFaces add(const Mesh& part, const Motion& motion = {});
 
   /// Declares `faces` symmetric under the group about a place; column 2 of its frame is the axis. Regions of under
-  /// 0.25 % of the model's area are left out: no picture and no measure would show them.
+  /// 0.25 % of the model's area are left out where nothing else was asked for: no picture and no measure would show
+  /// them.
   void declare(const std::string& name, const PointGroup& group, const Placement& about, const PartFaces& faces);
 
   /// Declares a turned part: Cinfv, or Dinfh if its two ends are `alike`; Cnv or Dnh of its facets where these count.
@@ -45,7 +49,11 @@ class ModelBuilder {
   /// Declares copies one step apart each.
   void declare_row(const std::string& name, const Eigen::Vector3d& step, const std::vector<PartFaces>& copies);
 
-  /// The model with all counts, parents and residuals.
+  /// Gives every face so far a second one that looks the other way, as two-sided models have, and so for all regions.
+  void double_faces() { doubled_ = true; }
+
+  /// The model with all counts, parents and residuals. Residuals are measured up to a million vertices; of larger
+  /// models they are left 0: the parts are the same, only finer.
   GeneratedModel finish() const;
 
  private:
@@ -55,6 +63,8 @@ class ModelBuilder {
   };
   Mesh mesh() const;
 
+  double smallest_share_ = 0;
+  bool doubled_ = false;
   std::vector<Mesh> parts_;
   int faces_ = 0;
   std::vector<Declared> regions_;

@@ -24,10 +24,17 @@ struct ModelDefinition {
   GeneratedModel (*build)(const ModelValues& values);
 };
 
+ModelDefinition armchair_model();
 ModelDefinition bar_model();
+ModelDefinition car_model();
+ModelDefinition centre_piece_model();
 ModelDefinition chair_model();
+ModelDefinition desk_fan_model();
 ModelDefinition fan_model();
+ModelDefinition plane_model();
 ModelDefinition table_model();
 ModelDefinition wheel_model();
+ModelDefinition wind_mill_model();
+ModelDefinition yard_tool_model();
 
 }  // namespace orbifit

@@ -87,8 +87,13 @@ TEST_P(GeneratedTruth, RegionsAreWellFormed) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, GeneratedTruth,
-    testing::Values(Case{"bar", {}}, Case{"bar", {{"height", 0.5}, {"length", 5}}}, Case{"bar", {{"detail", 2}}},
-                    Case{"chair", {}}, Case{"chair", {{"seat_depth", 0.5}, {"slats", 3}}},
+    testing::Values(Case{"armchair", {{"seat", 0.8}, {"leg_spread", 0}, {"detail", 1}}}, Case{"bar", {}},
+                    Case{"car", {{"camber", 6}, {"length", 5.5}, {"detail", 1}}},
+                    Case{"centre_piece", {{"reach", 0.4}, {"bowl", 0.2}, {"detail", 1}}},
+                    Case{"desk_fan", {{"radius", 0.26}, {"detail", 3}}}, Case{"plane", {{"sweep", 2}, {"detail", 1}}},
+                    Case{"plane", {{"detail", 3}}}, Case{"wind_mill", {{"pitch", 30}, {"detail", 1}}},
+                    Case{"yard_tool", {{"tine", 0.3}, {"detail", 1}}}, Case{"bar", {{"height", 0.5}, {"length", 5}}},
+                    Case{"bar", {{"detail", 2}}}, Case{"chair", {}}, Case{"chair", {{"seat_depth", 0.5}, {"slats", 3}}},
                     Case{"chair", {{"leg_spread", 0}, {"back_tilt", 0}, {"slats", 1}, {"detail", 1}}},
                     Case{"chair", {{"leg_height", 0.8}, {"leg_spread", 0.12}, {"leg_thickness", 0.02}}},
                     Case{"fan", {}}, Case{"fan", {{"blades", 3}, {"wires", 16}, {"continuous", 0}}}, Case{"table", {}},
@@ -198,14 +203,17 @@ TEST_P(BadParameters, AreRefusedByName) {
 
 INSTANTIATE_TEST_SUITE_P(
     Generate, BadParameters,
-    testing::Values(BadCase{"sofa", {}, "unknown model 'sofa'; there are bar, chair, fan, table, wheel"},
-                    BadCase{
-                        "bar", {{"mass", 1}}, "bar: unknown parameter 'mass'; there are length, width, height, detail"},
-                    BadCase{"chair", {{"slats", 0}}, "chair: slats = 0: must be from 1 to 12"},
-                    BadCase{"chair", {{"slats", 2.5}}, "chair: slats = 2.5: must be a whole number"},
-                    BadCase{"table",
-                            {{"width", std::numeric_limits<double>::quiet_NaN()}},
-                            "table: width = nan: must be from 0.5 to 1.6"}));
+    testing::Values(
+        BadCase{"sofa",
+                {},
+                "unknown model 'sofa'; there are armchair, bar, car, centre_piece, chair, desk_fan, fan, plane, table, "
+                "wheel, wind_mill, yard_tool"},
+        BadCase{"bar", {{"mass", 1}}, "bar: unknown parameter 'mass'; there are length, width, height, detail"},
+        BadCase{"chair", {{"slats", 0}}, "chair: slats = 0: must be from 1 to 12"},
+        BadCase{"chair", {{"slats", 2.5}}, "chair: slats = 2.5: must be a whole number"},
+        BadCase{"table",
+                {{"width", std::numeric_limits<double>::quiet_NaN()}},
+                "table: width = nan: must be from 0.5 to 1.6"}));
 
 }  // namespace
 }  // namespace orbifit
