@@ -26,13 +26,9 @@ struct BenchmarkModel {
 };
 
 /// In the order of Table 1.
-std::vector<std::string> benchmark_model_names();
+const std::vector<std::string>& benchmark_model_names();
 
 /// \throw UsageError for an unknown name
 BenchmarkModel benchmark_model(const std::string& name);
-
-/// Two handles for any shape: the ends of its longest extent, one held, the other turned by 20 degrees and moved by a
-/// tenth of the diagonal.
-std::vector<Handle> end_handles(const Mesh& mesh);
 
 }  // namespace orbifit::benchmarks

@@ -96,7 +96,7 @@ std::string peers(const std::vector<Table1Row>& rows) {
   for (const Table1Row* row : models(rows)) {
     if (row->soft.empty()) continue;
     any = true;
-    const auto peer = [](const std::optional<double>& time) { return time ? figure(*time) : std::string("n/a"); };
+    const auto peer = [](const std::optional<double>& time) { return time ? figure(*time) : std::string("-"); };
     const auto by = [](const std::optional<double>& time, double ours) {
       return time ? ratio(*time, ours) : std::string("-");
     };

@@ -80,7 +80,11 @@ void hold_free_parts(Problem& problem) {
   const std::size_t parts = CGAL::Polygon_mesh_processing::connected_components(surface, part_of_face);
   std::vector<char> held(parts, 0);
   for (const auto& handle : problem.handles) {
-    for (const Vertex vertex : handle) held[part_of_face[surface.face(surface.halfedge(vertex))]] = 1;
+    for (const Vertex vertex : handle) {
+      for (const Face face : CGAL::faces_around_target(surface.halfedge(vertex), surface)) {
+        if (face != Surface::null_face()) held[part_of_face[face]] = 1;
+      }
+    }
   }
   std::vector<Vertex> holds;
   for (const Face face : surface.faces()) {
