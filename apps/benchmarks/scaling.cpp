@@ -178,6 +178,7 @@ int run(const ScalingOptions& options, const CommandContext& context) {
   stages.threads = options.threads;
   std::vector<ScalingRow> rows;
   int last = 0;
+  double failed = 0;
   for (const double size : kSizes) {
     const double wanted = std::min(size, options.most);
     const int cuts = std::max(1, static_cast<int>(std::lround(std::sqrt(wanted / base.mesh.vertices.rows()))));
@@ -186,11 +187,18 @@ int run(const ScalingOptions& options, const CommandContext& context) {
     context.run.check();
     context.run.message("about " + short_number(wanted, 9) + " vertices");
     const auto row = measure_apart(base, cuts, options, stages);
-    if (!row) throw NoResultError("the subspace of about " + short_number(wanted, 9) + " vertices could not be built");
+    if (!row) {
+      failed = wanted;
+      break;
+    }
     rows.push_back(*row);
   }
   if (!options.json.empty()) write_file(options.json, json_of(rows, options));
   print(text_of(rows, options));
+  if (failed > 0) {
+    throw NoResultError("the subspace of about " + short_number(failed, 9) +
+                        " vertices could not be built; the memory may be too small");
+  }
   return kDone;
 }
 

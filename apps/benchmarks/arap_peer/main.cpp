@@ -7,9 +7,11 @@
 // Prints {"prefactor_ms": ..., "solve5_ms": ..., "note": "..."}; the note alone where CGAL does not take the mesh.
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,11 +56,21 @@ Surface manifold_surface(const orbifit::Mesh& mesh, std::string& note) {
     points.emplace_back(mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2));
   }
   std::vector<std::vector<std::size_t>> faces;
+  std::set<std::array<std::size_t, 3>> known;
+  std::size_t doubled = 0;
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
     std::vector<std::size_t> face;
     for (int c = 0; c < 3; ++c) face.push_back(static_cast<std::size_t>(mesh.faces(f, c)));
-    if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) faces.push_back(std::move(face));
+    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
+    std::array<std::size_t, 3> corners{face[0], face[1], face[2]};
+    std::ranges::sort(corners);
+    if (known.insert(corners).second) {
+      faces.push_back(std::move(face));
+    } else {
+      ++doubled;
+    }
   }
+  if (doubled > 0) append(note, std::to_string(doubled) + " doubled faces taken once");
   CGAL::Polygon_mesh_processing::orient_polygon_soup(points, faces);
   const std::size_t copies = points.size() - static_cast<std::size_t>(mesh.vertices.rows());
   if (copies > 0) append(note, std::to_string(copies) + " vertices doubled to make it manifold");
