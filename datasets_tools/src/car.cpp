@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -225,13 +228,9 @@ GeneratedModel build_car(const ModelValues& values) {
   ModelBuilder builder(0);
   std::vector<PartFaces> parts{builder.add(body(size, detail)), builder.add(cabin(size, detail))};
 
-  // The front left wheel's z looks out to the left, its upper end inwards; y up. A spoke (x) looks forwards... turned
-  // up.
+  // The front left wheel's z looks out to the left and its x, a spoke, upwards.
   Matrix3d outwards;
-  outwards << 0, -1, 0, 0, 0, 1, -1, 0, 0;
-  outwards.col(0) = Vector3d::UnitZ();
-  outwards.col(1) = Vector3d::UnitX();
-  outwards.col(2) = Vector3d::UnitY();
+  outwards << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   const double track = size.half_width - 0.4 * kTyreWidth;
   const Motion front_left{axis_rotation(Vector3d::UnitX(), camber) * outwards, Vector3d(size.axle, track, size.wheel)};
   const std::array<std::string, 4> wheel_names{"front left wheel", "rear right wheel", "rear left wheel",
@@ -249,6 +248,7 @@ GeneratedModel build_car(const ModelValues& values) {
   struct Fitting {
     std::string name;
     Vector3d half, place;
+    double yaw, pitch;  // of the left one, degrees
     SkinCounts counts;
     double exponent;
   };
@@ -256,12 +256,12 @@ GeneratedModel build_car(const ModelValues& values) {
   const SkinCounts small{6, detail, 2 * detail};
   const double nose = size.half_length;
   const double side = size.half_width;
-  const std::array<Fitting, 5> fittings{
-      {{"headlight", {0.07, 0.17, 0.075}, {0.93 * nose, 0.6 * side, 0.63}, fine, 2.3},
-       {"tail light", {0.05, 0.15, 0.06}, {-0.97 * nose, 0.62 * side, 0.72}, fine, 3},
-       {"exhaust", {0.05, 0.07, 0.04}, {-0.95 * nose, 0.5 * side, 0.3}, small, 3},
-       {"mirror", {0.06, 0.1, 0.065}, {0.2 * nose, 0.95 * side, 0.93}, small, 2.4},
-       {"door handle", {0.1, 0.025, 0.02}, {-0.12 * nose, 0.99 * side, 0.78}, small, 3}}};
+  // Swept back and tilted: a pair in one line would have more symmetries than each of the two.
+  const std::array<Fitting, 4> fittings{
+      {{"headlight", {0.07, 0.17, 0.075}, {0.93 * nose, 0.6 * side, 0.63}, 22, -20, fine, 2.3},
+       {"tail light", {0.05, 0.15, 0.06}, {-0.97 * nose, 0.62 * side, 0.72}, -14, 10, fine, 3},
+       {"mirror", {0.06, 0.1, 0.065}, {0.2 * nose, 0.93 * side, 0.88}, 15, -10, small, 2.4},
+       {"door handle", {0.1, 0.025, 0.02}, {-0.12 * nose, 0.99 * side, 0.78}, 2, 5, small, 3}}};
   std::vector<std::pair<std::string, PartFaces>> fitted;
   std::vector<Placement> fitted_places;
   for (const Fitting& fitting : fittings) {
@@ -275,11 +275,14 @@ GeneratedModel build_car(const ModelValues& values) {
       frame << 0, 1, 0, 0, 0, 1, 1, 0, 0;
       half = {fitting.half.z(), fitting.half.x(), fitting.half.y()};
     }
-    const Mesh part = moved(pebble(half, fitting.exponent, fitting.counts), {frame, fitting.place});
+    const Matrix3d tilt = axis_rotation(Vector3d::UnitZ(), fitting.yaw * std::numbers::pi / 180) *
+                          axis_rotation(Vector3d::UnitY(), fitting.pitch * std::numbers::pi / 180);
+    const Placement left{tilt * frame, fitting.place};
+    const Mesh part = moved(pebble(half, fitting.exponent, fitting.counts), left);
     for (const double hand : {1.0, -1.0}) {
       const Motion motion{Vector3d(1, hand, 1).asDiagonal(), Vector3d::Zero()};
       fitted.emplace_back((hand > 0 ? "left " : "right ") + fitting.name, builder.add(part, motion));
-      fitted_places.push_back(image(motion, {Matrix3d::Identity(), fitting.place}));
+      fitted_places.push_back(image(motion, left));
       parts.push_back(fitted.back().second);
     }
   }
@@ -290,6 +293,13 @@ GeneratedModel build_car(const ModelValues& values) {
 
   builder.declare("car", {Family::Cs, 1}, {frame_about(Vector3d::UnitY()), Vector3d::Zero()}, joined(parts));
   builder.declare("wheels", {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(0, 0, size.wheel)}, joined(all_wheels));
+  // elements() of C2v: the wheel itself, its opposite, and the two mirror images.
+  for (const auto& [name, x, first, second] :
+       {std::tuple{"front wheels", size.axle, 0, 3}, {"rear wheels", -size.axle, 1, 2}}) {
+    builder.declare(
+        name, {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(x, 0, size.wheel)},
+        joined({all_wheels[static_cast<std::size_t>(first)], all_wheels[static_cast<std::size_t>(second)]}));
+  }
   for (std::size_t i = 0; i < wheels.size(); ++i) {
     declare_wheel(builder, wheel_names[i], wheels[i], wheel_places[i], size.wheel);
   }

@@ -99,10 +99,16 @@ GeneratedModel build_centre_piece(const ModelValues& values) {
   const PartFaces plinth =
       builder.add(box({base, base, plinth_half}, {14 * detail, 14 * detail, 2 * detail}, 0.6 * plinth_half, detail),
                   {Matrix3d::Identity(), plinth_middle});
-  const Mesh foot_part = turned(
+  Mesh foot_part = turned(
       {8, detail, 3 * detail},
       trace_profile({{0, -foot, 0, 1}, {foot, -foot, 0.9 * foot, 1}, {foot, foot, 0.9 * foot, 1}, {0, foot, 0, 1}}, 16,
                     false));
+  // Claws rather than balls: they narrow downwards and reach out along the diagonal.
+  for (auto vertex : foot_part.vertices.rowwise()) {
+    const double down = -vertex.z() / foot;
+    vertex.x() = (1 - 0.3 * down) * vertex.x() + 0.4 * foot * down;
+    vertex.y() = (1 - 0.3 * down) * vertex.y() + 0.4 * foot * down;
+  }
   const double corner = base - 0.9 * foot;
   for (const Matrix3d& turn : elements({Family::Cn, 4})) {
     all.push_back(builder.add(moved(foot_part, at(corner, corner, foot)), {turn, Vector3d::Zero()}));
@@ -121,7 +127,7 @@ GeneratedModel build_centre_piece(const ModelValues& values) {
   const Curve line = smooth_curve({Vector3d(0.045, 0, knob_level), Vector3d(0.4 * reach, 0, knob_level - 0.045),
                                    Vector3d(0.78 * reach, 0, knob_level - 0.02),
                                    Vector3d(1.0 * reach, 0, 0.5 * (knob_level + rise)), Vector3d(reach, 0, rise)});
-  const Mesh arm = tube({6, 2 * detail, 36 * detail}, line, Vector3d::UnitY(), [](double share) {
+  const Mesh arm = tube({6, 2 * detail, 32 * detail}, line, Vector3d::UnitY(), [](double share) {
     return smooth_table({{0, 0.02}, {0.3, 0.012}, {0.6, 0.015}, {1, 0.011}}, share);
   });
   const Mesh candle_part = candle(values["candle"], detail);

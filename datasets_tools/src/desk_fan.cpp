@@ -45,11 +45,16 @@ GeneratedModel build_desk_fan(const ModelValues& values) {
   const Placement head{frame, Vector3d(0, 0, height)};
 
   std::vector<PartFaces> guard;
-  std::vector<Eigen::Vector2d> circle;
-  for (const Matrix3d& turn : elements({Family::Cn, 2 * detail + 4})) {
-    circle.emplace_back(radius + 0.008 * turn(0, 0), 0.008 * turn(1, 0));
+  // The rim waves out to the wires: no rounder than the guard.
+  std::vector<Ring> rim;
+  const std::vector<Matrix3d> sides = elements({Family::Cn, 2 * detail + 4});
+  for (const Matrix3d& turn : elements({Family::Cn, 2 * kWires * (detail + 1)})) {
+    const double wave = radius * (1 + 0.04 * (cosine_of_multiple(kWires, turn(0, 0), turn(1, 0)) - 1));
+    Ring& ring = rim.emplace_back();
+    for (const Matrix3d& side : sides)
+      ring.emplace_back(turn * Vector3d(wave + 0.008 * side(0, 0), 0, 0.008 * side(1, 0)));
   }
-  guard.push_back(builder.add(lathe(circle, 2 * kWires * (detail + 1), true), head));
+  guard.push_back(builder.add(closed_loft(rim), head));
   // Each wire runs from the front's middle over the rim to the back's: one part, its own mirror image.
   const Curve arc =
       smooth_curve({Vector3d(0.1 * radius, 0, depth), Vector3d(0.7 * radius, 0, 0.9 * depth), Vector3d(radius, 0, 0),

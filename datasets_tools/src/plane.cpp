@@ -37,9 +37,15 @@ Mesh fuselage(double length, int detail) {
   });
 }
 
-// Half the thickness of an aerofoil over its chord, from 0 at the nose to 1.
-double aerofoil(double chord_share) {
-  return 1.1 *
+// Where a direction around an aerofoil lies along its chord, from 0 at the round nose, where points crowd, to 1.
+double along_chord(double cosine, double sine) {
+  return 1 - std::cos(0.5 * std::atan2(std::abs(sine), cosine));
+}
+
+// Half the thickness of an aerofoil over its chord (the NACA four-digit series), of its upper or lower side.
+double aerofoil(double chord_share, double side) {
+  if (side == 0) return 0;
+  return std::copysign(1.1, side) *
          (0.2969 * std::sqrt(chord_share) - 0.126 * chord_share - 0.3516 * chord_share * chord_share +
           0.2843 * std::pow(chord_share, 3) - 0.1036 * std::pow(chord_share, 4)) /
          0.2;
@@ -58,9 +64,9 @@ struct Wing {
 Vector3d wing_point(const Wing& wing, double out, double round, double cosine, double sine) {
   const double side = std::abs(out);
   const double chord = wing.root * (1 - (1 - wing.taper) * std::pow(side, 1.5)) * round;
-  const double along = 0.5 * (1 - cosine);
-  const double camber = 0.02 * chord * (1 - cosine * cosine);
-  const double upper = wing.thickness * chord * aerofoil(along) * (sine == 0 ? 0 : std::copysign(1.0, sine));
+  const double along = along_chord(cosine, sine);
+  const double camber = 0.08 * chord * along * (1 - along);
+  const double upper = wing.thickness * chord * aerofoil(along, sine);
   // Smooth at the root, where the two sides meet.
   const double bend = std::sqrt(side * side + 0.01) - 0.1;
   return {-wing.sweep * side + chord * (0.25 - along) - (1 - round) * 0.12 * wing.root, 0.5 * wing.span * out,
@@ -71,27 +77,34 @@ Mesh wing_part(const Wing& wing, const SkinCounts& counts) {
   const double tip = 0.5 * wing.root * wing.taper;
   const double half = 0.5 * wing.span;
   const Curve outline(trace_profile(
-      {{0, -half, 0, 1}, {tip, -half, 0.9 * tip, 1}, {tip, half, 0.9 * tip, 1}, {0, half, 0, 1}}, 24, false));
+      {{0, -half, 0, 1}, {tip, -half, 0.995 * tip, 1}, {tip, half, 0.995 * tip, 1}, {0, half, 0, 1}}, 24, false));
   return capped_skin(counts, [&](double share, double cosine, double sine) {
     const Vector3d place = outline(share);
     return wing_point(wing, place.z() / half, place.x() / tip, cosine, sine);
   });
 }
 
-// A fin stands on its root: a wing's one half, turned up, its section without camber.
+// A fin stands on its root, which is rounded into the fuselage: a wing's one half, turned up, its section without
+// camber.
 Mesh fin_part(const Wing& wing, const SkinCounts& counts) {
   const double tip = 0.5 * wing.root * wing.taper;
   const double root = 0.5 * wing.root;
   const double height = 0.5 * wing.span;
-  const Curve outline(
-      trace_profile({{0, 0, 0, 1}, {root, 0, 0.02, 1}, {tip, height, 0.8 * tip, 1}, {0, height, 0, 1}}, 24, false));
+  constexpr double kRootDepth = 0.2;
+  const Curve outline(trace_profile({{0, -root, 0, 1},
+                                     {root, -root, 0.98 * root, 1},
+                                     {root, 0, 0, 1},
+                                     {tip, height, 0.9 * tip, 1},
+                                     {0, height, 0, 1}},
+                                    24, false));
   return capped_skin(counts, [&](double share, double cosine, double sine) {
     const Vector3d place = outline(share);
     const double up = place.z() / height;
-    const double along = 0.5 * (1 - cosine);
     const double chord = 2 * place.x();
-    return Vector3d(-wing.sweep * up + chord * (0.5 - along),
-                    wing.thickness * chord * aerofoil(along) * (sine == 0 ? 0 : std::copysign(1.0, sine)), place.z());
+    const double along = along_chord(cosine, sine);
+    return Vector3d(-wing.sweep * std::max(0.0, up) + chord * (0.5 - along),
+                    wing.thickness * chord * aerofoil(along, sine),
+                    place.z() < 0 ? kRootDepth * place.z() / root : place.z());
   });
 }
 
@@ -100,7 +113,7 @@ Mesh canopy(int detail) {
     const double angle = std::numbers::pi * share;
     const double wide = std::pow(std::sin(angle), 0.8);
     const double height = smooth_table({{0, 0.3}, {0.3, 0.58}, {1, 0.3}}, share);
-    return Vector3d(0.95 * std::cos(angle), 0.36 * wide * sine, height * wide * cosine);
+    return Vector3d(0.95 * std::cos(angle), 0.36 * wide * sine, height * wide * (cosine > 0 ? 1 : 0.5) * cosine);
   });
 }
 
@@ -119,12 +132,14 @@ Mesh blade(double length, int detail) {
   });
 }
 
+// Three lobes, one for each blade: no rounder than the propeller.
 Mesh spinner(int detail) {
   return turned(
       {6, detail, detail},
       trace_profile(
           {{0, 0.62, 0, 1}, {0.16, 0.5, 0.2, 1}, {0.33, 0.02, 0.02, 1}, {0.3, -0.06, 0.02, 1}, {0, -0.06, 0, 1}}, 16,
-          false));
+          false),
+      [](double, double cosine, double sine) { return 1 - 0.06 * cosine_of_multiple(3, cosine, sine); });
 }
 
 GeneratedModel build_plane(const ModelValues& values) {

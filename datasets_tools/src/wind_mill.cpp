@@ -76,11 +76,13 @@ GeneratedModel build_wind_mill(const ModelValues& values) {
   frame.col(1) = frame.col(2).cross(frame.col(0));
   const Placement hub{frame, Vector3d(0, 0, height + 0.5 * top) + frame.col(2) * (1.12 * top + 0.7)};
   std::vector<PartFaces> rotor;
-  // Square, like the cross of stocks it carries.
+  // Square and twisted, like the cross of sails it carries.
   const Mesh shaft =
       turned({4, 2 * detail, 4 * detail},
              trace_profile({{0, 0.45, 0, 1}, {0.3, 0.45, 0.1, 1}, {0.3, -1.9, 0.1, 1}, {0, -1.9, 0, 1}}, 8, false),
-             [](double, double cosine, double sine) { return 1 + 0.08 * cosine_of_multiple(4, cosine, sine); });
+             [](double share, double cosine, double sine) {
+               return 1 + 0.15 * std::cos(4 * (std::atan2(sine, cosine) + share));
+             });
   rotor.push_back(builder.add(shaft, hub));
   // One sail along +x: a tapering stock, laths along it on its one side, and bars across, all pitched.
   const Matrix3d pitch = axis_rotation(Vector3d::UnitX(), values["pitch"] * std::numbers::pi / 180);

@@ -61,6 +61,24 @@ TEST_P(Table1, IsMadeOfClosedParts) {
   }
 }
 
+// What is to be bent needs triangles that are not slivers: the longest edge's square over the area is 2.3 if
+// equilateral.
+TEST_P(Table1, HasHardlyAnySlivers) {
+  const Mesh& mesh = row_.model.mesh;
+  const Eigen::VectorXd areas = face_areas(mesh);
+  Eigen::Index slivers = 0;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector3d edge =
+          mesh.vertices.row(mesh.faces(f, k)) - mesh.vertices.row(mesh.faces(f, (k + 1) % 3));
+      longest = std::max(longest, edge.squaredNorm());
+    }
+    if (longest > 8 * 2.3 * areas[f]) ++slivers;
+  }
+  EXPECT_LT(static_cast<double>(slivers), 0.01 * static_cast<double>(mesh.faces.rows()));
+}
+
 TEST_P(Table1, HasHandlesOnTheModelOfWhichTheFirstHoldsIt) {
   ASSERT_GE(row_.handles.size(), 2U);
   for (std::size_t i = 0; i < row_.handles.size(); ++i) {
