@@ -22,30 +22,14 @@ void add_block(Entries& entries, Eigen::Index row, Eigen::Index column, const Ei
   }
 }
 
-// sign * the displacement that the transport makes of the seed's and of the regions' translations.
-void add_transport(Entries& entries, Eigen::Index row, const Transport& transport, Eigen::Index seed,
-                   Eigen::Index translations, double sign) {
-  add_block(entries, row, 3 * seed, sign * transport.frame);
-  for (const auto& [region, carried] : transport.carried) {
-    add_block(entries, row, translations + 3 * region, sign * carried);
-  }
-}
-
-Eigen::SparseMatrix<double> penalty_rows(const SymmetricSampling& sampling, Eigen::Index unknowns) {
+Eigen::SparseMatrix<double> penalty_rows(const SoftSampling& sampling, Eigen::Index unknowns) {
   const Eigen::Index translations = 3 * sampling.points.rows();
   Entries entries;
   Eigen::Index row = 0;
-  for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
-    const int seed = sampling.first_sample[static_cast<std::size_t>(orbit)];
-    for (int s = seed + 1; s < sampling.first_sample[static_cast<std::size_t>(orbit) + 1]; ++s, row += 3) {
-      add_block(entries, row, Eigen::Index{3} * s, Eigen::Matrix3d::Identity());
-      add_transport(entries, row, sampling.transports[static_cast<std::size_t>(s)], seed, translations, -1);
-    }
-  }
-  for (const SymmetricSampling::Constraint& constraint : sampling.constraints) {
-    const int seed = sampling.first_sample[static_cast<std::size_t>(constraint.orbit)];
-    add_transport(entries, row, constraint.left, seed, translations, 1);
-    add_transport(entries, row, constraint.right, seed, translations, -1);
+  for (const SymmetryPair& pair : sampling.pairs) {
+    if (pair.sample >= 0) add_block(entries, row, Eigen::Index{3} * pair.sample, Eigen::Matrix3d::Identity());
+    add_block(entries, row, Eigen::Index{3} * pair.seed, -pair.frame);
+    for (const auto& [carrier, matrix] : pair.carried) add_block(entries, row, translations + 3 * carrier, -matrix);
     row += 3;
   }
   Eigen::SparseMatrix<double> rows(row, unknowns);
@@ -69,10 +53,10 @@ Eigen::SparseMatrix<double> for_each_coordinate(const Eigen::SparseMatrix<double
 
 }  // namespace
 
-SoftSymmetry::SoftSymmetry(const Subspace& subspace, double weight)
-    : corotation_(corotation(subspace.sampling.points, 2 * subspace.sampling.radius)) {
-  const Eigen::Index unknowns = 3 * subspace.sampling.points.rows() + subspace.basis.carried.rows();
-  penalty_ = penalty_rows(subspace.sampling, unknowns);
+SoftSymmetry::SoftSymmetry(const SoftSampling& sampling, double weight)
+    : corotation_(corotation(sampling.points, 2 * sampling.radius)) {
+  const Eigen::Index unknowns = 3 * sampling.points.rows() + 3 * sampling.carriers;
+  penalty_ = penalty_rows(sampling, unknowns);
   const Eigen::SparseMatrix<double> bending = corotation_.laplacian.transpose() * corotation_.laplacian;
   const Eigen::SparseMatrix<double> symmetry = penalty_.transpose() * penalty_;
   Eigen::SparseMatrix<double> hold(unknowns, unknowns);

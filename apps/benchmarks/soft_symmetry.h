@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,19 +10,34 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/lift.h"
-#include "orbifit/subspace/subspace.h"
 
 namespace orbifit::benchmarks {
 
+/// What symmetry asks of the samples: u(sample) = frame u(seed) + sum over the pairs of matrix * t_carrier, where the
+/// translations t carry groups that float. Without a sample the right side is to vanish.
+struct SymmetryPair {
+  int sample = -1;
+  int seed = 0;
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  std::vector<std::pair<int, Eigen::Matrix3d>> carried;
+};
+
+/// A sampling with its symmetries as least squares see them.
+struct SoftSampling {
+  Points points;      ///< #S by 3
+  double radius = 0;  ///< r, mesh units
+  std::vector<SymmetryPair> pairs;
+  int carriers = 0;  ///< translations t
+};
+
 /// What the subspace is compared with: co-rotated Laplace editing (paper, section 6) on the full sampling, 3#S unknowns
-/// and, where groups float, the 3#regions translations that carry them. Symmetry is asked for by least squares instead:
-/// weight * |u(g p) - O u(p) - (I - O) t|^2 for each sample g p and the seed p of its orbit, and for each place that is
-/// reached by two ways.
+/// and the translations that carry floating groups. Symmetry is asked for by least squares instead:
+/// weight * |u(g p) - O u(p) - (I - O) t|^2 for each pair.
 class SoftSymmetry {
  public:
   /// Assembles the Laplace energy and the penalty.
   /// \param weight of the penalty, >= 0; 0: no symmetry
-  SoftSymmetry(const Subspace& subspace, double weight);
+  SoftSymmetry(const SoftSampling& sampling, double weight);
 
   /// Factorises L^T L + weight C^T C + alpha A^T W A by sparse Cholesky.
   /// \param rows    A, #H by #S, displacements of the handles' points from those of the samples

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/point_index.h"
@@ -68,6 +69,25 @@ HandleRows handle_rows(const BenchmarkModel& model, const Subspace& subspace, co
   result.weights = Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
   result.targets.resize(points.rows(), 3);
   for (std::size_t i = 0; i < targets.size(); ++i) result.targets.row(static_cast<Eigen::Index>(i)) = targets[i];
+  return result;
+}
+
+SoftSampling soft_sampling(const Subspace& subspace) {
+  const SymmetricSampling& sampling = subspace.sampling;
+  SoftSampling result{sampling.points, sampling.radius, {}, static_cast<int>(subspace.basis.carried.rows() / 3)};
+  for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
+    const int seed = sampling.first_sample[static_cast<std::size_t>(orbit)];
+    for (int s = seed + 1; s < sampling.first_sample[static_cast<std::size_t>(orbit) + 1]; ++s) {
+      const Transport& transport = sampling.transports[static_cast<std::size_t>(s)];
+      result.pairs.push_back({s, seed, transport.frame, transport.carried});
+    }
+  }
+  for (const SymmetricSampling::Constraint& constraint : sampling.constraints) {
+    const int seed = sampling.first_sample[static_cast<std::size_t>(constraint.orbit)];
+    SymmetryPair pair{-1, seed, constraint.left.frame - constraint.right.frame, constraint.left.carried};
+    for (const auto& [carrier, matrix] : constraint.right.carried) pair.carried.emplace_back(carrier, -matrix);
+    result.pairs.push_back(std::move(pair));
+  }
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "orbifit/subspace/subspace.h"
 
 #include "models.h"
+#include "soft_symmetry.h"
 
 namespace orbifit::benchmarks {
 
@@ -32,8 +33,12 @@ struct HandleRows {
 
 HandleRows handle_rows(const BenchmarkModel& model, const Subspace& subspace, const RunContext& context);
 
-/// What is measured: the stages of an edit as users of subspace/ run them. All use of that folder by `table1` and
-/// `scaling` is here.
+/// The subspace's sampling with the constraints that its basis solves: each sample to its orbit's seed, and each place
+/// that is reached by two ways.
+SoftSampling soft_sampling(const Subspace& subspace);
+
+/// What is measured: the stages of an edit as users of subspace/ run them. Nearly all use of that folder by the
+/// benchmarks is here.
 class Subject {
  public:
   /// Builds the subspace; this is what build_ms times.

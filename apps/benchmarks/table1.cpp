@@ -32,11 +32,12 @@ struct Table1Options {
 std::vector<SoftRow> measure_soft(const BenchmarkModel& model, const Subspace& subspace, const RunContext& context,
                                   const TimingOptions& timing) {
   const HandleRows handles = handle_rows(model, subspace, context);
+  const SoftSampling sampling = soft_sampling(subspace);
   std::vector<SoftRow> rows;
   for (const double weight : kSoftWeights) {
     SoftRow& row = rows.emplace_back();
     row.weight = weight;
-    SoftSymmetry soft(subspace, weight);
+    SoftSymmetry soft(sampling, weight);
     row.prefactor_ms = median_ms([&] { soft.set_handles(handles.rows, handles.weights, kAlpha); }, timing);
     row.solve5_ms = median_ms([&] { soft.solve(handles.targets, kIterations); }, timing);
     row.residual = soft.symmetry_residual() / diagonal(model.mesh.vertices);

@@ -70,7 +70,7 @@ TEST_P(SoftSymmetryOn, ApproachesTheSubspaceAsItsWeightGrows) {
   std::vector<double> residuals;
   std::vector<double> distances;
   for (const double weight : {1e-2, 1e2, 1e4, 1e6}) {
-    SoftSymmetry soft(subspace_, weight);
+    SoftSymmetry soft(soft_sampling(subspace_), weight);
     soft.set_handles(handles_.rows, handles_.weights, kAlpha);
     const Points displacements = soft.solve(handles_.targets, kIterations);
     distances.push_back((displacements - exact).rowwise().norm().maxCoeff() / size);
