@@ -49,7 +49,7 @@ GeneratedModel build_desk_fan(const ModelValues& values) {
   std::vector<Ring> rim;
   const std::vector<Matrix3d> sides = elements({Family::Cn, 2 * detail + 4});
   for (const Matrix3d& turn : elements({Family::Cn, 2 * kWires * (detail + 1)})) {
-    const double wave = radius * (1 + 0.04 * (cosine_of_multiple(kWires, turn(0, 0), turn(1, 0)) - 1));
+    const double wave = radius * (1 + 0.03 * (cosine_of_multiple(kWires, turn(0, 0), turn(1, 0)) - 1));
     Ring& ring = rim.emplace_back();
     for (const Matrix3d& side : sides)
       ring.emplace_back(turn * Vector3d(wave + 0.008 * side(0, 0), 0, 0.008 * side(1, 0)));

@@ -34,7 +34,8 @@ struct Generator {
 const std::vector<Generator>& generators();
 
 /// Builds the model `name`; parameters not given take their defaults. In every model the region's vertices map onto
-/// vertices under every element of its group, to 1e-14 of the diagonal; parts are closed and face outwards.
+/// vertices under every element of its group, to 1e-14 of the diagonal; parts are closed and face outwards
+/// (a two-sided armchair's also inwards). The residuals of models above a million vertices are not measured but 0.
 /// Lengths and angles do not change the connectivity: a model with other lengths and the same counts (`detail`, numbers
 /// of parts) is a deformation of the default one, vertex by vertex. Where lengths that agree give a larger group (a
 /// chair's square seat), other lengths may declare a smaller one.

@@ -20,7 +20,8 @@ struct Table1Handle {
 };
 
 /// A row of Table 1 of Wu, Wand, Hildebrandt, Kohli, Seidel 2014 as printed, and a generated model in place of theirs:
-/// of the same kind and size, with as many symmetric regions.
+/// of the same kind and size, with as many symmetric regions. Small parts of which there are many (the laths of a
+/// sail, a spoke's ends) may have symmetries of their own beside those.
 struct Table1Model {
   std::string name;  ///< the row's: "bar", "centre_piece", "plane", "yard_tool", "car", "wind_mill", "fan", "chair"
   std::string generator;                     ///< see generate()
