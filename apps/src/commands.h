@@ -17,5 +17,6 @@ CommandBody render(CLI::App& app);
 CommandBody report(CLI::App& app);
 CommandBody scan(CLI::App& app);
 CommandBody subspace(CLI::App& app);
+CommandBody symmetrize(CLI::App& app);
 
 }  // namespace orbifit::commands

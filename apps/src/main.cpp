@@ -31,6 +31,10 @@ constexpr std::array kCommands{
             "orbifit check chair.obj chair.json\n"
             "orbifit check chair.obj chair.json --deformed edited.obj --max-residual 1e-9",
             commands::check},
+    Command{"symmetrize", "Move a mesh to the nearest one whose symmetries are exact.",
+            "orbifit symmetrize scanned.ply scanned.json -o symmetric.ply\n"
+            "orbifit symmetrize chair.obj chair.json -o exact.obj --annotation-out exact.json",
+            commands::symmetrize},
     Command{"subspace", "Build the symmetric subspace of a mesh and say what it holds.",
             "orbifit subspace chair.obj chair.json\n"
             "orbifit subspace chair.obj chair.json --samples 300 --mode fixed",

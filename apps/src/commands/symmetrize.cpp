@@ -1,0 +1,103 @@
+#include "orbifit/subspace/symmetrize.h"
+
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/mesh_io.h"
+
+#include "../commands.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+struct SymmetrizeArguments {
+  std::string mesh, annotation, output, annotation_output;
+};
+
+nlohmann::ordered_json to_json(const Residual& residual) {
+  return {{"rms", residual.rms}, {"max", residual.max}};
+}
+
+nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryReport& after) {
+  nlohmann::ordered_json regions = nlohmann::ordered_json::array();
+  for (std::size_t r = 0; r < report.regions.size(); ++r) {
+    const SymmetrizeReport::RegionChange& change = report.regions[r];
+    regions.push_back({{"id", change.id},
+                       {"name", change.name},
+                       {"group", after.regions[r].group},
+                       {"kept_as", change.group},
+                       {"places", change.places},
+                       {"mapped", change.mapped},
+                       {"before", to_json(change.before)},
+                       {"after", to_json(change.after)},
+                       {"checked", to_json(after.regions[r].floor)}});
+  }
+  return {{"largest_movement", report.largest_movement},
+          {"rms_movement", report.rms_movement},
+          {"vertices_in_regions", report.in_regions},
+          {"mapped", report.mapped},
+          {"unclosed", report.unclosed},
+          {"iterations", report.iterations},
+          {"vertices_onto_vertices", after.vertices_onto_vertices},
+          {"residual", after.worst_floor},
+          {"regions", regions}};
+}
+
+std::string to_text(const std::string& output, const SymmetrizeReport& report, const SymmetryReport& after) {
+  TextTable table({"region", "group", "places", "mapped", "before max", "after rms", "after max", "name"});
+  for (std::size_t r = 0; r < report.regions.size(); ++r) {
+    const SymmetrizeReport::RegionChange& change = report.regions[r];
+    table.add({std::to_string(change.id), after.regions[r].group, std::to_string(change.places),
+               std::to_string(change.mapped), change.group.empty() ? "-" : short_number(change.before.max, 3),
+               short_number(after.regions[r].floor.rms, 3), short_number(after.regions[r].floor.max, 3), change.name});
+  }
+  return output + ": vertices moved by " + short_number(report.largest_movement, 3) + " at most, " +
+         short_number(report.rms_movement, 3) + " rms; " + std::to_string(report.mapped) + " of " +
+         count_of(report.in_regions, "vertex", "vertices") + " in regions exactly symmetric\n" +
+         (report.regions.empty() ? "" : table.text()) + "Lengths are fractions of the diagonal.\n";
+}
+
+}  // namespace
+
+CommandBody symmetrize(CLI::App& app) {
+  const auto arguments = std::make_shared<SymmetrizeArguments>();
+  app.add_option("MESH", arguments->mesh, "Mesh to make symmetric")->required()->type_name("FILE");
+  app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required()->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Symmetric mesh to write")->required()->type_name("FILE");
+  app.add_option("--annotation-out", arguments->annotation_output,
+                 "Annotation of the symmetric mesh to write, with its residuals (.json)")
+      ->type_name("FILE");
+  return [arguments](CommandContext& context) {
+    check_output(arguments->output, {}, {arguments->annotation});
+    if (!arguments->annotation_output.empty()) {
+      check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->output});
+    }
+    const Mesh mesh = read_mesh(arguments->mesh);
+    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    SymmetrizeReport report;
+    const Mesh result = symmetrized(mesh, annotation, context.run, &report);
+    const SymmetryReport after = symmetry_residual(result, annotation, nullptr, CarriedMotions::fixed, context.run);
+    context.run.check();
+    write_mesh(arguments->output, result);
+    if (!arguments->annotation_output.empty()) {
+      annotation.mesh_diagonal = diagonal(result.vertices);
+      for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
+        annotation.regions[r].residual = after.regions[r].floor;
+      }
+      for (std::size_t p = 0; p < annotation.patterns.size(); ++p) {
+        annotation.patterns[p].residual = after.patterns[p].floor;
+      }
+      write_annotation(arguments->annotation_output, annotation);
+    }
+    print(context.json ? to_json(report, after).dump(2) + "\n" : to_text(arguments->output, report, after));
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands
