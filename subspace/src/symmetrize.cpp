@@ -27,6 +27,7 @@ constexpr double kReach = 2;
 constexpr int kMostIterations = 20;
 constexpr double kStill = 1e-14;       // of the diagonal
 constexpr double kConverging = 0.8;    // of the step before
+constexpr double kExact = 2e-14;       // of the diagonal
 constexpr double kRingLink = 3;        // times the movement to rings of the regular angles
 constexpr double kRounding = 1e-9;     // of the diagonal
 constexpr double kMostPairs = 200000;  // of a region's residual
@@ -79,7 +80,7 @@ Shape prepare(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunC
   return shape;
 }
 
-std::vector<PlaceOrbit> find_orbits(const Shape& shape, const RunContext& context) {
+std::vector<RegionMatching> match_regions(const Shape& shape, const RunContext& context) {
   std::vector<RegionMatching> matchings;
   for (std::size_t r = 0; r < shape.finite.size(); ++r) {
     context.progress("images", static_cast<double>(r) / static_cast<double>(shape.finite.size()));
@@ -93,12 +94,43 @@ std::vector<PlaceOrbit> find_orbits(const Shape& shape, const RunContext& contex
     }
     matchings.push_back(std::move(matching));
   }
-  return matched_orbits(shape.places, matchings, shape.scale, 2 * shape.reach);
+  return matchings;
 }
 
 void place_images(const PlaceOrbit& orbit, const Vector3d& first, Points& positions) {
   for (std::size_t k = 0; k < orbit.members.size(); ++k) {
     positions.row(orbit.members[k]) = orbit.motions[k](first).transpose();
+  }
+}
+
+// Largest distance between images and the places they stand for, mesh units.
+double mismatch(const RegionMatching& matching, const Points& positions) {
+  double worst = 0;
+  for (std::size_t g = 0; g < matching.generators.size(); ++g) {
+    for (std::size_t i = 0; i < matching.inside.size(); ++i) {
+      const int image = matching.matches[g][i];
+      if (image < 0) continue;
+      const Vector3d due = matching.generators[g](positions.row(matching.inside[i]).transpose());
+      const int place = matching.inside[static_cast<std::size_t>(image)];
+      worst = std::max(worst, (positions.row(place).transpose() - due).norm());
+    }
+  }
+  return worst;
+}
+
+// Detected groups may miss one another by less than the tolerance: no shape then has all of them. One region after
+// the other is made exact by itself, the annotation's first ones last, so that those stay exact.
+void settle(const Shape& shape, const std::vector<RegionMatching>& matchings, Points& positions,
+            const RunContext& context) {
+  for (auto matching = matchings.rbegin(); matching != matchings.rend(); ++matching) {
+    context.check();
+    if (mismatch(*matching, positions) <= kExact * shape.scale) continue;
+    Places places = shape.places;
+    places.positions = positions;
+    for (const PlaceOrbit& orbit : matched_orbits(places, {*matching}, shape.scale, 2 * shape.reach)) {
+      if (orbit.members.size() == 1 && orbit.stabilisers.empty()) continue;
+      place_images(orbit, orbit_mean(orbit, places.positions), positions);
+    }
   }
 }
 
@@ -295,7 +327,8 @@ SymmetrizeReport make_report(const Shape& shape, const std::vector<PlaceOrbit>& 
 Mesh symmetrized(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                  SymmetrizeReport* report) {
   const Shape shape = prepare(mesh, annotation, context);
-  const std::vector<PlaceOrbit> orbits = find_orbits(shape, context);
+  const std::vector<RegionMatching> matchings = match_regions(shape, context);
+  const std::vector<PlaceOrbit> orbits = matched_orbits(shape.places, matchings, shape.scale, 2 * shape.reach);
   Points positions = shape.places.positions;
   for (const PlaceOrbit& orbit : orbits) {
     if (orbit.members.size() > 1 || !orbit.stabilisers.empty()) {
@@ -305,6 +338,7 @@ Mesh symmetrized(const Mesh& mesh, const SymmetryAnnotation& annotation, const R
   std::vector<char> unclosed(static_cast<std::size_t>(positions.rows()), 0);
   const int iterations = average_over_surfaces(shape, orbits, positions, unclosed, context);
   make_rings(shape, positions, context);
+  settle(shape, matchings, positions, context);
   // What no region holds keeps its very coordinates, also where vertices lie a rounding apart.
   Mesh result = mesh;
   for (Index v = 0; v < result.vertices.rows(); ++v) {
