@@ -37,6 +37,8 @@ struct SymmetrizeReport {
 /// become symmetric up to their tessellation. The parts of continuous groups become turned ones: vertices of about the
 /// same distance from the axis and height take the same, at regular angles where the tessellation has them. Patterns
 /// are left as they are. Connectivity, order and number of vertices stay; vertices at one place stay at one place.
+/// Detected groups that miss one another by less than 1e-4 of the diagonal cannot all be exact: then the annotation's
+/// first region is, and later ones as nearly as they agree with it.
 /// \param annotation its tolerance says how far an image may lie from its vertex: twice that
 /// \param report may be null
 /// \return the moved mesh; cost O(sum over regions of V log V), and |G| nearest points a vertex where images lie
