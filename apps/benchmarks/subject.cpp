@@ -6,6 +6,7 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/point_index.h"
+#include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/lift.h"
 
 namespace orbifit::benchmarks {
@@ -26,15 +27,15 @@ SubspaceOptions options_of(double radius, GroupMode mode) {
 
 double radius_for_samples(const BenchmarkModel& model, int samples, GroupMode mode, const RunContext& context) {
   const RegionMap regions(model.mesh, model.annotation, context);
+  GroupWords words(regions, mode != GroupMode::fixed);
   SamplingOptions sampling;
-  sampling.floating = mode == GroupMode::floating;
   double best = 0;
   double best_error = HUGE_VAL;
   double radius = std::sqrt(face_areas(model.mesh).sum() / (0.7 * samples));
   // Secant steps on samples ~ radius^-2 come near; orbits make the count jump there, so radii close by are tried too.
   for (int round = 0; round < kSearchRounds && best_error > std::log1p(kWithin); ++round) {
     sampling.radius = round < 8 ? radius : best * (1 + 0.004 * (round - 7) * (round % 2 == 0 ? 1 : -1));
-    const auto count = static_cast<double>(sample_symmetrically(model.mesh, regions, sampling, context).points.rows());
+    const auto count = static_cast<double>(sample_symmetrically(model.mesh, regions, words, sampling, context).points.rows());
     const double error = std::abs(std::log(count / samples));
     if (error < best_error) {
       best = sampling.radius;
@@ -78,14 +79,16 @@ SoftSampling soft_sampling(const Subspace& subspace) {
   for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
     const int seed = sampling.first_sample[static_cast<std::size_t>(orbit)];
     for (int s = seed + 1; s < sampling.first_sample[static_cast<std::size_t>(orbit) + 1]; ++s) {
-      const Transport& transport = sampling.transports[static_cast<std::size_t>(s)];
+      const Transport& transport = subspace.basis.transports.samples[static_cast<std::size_t>(s)];
       result.pairs.push_back({s, seed, transport.frame, transport.carried});
     }
   }
   for (const SymmetricSampling::Constraint& constraint : sampling.constraints) {
     const int seed = sampling.first_sample[static_cast<std::size_t>(constraint.orbit)];
-    SymmetryPair pair{-1, seed, constraint.left.frame - constraint.right.frame, constraint.left.carried};
-    for (const auto& [carrier, matrix] : constraint.right.carried) pair.carried.emplace_back(carrier, -matrix);
+    const Transport& left = subspace.basis.transports.words[static_cast<std::size_t>(constraint.left)];
+    const Transport& right = subspace.basis.transports.words[static_cast<std::size_t>(constraint.right)];
+    SymmetryPair pair{-1, seed, left.frame - right.frame,
+                      carried_sum(left.carried, -Eigen::Matrix3d::Identity(), right.carried)};
     result.pairs.push_back(std::move(pair));
   }
   return result;
@@ -111,22 +114,21 @@ void Subject::solve5() {
 }
 
 void Subject::lift() {
-  displacements_ = vertex_displacements(subspace_, deformation_.q);
+  displacements_ = vertex_displacements(subspace_, deformation_.state, context_);
 }
 
 Subject::Traffic Subject::lift_traffic() const {
-  using Weights = decltype(subspace_.lift);
-  const auto entries = static_cast<std::size_t>(subspace_.lift.nonZeros());
-  const auto rows = static_cast<std::size_t>(subspace_.lift.rows());
-  return {entries * (sizeof(Weights::Scalar) + sizeof(Weights::StorageIndex)) + rows * sizeof(Weights::StorageIndex),
-          3 * rows * sizeof(double)};
+  const std::size_t vertices = subspace_.orbits.followers.size();
+  return {subspace_.lift.bytes() + subspace_.lift.first.size() * sizeof(subspace_.lift.first[0]) +
+              vertices * sizeof(VertexOrbits::Follower),
+          3 * vertices * sizeof(double)};
 }
 
 double Subject::field_residual() const {
   double worst = 0;
   for (std::size_t i = 0; i < model_.annotation.regions.size(); ++i) {
     const Residual residual = orbifit::field_residual(subspace_, model_.mesh, model_.annotation.regions[i],
-                                                      static_cast<int>(i), deformation_.q, context_);
+                                                      static_cast<int>(i), deformation_.state, context_);
     worst = std::max(worst, residual.max);
   }
   return worst;
@@ -134,7 +136,7 @@ double Subject::field_residual() const {
 
 double Subject::mesh_residual() const {
   Mesh deformed = model_.mesh;
-  deformed.vertices += vertex_displacements(subspace_, deformation_.q);
+  deformed.vertices += vertex_displacements(subspace_, deformation_.state, context_);
   RunContext context = context_;
   const auto motions = subspace_.mode == GroupMode::fixed ? CarriedMotions::fixed : CarriedMotions::floating;
   return symmetry_residual(model_.mesh, model_.annotation, &deformed, motions, context).worst_excess;

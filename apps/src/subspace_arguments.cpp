@@ -8,12 +8,13 @@
 namespace orbifit {
 
 namespace {
-const std::map<std::string, GroupMode> kModes{{"fixed", GroupMode::fixed}, {"floating", GroupMode::floating}};
+const std::map<std::string, GroupMode> kModes{
+    {"fixed", GroupMode::fixed}, {"floating", GroupMode::floating}, {"moving", GroupMode::moving}};
 }
 
 void add_subspace_options(CLI::App& app, SubspaceOptions& options) {
   app.add_option("--mode", options.mode,
-                 "What may become of the groups: fixed (as they are) or floating (each moved by a translation)")
+                 "What may become of the groups: fixed (as they are), floating (each moved by a translation) or moving (each by a rigid motion)")
       ->transform(CLI::CheckedTransformer(kModes).description(""))
       ->type_name("MODE")
       ->default_str("floating");

@@ -11,6 +11,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/displacement_field.h"
 
 #include "fit_system.h"
 

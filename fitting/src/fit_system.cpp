@@ -37,9 +37,7 @@ FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
       diagonal_(diagonal(mesh.vertices)),
       pivot_(bounding_box_centre(mesh.vertices)),
       corotation_(corotation(subspace.sampling.points, 2 * subspace.sampling.radius)),
-      basis_rows_(subspace.basis.columns),
-      rotations_(static_cast<std::size_t>(subspace.sampling.points.rows()), Eigen::Matrix3d::Identity()),
-      sample_weight_(rotations_.size(), 0) {
+      rotations_(static_cast<std::size_t>(subspace.sampling.points.rows()), Eigen::Matrix3d::Identity()) {
   // Per sample and neighbour, so that the stiffness means the same on every sampling.
   const double degree = std::max(1.0, corotation_.laplacian.diagonal().mean());
   corotation_.laplacian /= degree;
@@ -56,23 +54,8 @@ void FitSystem::rotate(const Eigen::VectorXd& q) {
 
 void FitSystem::add_surface_row(const std::vector<std::pair<int, double>>& vertices, const Eigen::Vector3d& direction,
                                 Eigen::Ref<Eigen::RowVectorXd> row) {
-  std::vector<Eigen::Index> touched;
   for (const auto& [vertex, share] : vertices) {
-    for (LiftWeights::InnerIterator entry(subspace_.lift, vertex); entry; ++entry) {
-      double& weight = sample_weight_[static_cast<std::size_t>(entry.col())];
-      if (weight == 0) touched.push_back(entry.col());
-      weight += share * entry.value();
-    }
-  }
-  for (const Eigen::Index sample : touched) {
-    const double weight = std::exchange(sample_weight_[static_cast<std::size_t>(sample)], 0);
-    for (int c = 0; c < 3; ++c) {
-      const double factor = weight * direction[c];
-      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(basis_rows_, 3 * sample + c); entry;
-           ++entry) {
-        row[entry.col()] += factor * entry.value();
-      }
-    }
+    if (share != 0) add_vertex_row(subspace_, vertex, share * direction, row);
   }
 }
 

@@ -51,9 +51,7 @@ class FitSystem {
   Corotation corotation_;
   double stretch_;
   Eigen::MatrixXd stiffness_matrix_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> basis_rows_;
   std::vector<Eigen::Matrix3d> rotations_;
-  std::vector<double> sample_weight_;  ///< scratch of add_surface_row, all zero between calls
 };
 
 }  // namespace orbifit

@@ -16,30 +16,32 @@ namespace {
 constexpr std::size_t kTrialPoints = 128;  // of each region
 constexpr double kDoublet = 1e-4;         // of the diagonal, as in the sampling
 
-// Orbits of groups that fit together have no more points than the product of the orders of the regions on the way, and
+// Orbits of groups that fit together have no more points than the product of the orders of the places on the way, and
 // a few times that where mirrors meet at an angle.
 int most_points(const RegionMap& regions, const std::vector<char>& followed, const std::vector<int>& here) {
   constexpr double kLeast = 64;
   constexpr double kMost = 6000;
   double product = 4;
-  for (const int region : here) {
-    if (followed[static_cast<std::size_t>(region)] == 0) continue;
-    product = std::min(kMost, product * static_cast<double>(regions.elements(region).size()));
+  for (const int place : here) {
+    if (followed[static_cast<std::size_t>(place)] == 0) continue;
+    product = std::min(kMost, product * static_cast<double>(regions.elements(place).size()));
   }
   return static_cast<int>(std::max(kLeast, product));
 }
 
-bool closes(const Mesh& mesh, const Region& region, const RegionMap& regions, const std::vector<char>& followed) {
+bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& regions,
+            const std::vector<char>& followed) {
+  GroupWords words(regions, false);
   ClosureOptions options;
   options.doublet = kDoublet * diagonal(mesh.vertices);
   options.followed = &followed;
-  const std::size_t step = 1 + region.faces.size() / kTrialPoints;
-  for (std::size_t i = 0; i < region.faces.size(); i += step) {
-    const int face = region.faces[i];
+  const std::size_t step = 1 + faces.size() / kTrialPoints;
+  for (std::size_t i = 0; i < faces.size(); i += step) {
+    const int face = faces[i];
     const Eigen::Vector3d centroid = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
     options.most_points = most_points(regions, followed, regions.regions_of_face(face));
     try {
-      orbit_of(centroid, face, regions, options);
+      orbit_of(centroid, regions.set_of_face(face), regions, words, options);
     } catch (const InputError&) {  // the orbit has more points than it may
       return false;
     }
@@ -52,13 +54,14 @@ bool closes(const Mesh& mesh, const Region& region, const RegionMap& regions, co
 SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
   const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance);
   const RegionMap regions(mesh, annotation, context);
-  std::vector<char> followed(annotation.regions.size(), 0);
+  std::vector<char> followed(static_cast<std::size_t>(regions.places()), 0);
   SymmetryAnnotation result = annotation;
   result.regions.clear();
+  result.patterns.clear();
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     context.progress("closure", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
     followed[i] = 1;
-    if (!closes(mesh, annotation.regions[i], regions, followed)) {
+    if (!closes(mesh, annotation.regions[i].faces, regions, followed)) {
       followed[i] = 0;
       context.message("left out region \"" + regions.name(static_cast<int>(i)) + "\" (" +
                       annotation.regions[i].group.symbol() +
@@ -66,6 +69,22 @@ SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected
       continue;
     }
     result.regions.push_back(annotation.regions[i]);
+  }
+  for (std::size_t i = 0; i < annotation.patterns.size(); ++i) {
+    const Pattern& pattern = annotation.patterns[i];
+    const auto first = followed.begin() + regions.first_place_of_pattern(static_cast<int>(i));
+    const auto mark = [&](char value) { std::fill_n(first, pattern.instances.size(), value); };
+    mark(1);
+    const bool fits = std::ranges::all_of(pattern.instances, [&](const PatternInstance& instance) {
+      return closes(mesh, instance.faces, regions, followed);
+    });
+    if (!fits) {
+      mark(0);
+      context.message("left out pattern \"" + pattern.name + "\" (" + to_string(pattern.kind) +
+                      "): its steps do not close with the groups of the regions");
+      continue;
+    }
+    result.patterns.push_back(pattern);
   }
   set_parents(result.regions);
   return result;

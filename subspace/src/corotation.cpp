@@ -20,15 +20,19 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 Corotation corotation(const Points& samples, double distance) {
+  const SampleEdges edges = neighbour_graph(samples, distance);
+  return corotation(samples, edges, graph_laplacian(edges, samples.rows()));
+}
+
+Corotation corotation(const Points& samples, const SampleEdges& edges, const Eigen::SparseMatrix<double>& laplacian) {
   Corotation result;
   result.rest = samples;
   result.neighbours.resize(static_cast<std::size_t>(samples.rows()));
-  const SampleEdges edges = neighbour_graph(samples, distance);
   for (const auto& [i, j] : edges) {
     result.neighbours[static_cast<std::size_t>(i)].push_back(j);
     result.neighbours[static_cast<std::size_t>(j)].push_back(i);
   }
-  result.laplacian = graph_laplacian(edges, samples.rows());
+  result.laplacian = laplacian;
   result.delta = result.laplacian * samples;
   return result;
 }

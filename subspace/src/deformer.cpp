@@ -2,9 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include <Eigen/Cholesky>
+
+#include "handle_rows.h"
+#include "moving_solve.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/point_index.h"
+#include "orbifit/subspace/mesh_laplacian.h"
+#include "orbifit/subspace/point_laplacian.h"
+#include "quotient.h"
+#include "solver_kernels.h"
 
 namespace orbifit {
 
@@ -13,103 +21,107 @@ namespace {
 // Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal.
 constexpr double kHold = 1e-12;
 
-// A handle counts as the samples within r of its vertices, and at least as three.
-double weight_of(const Handle& handle, const Mesh& mesh, const PointIndex& samples, double radius) {
-  std::vector<int> near;
-  for (const int vertex : handle.vertices) {
-    for (const auto& neighbour : samples.within(mesh.vertices.row(vertex).transpose(), radius)) {
-      near.push_back(neighbour.index);
-    }
+Corotation energy_of(const Subspace& subspace, const Mesh& mesh, LaplacianKind kind, const RunContext& context) {
+  const Points& samples = subspace.sampling.points;
+  const SampleEdges edges = neighbour_graph(samples, subspace.sampling.radii);
+  switch (kind) {
+    case LaplacianKind::cotangent:
+      return corotation(samples, edges,
+                        cotangent_sample_laplacian(mesh, samples, subspace.sampling.radius, edges, context));
+    case LaplacianKind::point:
+      return corotation(samples, edges, point_laplacian(samples, edges));
+    default:
+      return corotation(samples, edges, graph_laplacian(edges, samples.rows()));
   }
-  std::ranges::sort(near);
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  return std::max(3.0, static_cast<double>(near.size()));
 }
 
 }  // namespace
 
-Deformer::Deformer(const Subspace& subspace, const Mesh& mesh)
-    : subspace_(subspace),
-      mesh_(mesh),
-      corotation_(corotation(subspace.sampling.points, 2 * subspace.sampling.radius)),
-      stiffness_(restricted(subspace.basis.columns,
-                            Eigen::SparseMatrix<double>(corotation_.laplacian.transpose() * corotation_.laplacian))) {}
+struct Deformer::Implementation {
+  const Subspace& subspace;
+  const Mesh& mesh;
+  Corotation corotation;
+  Quotient quotient;
+  Eigen::MatrixXd stiffness;  // U^T L^T L U
+  HandleRows handles;
+  double alpha = 0;
+  Eigen::MatrixXd factor;  // lower
+  std::optional<MovingSolve> moving;
+
+  Implementation(const Subspace& the_subspace, const Mesh& the_mesh, LaplacianKind kind, const RunContext& context)
+      : subspace(the_subspace),
+        mesh(the_mesh),
+        corotation(energy_of(subspace, mesh, kind, context)),
+        quotient(subspace, corotation),
+        stiffness(quotient.stiffness()) {
+    if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation);
+  }
+
+  Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const;
+};
+
+Deformer::Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options,
+                   const RunContext& context)
+    : implementation_(std::make_unique<Implementation>(subspace, mesh, options.laplacian, context)) {}
+
+Deformer::~Deformer() = default;
+Deformer::Deformer(Deformer&&) noexcept = default;
+
+const Corotation& Deformer::energy() const {
+  return implementation_->corotation;
+}
 
 void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
-  handles_ = handles;
-  alpha_ = alpha;
-  std::vector<int> rows;
-  std::vector<double> weights;
-  const PointIndex samples(subspace_.sampling.points);
-  for (const Handle& handle : handles) {
-    if (handle.vertices.empty()) throw UsageError("handle \"" + handle.name + "\" takes no vertex");
-    const double each =
-        weight_of(handle, mesh_, samples, subspace_.sampling.radius) / static_cast<double>(handle.vertices.size());
-    for (const int vertex : handle.vertices) {
-      rows.push_back(vertex);
-      weights.push_back(each);
-    }
-  }
-  handle_weights_ = Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
-  handle_lift_.resize(static_cast<Eigen::Index>(rows.size()), subspace_.sampling.points.rows());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (LiftWeights::InnerIterator entry(subspace_.lift, rows[i]); entry; ++entry) {
-      entries.emplace_back(static_cast<Eigen::Index>(i), entry.col(), entry.value());
-    }
-  }
-  handle_lift_.setFromTriplets(entries.begin(), entries.end());
-
-  // Equation (4), left; A = lift (x) I_3, so its Gram matrix is scalar too.
-  const Eigen::SparseMatrix<double> weighted = handle_weights_.asDiagonal() * handle_lift_;
-  const Eigen::SparseMatrix<double> gram = handle_lift_.transpose() * weighted;
-  Eigen::MatrixXd system = stiffness_ + alpha * restricted(subspace_.basis.columns, gram);
-  system.diagonal().array() += kHold * system.diagonal().mean();
-  factor_.compute(system);
-  if (factor_.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");
+  Implementation& own = *implementation_;
+  own.handles = HandleRows(handles, own.subspace, own.mesh);
+  own.alpha = alpha;
+  // Equation (4), left.
+  Eigen::MatrixXd system = own.stiffness;
+  own.handles.add_gram(alpha, system);
+  if (system.size() > 0) system.diagonal().array() += kHold * system.diagonal().mean();
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorisation(system);
+  if (factorisation.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");
+  own.factor = std::move(system);
 }
 
-Points Deformer::handle_targets(const std::vector<Motion>& motions) const {
-  Points targets(handle_weights_.size(), 3);
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < handles_.size(); ++i) {
-    for (const int vertex : handles_[i].vertices) {
-      const Eigen::Vector3d rest = mesh_.vertices.row(vertex);
-      targets.row(row++) = motions[i](rest) - rest;
-    }
+Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const {
+  if (motions.size() != implementation_->handles.handles()) {
+    throw UsageError("there are " + std::to_string(implementation_->handles.handles()) + " handles but " +
+                     std::to_string(motions.size()) + " motions");
   }
-  return targets;
+  if (implementation_->moving) {
+    return implementation_->moving->solve(implementation_->handles, implementation_->alpha, motions, iterations, start);
+  }
+  return implementation_->solve(motions, iterations, start);
 }
 
-Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const Eigen::VectorXd& start) const {
-  if (motions.size() != handles_.size()) {
-    throw UsageError("there are " + std::to_string(handles_.size()) + " handles but " + std::to_string(motions.size()) +
-                     " motions");
-  }
-  const Eigen::SparseMatrix<double>& columns = subspace_.basis.columns;
-  const Points targets = handle_targets(motions);
-  const Points handle_pull = alpha_ * (handle_lift_.transpose() * (handle_weights_.asDiagonal() * targets));
-
+Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, int iterations,
+                                            const SubspaceState& start) const {
+  const Eigen::Index freedom = subspace.degrees_of_freedom();
+  const Eigen::VectorXd targets = handles.targets(motions);
+  const Eigen::VectorXd handle_pull = alpha * handles.pull(targets, freedom);
+  std::vector<Eigen::Matrix3d> rotations(static_cast<std::size_t>(quotient.classes()), Eigen::Matrix3d::Identity());
   Deformation result;
-  result.q = start.size() == columns.cols() ? start : Eigen::VectorXd::Zero(columns.cols());
-  Points displacements = sample_displacements(subspace_, result.q);
-  std::vector<Eigen::Matrix3d> rotations(corotation_.neighbours.size(), Eigen::Matrix3d::Identity());
-  if (start.size() == columns.cols()) {
-    rotations = local_rotations(corotation_, corotation_.rest + displacements, rotations);
-  }
+  Eigen::VectorXd& q = result.state.q;
+  q = start.q.size() == freedom ? start.q : Eigen::VectorXd::Zero(freedom);
+  if (start.q.size() == freedom) quotient.rotate(q, rotations);
+  Eigen::VectorXd previous = q;
+  Eigen::VectorXd side(freedom);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     // Equation (4), right, with the Laplace coordinates turned.
-    const Points pull = corotated_pull(corotation_, rotations) + handle_pull;
-    result.q = factor_.solve(columns.transpose() * stacked(pull));
-    const Points next = sample_displacements(subspace_, result.q);
-    result.last_change = next.rows() > 0 ? (next - displacements).rowwise().norm().maxCoeff() : 0;
-    displacements = next;
-    rotations = local_rotations(corotation_, corotation_.rest + displacements, rotations);
+    quotient.pull(rotations, side);
+    side += handle_pull;
+    cholesky_solve(factor, side);
+    previous.swap(q);
+    q.swap(side);
+    quotient.rotate(q, rotations);
   }
-  const Points missed = handle_lift_ * displacements - targets;
-  const double squares = missed.rowwise().squaredNorm().dot(handle_weights_);
-  result.handle_error = std::sqrt(squares / handle_weights_.sum());
-  result.energy = laplace_energy(corotation_, rotations, displacements) + alpha_ * squares;
+  if (iterations > 0 && freedom > 0) {
+    result.last_change = sample_displacements(subspace, Eigen::VectorXd(q - previous)).rowwise().norm().maxCoeff();
+  }
+  const double squares = handles.squared_error(q, targets);
+  result.handle_error = std::sqrt(squares / handles.total_weight());
+  result.energy = quotient.energy(q, rotations) + alpha * squares;
   return result;
 }
 

@@ -13,41 +13,38 @@ namespace orbifit {
 
 namespace {
 
-void add_carried(Transport& transport, int region, const Eigen::Matrix3d& matrix) {
-  const auto place =
-      std::ranges::lower_bound(transport.carried, region, {}, [](const auto& part) { return part.first; });
-  if (place != transport.carried.end() && place->first == region) {
-    place->second += matrix;
-  } else {
-    transport.carried.insert(place, {region, matrix});
-  }
-}
+constexpr std::size_t kFewPoints = 48;
+constexpr double kTurnOfOneRadian = 1;
 
-// Finds points closer than the doublet distance: cells as wide as that distance, so neighbours lie in 27 cells.
-class DoubletGrid {
+// Finds points closer than the doublet distance: few are searched one by one; many by cells as wide as that distance,
+// so that neighbours lie in 27 cells.
+class Doublets {
  public:
-  explicit DoubletGrid(double distance) : distance_(distance) {}
+  Doublets(double distance, const std::vector<OrbitPoint>& points) : distance_(distance), points_(points) {}
 
-  int find(const Eigen::Vector3d& position, const std::vector<OrbitPoint>& points) const {
-    const Eigen::Vector3d cell = (position / distance_).array().floor();
-    int best = -1;
+  int find(const Eigen::Vector3d& position) {
     double best_distance = distance_;
-    for (int k = 0; k < 27; ++k) {
-      const Eigen::Vector3d step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      const auto [begin, end] = cells_.equal_range(hash(cell + step));
-      for (auto entry = begin; entry != end; ++entry) {
-        const double d = (points[static_cast<std::size_t>(entry->second)].position - position).norm();
-        if (d < best_distance || (d == best_distance && entry->second < best)) {
-          best = entry->second;
-          best_distance = d;
-        }
+    int best = -1;
+    const auto consider = [&](int index) {
+      const double d = (points_[static_cast<std::size_t>(index)].position - position).norm();
+      if (d < best_distance || (d == best_distance && index < best)) {
+        best = index;
+        best_distance = d;
       }
+    };
+    if (points_.size() <= kFewPoints) {
+      for (std::size_t k = 0; k < points_.size(); ++k) consider(static_cast<int>(k));
+      return best;
+    }
+    for (; filed_ < points_.size(); ++filed_) {
+      cells_.emplace(hash((points_[filed_].position / distance_).array().floor()), static_cast<int>(filed_));
+    }
+    const Eigen::Vector3d cell = (position / distance_).array().floor();
+    for (int k = 0; k < 27; ++k) {
+      const auto [begin, end] = cells_.equal_range(hash(cell + Eigen::Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+      for (auto entry = begin; entry != end; ++entry) consider(entry->second);
     }
     return best;
-  }
-
-  void insert(const Eigen::Vector3d& position, int index) {
-    cells_.emplace(hash((position / distance_).array().floor()), index);
   }
 
  private:
@@ -61,97 +58,183 @@ class DoubletGrid {
   }
 
   double distance_;
+  const std::vector<OrbitPoint>& points_;
+  std::size_t filed_ = 0;
   std::unordered_multimap<std::size_t, int> cells_;
+};
+
+class Closure {
+ public:
+  Closure(const RegionMap& regions, GroupWords& words, const ClosureOptions& options)
+      : regions_(regions), words_(words), options_(options), doublets_(options.doublet, orbit_.points) {}
+
+  Orbit run(const Eigen::Vector3d& seed, int set) {
+    seed_ = seed;
+    OrbitPoint first{seed, 0, set};
+    const int place = continuous_place(set);
+    if (place >= 0) {
+      const Continuum& continuum = *regions_.continuum(place);
+      orbit_.turn = continuum.turn_to(seed);
+      orbit_.turned_by = place;
+      first.position = settled(inverse(orbit_.turn)(seed), continuum);
+    }
+    add(first, 0);
+    for (std::size_t head = 0; head < queue_.size(); ++head) expand(queue_[head]);
+    return std::move(orbit_);
+  }
+
+ private:
+  bool followed(int place) const {
+    return options_.followed == nullptr || (*options_.followed)[static_cast<std::size_t>(place)] != 0;
+  }
+
+  // The place whose continuum decides where points of the set are canonical; -1 for none.
+  int continuous_place(int set) const {
+    int chosen = -1;
+    for (const int place : regions_.set_places(set)) {
+      const Continuum* continuum = regions_.continuum(place);
+      if (continuum == nullptr || !followed(place)) continue;
+      if (chosen < 0) {
+        chosen = place;
+        continue;
+      }
+      const Continuum& other = *regions_.continuum(chosen);
+      const double scale = 1e-6 * (1 + (continuum->centre - other.centre).norm());
+      if (continuum->spherical && other.spherical) {
+        if ((continuum->centre - other.centre).norm() > scale) refuse(place, chosen);
+      } else if (continuum->spherical || other.spherical) {
+        const Continuum& ball = continuum->spherical ? *continuum : other;
+        const Continuum& line = continuum->spherical ? other : *continuum;
+        if (line.distance(ball.centre) > scale) refuse(place, chosen);
+        if (continuum->spherical) chosen = place;
+      } else if (continuum->axis.cross(other.axis).norm() > 1e-6 || continuum->distance(other.centre) > scale) {
+        refuse(place, chosen);
+      }
+    }
+    return chosen;
+  }
+
+  [[noreturn]] void refuse(int a, int b) const {
+    throw InputError("", "regions \"" + regions_.name(a) + "\" and \"" + regions_.name(b) + "\"",
+                     "together they carry a point to more than " + std::to_string(options_.most_points) +
+                         " places: their groups do not close; drop or correct one of them");
+  }
+
+  // On the axis exactly, where it is nearly.
+  Eigen::Vector3d settled(const Eigen::Vector3d& position, const Continuum& continuum) const {
+    return continuum.distance(position) < options_.doublet ? continuum.foot(position) : position;
+  }
+
+  void add(const OrbitPoint& point, int closed_set) {
+    const int index = static_cast<int>(orbit_.points.size());
+    orbit_.points.push_back(point);
+    closed_.push_back(closed_set);
+    queue_.push_back(index);
+    const int place = continuous_place(point.set);
+    if (place >= 0) restrict_to_continuum(index, place);
+  }
+
+  // What the rotations that fix a canonical place demand of it.
+  void restrict_to_continuum(int index, int place) {
+    const Continuum& continuum = *regions_.continuum(place);
+    const OrbitPoint point = orbit_.points[static_cast<std::size_t>(index)];
+    const bool centred = continuum.distance(point.position) == 0;
+    const auto demand = [&](const Eigen::Vector3d& axis) {
+      const Motion turn = Motion::rotation(axis, kTurnOfOneRadian, continuum.centre);
+      orbit_.constraints.push_back({index, words_.extended(point.word, place, -1, turn)});
+    };
+    if (centred || continuum.spherical) demand(continuum.axis);
+    if (centred && continuum.spherical) demand(continuum.reference);
+    const double nearness = 2 * continuum.distance(point.position);
+    if (index == 0 && !centred && nearness < options_.snap) {
+      orbit_.stabilisers.push_back(Motion::rotation(continuum.axis, kTurnOfOneRadian, continuum.centre));
+      if (continuum.spherical) {
+        orbit_.stabilisers.push_back(Motion::rotation(continuum.reference, kTurnOfOneRadian, continuum.centre));
+      }
+    }
+  }
+
+  void expand(int at) {
+    for (std::size_t r = 0; r < regions_.set_places(set_of(at)).size(); ++r) {
+      const int place = regions_.set_places(set_of(at))[r];
+      if (regions_.holds(closed_[static_cast<std::size_t>(at)], place) || !followed(place)) continue;
+      const std::vector<Motion>& elements = regions_.elements(place);
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        arrive(at, place, static_cast<int>(e), elements[e]);
+      }
+      last_place_ = place;
+    }
+  }
+
+  void arrive(int at, int place, int element, const Motion& motion) {
+    const OrbitPoint from = orbit_.points[static_cast<std::size_t>(at)];
+    const int arrival = regions_.arrival(place, element);
+    Eigen::Vector3d position = motion(from.position);
+    int word = words_.extended(from.word, place, element, motion);
+    int set = -1;
+    int known = doublets_.find(position);
+    if (known < 0) {
+      set = set_at(position, arrival);
+      const int turning = continuous_place(set);
+      if (turning >= 0) {
+        const Continuum& continuum = *regions_.continuum(turning);
+        const Motion back = inverse(continuum.turn_to(position));
+        position = settled(back(position), continuum);
+        word = words_.extended(word, turning, -1, back);
+        known = doublets_.find(position);
+      }
+    }
+    const Motion& whole = words_.motion(word);
+    const Eigen::Vector3d& start = orbit_.points.front().position;
+    if (options_.snap > 0 && (whole(start) - start).norm() < options_.snap &&
+        (whole.linear - Eigen::Matrix3d::Identity()).norm() > 1e-7) {
+      orbit_.stabilisers.push_back(whole);
+    }
+    if (known >= 0) {
+      meet(known, word, arrival, position);
+      return;
+    }
+    if (static_cast<int>(orbit_.points.size()) >= options_.most_points) {
+      refuse(place, last_place_ < 0 ? place : last_place_);
+    }
+    add({position, word, set}, regions_.with(0, arrival));
+  }
+
+  void meet(int known, int word, int arrival, const Eigen::Vector3d& position) {
+    OrbitPoint& point = orbit_.points[static_cast<std::size_t>(known)];
+    if (!words_.same(point.word, word)) orbit_.constraints.push_back({known, word});
+    if (!regions_.holds(point.set, arrival)) {
+      point.set = regions_.joined(point.set, set_at(position, arrival));
+      queue_.push_back(known);
+    }
+    int& closed = closed_[static_cast<std::size_t>(known)];
+    closed = regions_.with(closed, arrival);
+  }
+
+  int set_of(int point) const { return orbit_.points[static_cast<std::size_t>(point)].set; }
+
+  // By definition p in S puts g p in S, whatever the nearest face says.
+  int set_at(const Eigen::Vector3d& position, int arrival) const {
+    const int known = options_.set_at ? options_.set_at(position) : -1;
+    return regions_.with(known >= 0 ? known : regions_.set_near(position, arrival), arrival);
+  }
+
+  const RegionMap& regions_;
+  GroupWords& words_;
+  const ClosureOptions& options_;
+  Orbit orbit_;
+  Doublets doublets_;
+  std::vector<int> closed_;  // sets of places whose motions have been applied from the point or its images
+  std::vector<int> queue_;
+  Eigen::Vector3d seed_ = Eigen::Vector3d::Zero();
+  int last_place_ = -1;
 };
 
 }  // namespace
 
-Transport transported(const Transport& from, const Eigen::Matrix3d& linear, int region, bool floating) {
-  Transport result;
-  result.frame = linear * from.frame;
-  if (!floating) return result;
-  result.carried.reserve(from.carried.size() + 1);
-  for (const auto& [other, matrix] : from.carried) result.carried.emplace_back(other, linear * matrix);
-  add_carried(result, region, Eigen::Matrix3d::Identity() - linear);
-  return result;
-}
-
-double transport_difference(const Transport& a, const Transport& b) {
-  double result = (a.frame - b.frame).cwiseAbs().maxCoeff();
-  auto i = a.carried.begin();
-  auto j = b.carried.begin();
-  while (i != a.carried.end() || j != b.carried.end()) {
-    const bool take_a = j == b.carried.end() || (i != a.carried.end() && i->first <= j->first);
-    const bool take_b = i == a.carried.end() || (j != b.carried.end() && j->first <= i->first);
-    Eigen::Matrix3d difference = Eigen::Matrix3d::Zero();
-    if (take_a) difference += (i++)->second;
-    if (take_b) difference -= (j++)->second;
-    result = std::max(result, difference.cwiseAbs().maxCoeff());
-  }
-  return result;
-}
-
-Orbit orbit_of(const Eigen::Vector3d& seed, int face, const RegionMap& regions, const ClosureOptions& options) {
-  // Two ways to one point give the same transport up to rounding unless they restrict the displacement.
-  constexpr double kSameTransport = 1e-7;
-  Orbit orbit;
-  DoubletGrid grid(options.doublet);
-  std::vector<std::vector<int>> closed{{}};  // regions whose whole group has been applied from the point or its images
-  orbit.points.push_back({seed, Motion{}, Transport{}, regions.regions_of_face(face)});
-  grid.insert(seed, 0);
-  const auto holds = [](const std::vector<int>& list, int region) { return std::ranges::binary_search(list, region); };
-  const auto insert = [](std::vector<int>& list, int region) {
-    const auto place = std::ranges::lower_bound(list, region);
-    if (place == list.end() || *place != region) list.insert(place, region);
-  };
-
-  std::vector<int> queue{0};
-  int previous_region = -1;
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const int at = queue[head];
-    for (std::size_t r = 0; r < orbit.points[static_cast<std::size_t>(at)].regions.size(); ++r) {
-      const int region = orbit.points[static_cast<std::size_t>(at)].regions[r];
-      if (holds(closed[static_cast<std::size_t>(at)], region)) continue;
-      if (options.followed != nullptr && (*options.followed)[static_cast<std::size_t>(region)] == 0) continue;
-      for (const Motion& element : regions.elements(region)) {
-        const OrbitPoint& from = orbit.points[static_cast<std::size_t>(at)];
-        const Eigen::Vector3d position = element(from.position);
-        Transport transport = transported(from.transport, element.linear, region, options.floating);
-        const Motion motion = element * from.motion;
-        const int known = grid.find(position, orbit.points);
-        if (options.snap > 0 && (motion(seed) - seed).norm() < options.snap &&
-            (motion.linear - Eigen::Matrix3d::Identity()).norm() > kSameTransport) {
-          orbit.stabilisers.push_back(motion);
-        }
-        if (known >= 0) {
-          OrbitPoint& point = orbit.points[static_cast<std::size_t>(known)];
-          if (transport_difference(point.transport, transport) > kSameTransport) {
-            orbit.constraints.push_back({known, std::move(transport)});
-          }
-          if (!holds(point.regions, region)) {
-            for (const int near : regions.regions_near(position, region)) insert(point.regions, near);
-            queue.push_back(known);
-          }
-          insert(closed[static_cast<std::size_t>(known)], region);
-          continue;
-        }
-        const int index = static_cast<int>(orbit.points.size());
-        if (index >= options.most_points) {
-          throw InputError("",
-                           "regions \"" + regions.name(region) + "\" and \"" +
-                               regions.name(previous_region < 0 ? region : previous_region) + "\"",
-                           "together they carry a point to more than " + std::to_string(options.most_points) +
-                               " places: their groups do not close; drop or correct one of them");
-        }
-        orbit.points.push_back({position, motion, std::move(transport), regions.regions_near(position, region)});
-        closed.push_back({region});
-        grid.insert(position, index);
-        queue.push_back(index);
-      }
-      previous_region = region;
-    }
-  }
-  return orbit;
+Orbit orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
+               const ClosureOptions& options) {
+  return Closure(regions, words, options).run(seed, set);
 }
 
 Eigen::Vector3d fixed_point(const Eigen::Vector3d& seed, const std::vector<Motion>& stabilisers) {

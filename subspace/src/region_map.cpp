@@ -1,43 +1,308 @@
 #include "orbifit/subspace/region_map.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
-#include <string>
 
-#include "finite_subgroup.h"
+#include <Eigen/Geometry>
+
+#include "lattice.h"
+#include "orbifit/model/point_group.h"
 
 namespace orbifit {
 
-RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
-    : regions_of_face_(static_cast<std::size_t>(mesh.faces.rows())) {
-  for (const Region& region : annotation.regions) {
-    const int number = static_cast<int>(groups_.size());
-    names_.push_back(region.name.empty() ? "region " + std::to_string(region.id) : region.name);
-    if (region.group.continuous()) {
-      const PointGroup finite = finite_subgroup(mesh, region);
-      groups_.push_back(subgroup_elements(mesh, region, finite));
-      context.message("region \"" + names_.back() + "\": " + region.group.symbol() + " is kept as " + finite.symbol());
-    } else {
-      groups_.push_back(region.elements);
-    }
-    whole_.push_back(static_cast<Eigen::Index>(region.faces.size()) == mesh.faces.rows() ? 1 : 0);
-    for (const int face : region.faces) regions_of_face_[static_cast<std::size_t>(face)].push_back(number);
-  }
-  for (const Region& region : annotation.regions) {
-    const bool alike = std::ranges::all_of(
-        region.faces, [&](int face) { return regions_of_face(face) == regions_of_face(region.faces.front()); });
-    common_regions_.push_back(alike && !region.faces.empty() ? regions_of_face(region.faces.front())
-                                                             : std::vector<int>{});
-    surface_of_region_.push_back(common_regions_.back().empty() ? static_cast<int>(surfaces_.size()) : -1);
-    if (common_regions_.back().empty()) surfaces_.emplace_back(mesh, region.faces);
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+constexpr double kSameLine = 1e-7;   // of the diagonal, and radians
+constexpr double kOnAxis = 1e-12;    // of a point's offset
+constexpr int kMostFold = 120;
+
+// One element of each component of a continuous group; mirrors contain the reference direction.
+std::vector<Motion> components(const PointGroup& group, const Continuum& continuum) {
+  const Vector3d& centre = continuum.centre;
+  const Motion level = Motion::reflection(continuum.axis, centre);
+  const Motion upright = Motion::reflection(continuum.axis.cross(continuum.reference), centre);
+  const Motion half_turn = Motion::rotation(continuum.reference, std::numbers::pi, centre);
+  switch (group.family) {
+    case Family::Cinfv:
+      return {Motion{}, upright};
+    case Family::Cinfh:
+      return {Motion{}, level};
+    case Family::Dinf:
+      return {Motion{}, half_turn};
+    case Family::Dinfh:
+      return {Motion{}, upright, level, half_turn};
+    case Family::Kh:
+      return {Motion{}, Motion::about(-Matrix3d::Identity(), centre)};
+    default:
+      return {Motion{}};
   }
 }
 
-const std::vector<int>& RegionMap::regions_near(const Eigen::Vector3d& point, int region) const {
-  const auto number = static_cast<std::size_t>(region);
-  if (!common_regions_[number].empty()) return common_regions_[number];
-  const SurfaceIndex& surface = surfaces_[static_cast<std::size_t>(surface_of_region_[number])];
-  return regions_of_face(surface.nearest(point).face);
+bool same_line(const Continuum& a, const Vector3d& axis, const Vector3d& point, double size) {
+  return a.axis.cross(axis).norm() < kSameLine && a.axis.cross(point - a.centre).norm() < kSameLine * size;
+}
+
+}  // namespace
+
+Carried carried_sum(const Carried& a, const Matrix3d& factor, const Carried& b) {
+  Carried result;
+  result.reserve(a.size() + b.size());
+  auto i = a.begin();
+  auto j = b.begin();
+  while (i != a.end() || j != b.end()) {
+    if (j == b.end() || (i != a.end() && i->first < j->first)) {
+      result.push_back(*i++);
+    } else if (i == a.end() || j->first < i->first) {
+      result.emplace_back(j->first, factor * j->second);
+      ++j;
+    } else {
+      result.emplace_back(i->first, i->second + factor * j->second);
+      ++i;
+      ++j;
+    }
+  }
+  return result;
+}
+
+double Continuum::distance(const Vector3d& point) const {
+  return spherical ? (point - centre).norm() : axis.cross(point - centre).norm();
+}
+
+Vector3d Continuum::foot(const Vector3d& point) const {
+  return spherical ? centre : Vector3d(centre + axis * axis.dot(point - centre));
+}
+
+Motion Continuum::turn_to(const Vector3d& point) const {
+  const Vector3d offset = point - foot(point);
+  const double scale = (point - centre).norm();
+  if (offset.norm() <= kOnAxis * scale || scale == 0) return {};
+  if (spherical) {
+    const Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(axis, offset).toRotationMatrix();
+    return Motion::about(turn, centre);
+  }
+  const double angle = std::atan2(axis.dot(reference.cross(offset)), reference.dot(offset));
+  return angle == 0 ? Motion{} : Motion::rotation(axis, angle, centre);
+}
+
+RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
+  for (const Region& region : annotation.regions) add_region(mesh, region);
+  regions_ = carriers_ = places();
+  share_references();
+  for (const Region& region : annotation.regions) {
+    Place& place = places_[static_cast<std::size_t>(&region - annotation.regions.data())];
+    if (place.continuum) place.motions = components(region.group, *place.continuum);
+  }
+  for (const Pattern& pattern : annotation.patterns) add_pattern(mesh, pattern, context);
+
+  const auto faces = static_cast<std::size_t>(mesh.faces.rows());
+  std::vector<std::vector<int>> members(faces);
+  for (int place = 0; place < places(); ++place) {
+    for (const int face : at(place).faces) members[static_cast<std::size_t>(face)].push_back(place);
+  }
+  set_of_face_.resize(faces);
+  intern({});
+  for (std::size_t face = 0; face < faces; ++face) set_of_face_[face] = intern(members[face]);
+  bool surfaces_needed = false;
+  for (Place& place : places_) {
+    place.whole = static_cast<Eigen::Index>(place.faces.size()) == mesh.faces.rows();
+    surfaces_needed = surfaces_needed || !place.whole;
+    const auto set = [&](int face) { return set_of_face(face); };
+    if (!place.faces.empty() &&
+        std::ranges::all_of(place.faces, [&](int face) { return set(face) == set(place.faces.front()); })) {
+      place.common_set = set(place.faces.front());
+    }
+    for (const int face : place.faces) {
+      for (const int vertex : mesh.faces.row(face)) place.box.extend(mesh.vertices.row(vertex).transpose());
+    }
+  }
+  if (surfaces_needed) mesh_ = mesh;
+  surfaces_.resize(places_.size());
+}
+
+void RegionMap::add_region(const Mesh&, const Region& region) {
+  Place place;
+  place.name = region.name.empty() ? "region " + std::to_string(region.id) : region.name;
+  place.motions = region.elements;
+  place.centre = region.centre;
+  place.faces = region.faces;
+  if (region.group.continuous()) {
+    Continuum continuum;
+    continuum.centre = region.centre;
+    continuum.spherical = !region.group.has_axis();
+    if (!continuum.spherical) continuum.axis = region.axis.normalized();
+    continuum.reference = frame_about(continuum.axis).col(0);
+    place.continuum = continuum;
+  }
+  places_.push_back(std::move(place));
+}
+
+// Regions on one line share its direction, and the half-plane of canonical places lies in a mirror of finite groups
+// about the line, so that copies of a ring have their symmetries.
+void RegionMap::share_references() {
+  double size = 1e-300;
+  for (const Place& place : places_) {
+    for (const Place& other : places_) size = std::max(size, (place.centre - other.centre).norm());
+  }
+  for (std::size_t b = 0; b < places_.size(); ++b) {
+    if (!places_[b].continuum || places_[b].continuum->spherical) continue;
+    Continuum& own = *places_[b].continuum;
+    bool shared = false;
+    for (std::size_t a = 0; a < b && !shared; ++a) {
+      if (!places_[a].continuum || places_[a].continuum->spherical) continue;
+      if (!same_line(*places_[a].continuum, own.axis, own.centre, size)) continue;
+      const Vector3d centre = own.centre;
+      own = *places_[a].continuum;
+      own.centre = own.foot(centre);
+      shared = true;
+    }
+    if (shared) continue;
+    std::size_t most = 0;
+    for (const Place& place : places_) {
+      int rotations = 1;
+      Vector3d across = Vector3d::Zero();
+      for (const Motion& element : place.motions) {
+        const AxisAngle turn = axis_angle(element.linear);
+        const bool fixes = (element(own.centre) - own.centre).norm() < kSameLine * size;
+        if (!fixes) continue;
+        if (turn.determinant > 0 && turn.angle > 0 && turn.axis.cross(own.axis).norm() < kSameLine) ++rotations;
+        // A mirror is -1 times a half turn about its normal.
+        if (turn.determinant < 0 && std::abs(turn.angle - std::numbers::pi) < 1e-9 &&
+            std::abs(turn.axis.dot(own.axis)) < kSameLine) {
+          across = turn.axis.cross(own.axis);
+        }
+      }
+      if (!place.continuum && rotations > 1) own.fold = std::lcm(own.fold, rotations);
+      if (across.norm() > 0.5 && place.motions.size() > most) {
+        most = place.motions.size();
+        own.reference = (across - own.axis * own.axis.dot(across)).normalized();
+      }
+    }
+    if (own.fold > kMostFold) own.fold = 1;
+  }
+}
+
+void RegionMap::add_pattern(const Mesh& mesh, const Pattern& pattern, const RunContext& context) {
+  first_place_.push_back(places());
+  const Lattice lattice = lattice_of(mesh, pattern);
+  if (!lattice.regular && pattern.kind != Pattern::Kind::congruent) {
+    context.message("pattern \"" + pattern.name + "\": its instances miss the lattice; they are kept as copies");
+  }
+  const int first = places();
+  first_step_.push_back(lattice.regular ? carriers_ : -1);
+  for (std::size_t a = 0; a < pattern.instances.size(); ++a) {
+    Place place;
+    place.name = (pattern.name.empty() ? "pattern " + std::to_string(pattern.id) : pattern.name) + ", instance " +
+                 std::to_string(a);
+    place.faces = pattern.instances[a].faces;
+    place.pattern_first = first;
+    const Motion back = inverse(lattice.motions[a]);
+    for (const Motion& motion : lattice.motions) place.motions.push_back(motion * back);
+    place.motions[a] = Motion{};
+    for (const auto& [variable, matrix] : lattice.shifts[a]) place.shift.emplace_back(carriers_ + variable, matrix);
+    places_.push_back(std::move(place));
+  }
+  carriers_ += lattice.variables;
+}
+
+int RegionMap::arrival(int place, int element) const {
+  return at(place).pattern_first < 0 ? place : at(place).pattern_first + element;
+}
+
+Carried RegionMap::carried(int place, int element, const Matrix3d& linear) const {
+  if (at(place).pattern_first < 0) return {{place, Matrix3d::Identity() - linear}};
+  // u_b = O (u_a - tau_a) + tau_b
+  return carried_sum(at(at(place).pattern_first + element).shift, -linear, at(place).shift);
+}
+
+Carried RegionMap::generator_shift(int pattern, int generator) const {
+  const int first = first_step_[static_cast<std::size_t>(pattern)];
+  if (first < 0) return {};
+  return {{first + generator, Matrix3d::Identity()}};
+}
+
+std::vector<Motion> RegionMap::test_elements(int region) const {
+  const Place& place = at(region);
+  if (!place.continuum) return place.motions;
+  std::vector<Motion> result;
+  for (const double angle : {0.0, 0.3, 1.7, 4.4}) {
+    Motion turn = Motion::rotation(place.continuum->axis, angle, place.continuum->centre);
+    if (place.continuum->spherical) {
+      turn = Motion::rotation(Vector3d(1, 2, -2) / 3, 2 * angle, place.continuum->centre) * turn;
+    }
+    if (angle == 0) turn = Motion{};
+    for (const Motion& component : place.motions) result.push_back(turn * component);
+  }
+  return result;
+}
+
+int RegionMap::intern(const std::vector<int>& set) const {
+  const auto [entry, added] = number_of_set_.try_emplace(set, static_cast<int>(sets_.size()));
+  if (added) sets_.push_back(&entry->first);
+  return entry->second;
+}
+
+bool RegionMap::holds(int set, int place) const {
+  return std::ranges::binary_search(set_places(set), place);
+}
+
+bool RegionMap::contains(int set, int subset) const {
+  return set == subset || std::ranges::includes(set_places(set), set_places(subset));
+}
+
+int RegionMap::with(int set, int place) const {
+  const std::uint64_t key =
+      static_cast<std::uint64_t>(static_cast<std::uint32_t>(set)) << 32U | static_cast<std::uint32_t>(place);
+  const auto known = with_.find(key);
+  if (known != with_.end()) return known->second;
+  std::vector<int> members = set_places(set);
+  const auto position = std::ranges::lower_bound(members, place);
+  if (position == members.end() || *position != place) members.insert(position, place);
+  return with_[key] = intern(members);
+}
+
+int RegionMap::joined(int a, int b) const {
+  if (contains(a, b)) return a;
+  int result = a;
+  for (const int place : std::vector<int>(set_places(b))) result = with(result, place);
+  return result;
+}
+
+const SurfaceIndex& RegionMap::surface(int place) const {
+  auto& surface = surfaces_[static_cast<std::size_t>(place)];
+  if (!surface) surface = std::make_unique<SurfaceIndex>(mesh_, at(place).faces);
+  return *surface;
+}
+
+void RegionMap::prepare() const {
+  for (int place = 0; place < places(); ++place) {
+    if (!whole(place) && !at(place).faces.empty()) surface(place);
+  }
+}
+
+int RegionMap::set_near(const Vector3d& point, int place) const {
+  if (at(place).common_set >= 0) return at(place).common_set;
+  return set_of_face(surface(place).nearest(point).face);
+}
+
+double RegionMap::distance(const Vector3d& point, int place, double most) const {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  if (at(place).faces.empty() || at(place).box.exteriorDistance(point) > most) return kFar;
+  return surface(place).nearest(point, most).distance;
+}
+
+int innermost_region(const RegionMap& regions, int set) {
+  int best = -1;
+  for (const int place : regions.set_places(set)) {
+    if (place >= regions.count()) continue;
+    if (best < 0 || regions.face_count(place) < regions.face_count(best)) best = place;
+  }
+  return best;
 }
 
 }  // namespace orbifit

@@ -1,123 +1,248 @@
 #include "orbifit/subspace/symmetric_basis.h"
 
-#include <vector>
+#include <algorithm>
+#include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 namespace orbifit {
 
 namespace {
 
-// Directions whose singular value is below this, relative to matrices of orthogonal entries, are free.
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+// Directions whose squared singular value is below this, relative to matrices of orthogonal entries, are free.
 constexpr double kRank = 1e-7;
 
+// The constraints of one orbit on its seed and on the carriers that they name: C_s s + C_t t + c = 0.
+struct Constraints {
+  std::vector<int> carriers;
+  MatrixXd seeds;     // rows by 3
+  MatrixXd carried;   // rows by 3 * named carriers
+  VectorXd constant;  // rows
+};
+
 struct SeedSpace {
-  Eigen::MatrixXd free;   // Z, 3 by 0..3, orthonormal: seeds' displacements that the stabiliser keeps
-  Eigen::MatrixXd bound;  // -C_s^+ C_t, 3 by 3#regions: what the translations dictate; no columns for none
+  MatrixXd free;  // Z, 3 by 0..3, orthonormal: seeds' displacements that the stabiliser keeps
+  Matrix3d kept;  // Z Z^T
+  std::vector<int> carriers;
+  MatrixXd bound;                      // -C_s^+ C_t, 3 by 3 * named carriers
+  Vector3d offset = Vector3d::Zero();  // -C_s^+ c
 };
 
-// The constraints of one orbit, C_s s + C_t t = 0.
-struct OrbitConstraints {
-  Eigen::MatrixXd seeds;         // rows by 3
-  Eigen::MatrixXd translations;  // rows by 3#regions
-};
-
-void add_to(Eigen::MatrixXd& rows, Eigen::Index first, const Transport& transport, double sign) {
-  for (const auto& [region, matrix] : transport.carried) rows.block<3, 3>(first, 3 * region) += sign * matrix;
+// Where a word takes a point, less where it takes it at rest.
+Vector3d moved_by(const Transport& now, const Transport& rest, const Vector3d& position) {
+  return (now.frame - rest.frame) * position + now.shift - rest.shift;
 }
 
-// Splits one orbit's constraints into what binds its seed and what binds the translations alone; the latter are
-// appended to `pure`.
-SeedSpace solve_seed(const OrbitConstraints& constraints, std::vector<Eigen::RowVectorXd>& pure) {
+Constraints constraints_of(const std::vector<WordPair>& pairs, const CarriedTransports& transports,
+                           const Vector3d& position) {
+  Constraints result;
+  const std::vector<Transport>& words = transports.words;
+  const auto rows = 3 * static_cast<Eigen::Index>(pairs.size());
+  result.seeds.resize(rows, 3);
+  result.constant.resize(rows);
+  std::vector<Carried> carried;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Transport& left = words[static_cast<std::size_t>(pairs[i].left)];
+    const Transport& right = words[static_cast<std::size_t>(pairs[i].right)];
+    const auto row = 3 * static_cast<Eigen::Index>(i);
+    result.seeds.middleRows<3>(row) = left.frame - right.frame;
+    result.constant.segment<3>(row).setZero();
+    if (transports.turned()) {
+      result.constant.segment<3>(row) =
+          moved_by(left, transports.rest_words[static_cast<std::size_t>(pairs[i].left)], position) -
+          moved_by(right, transports.rest_words[static_cast<std::size_t>(pairs[i].right)], position);
+    }
+    carried.push_back(carried_sum(left.carried, -Matrix3d::Identity(), right.carried));
+    for (const auto& [carrier, matrix] : carried.back()) result.carriers.push_back(carrier);
+  }
+  std::ranges::sort(result.carriers);
+  result.carriers.erase(std::unique(result.carriers.begin(), result.carriers.end()), result.carriers.end());
+  result.carried = MatrixXd::Zero(rows, 3 * static_cast<Eigen::Index>(result.carriers.size()));
+  for (std::size_t i = 0; i < carried.size(); ++i) {
+    for (const auto& [carrier, matrix] : carried[i]) {
+      const auto place = std::ranges::lower_bound(result.carriers, carrier) - result.carriers.begin();
+      result.carried.block<3, 3>(3 * static_cast<Eigen::Index>(i), 3 * place) = matrix;
+    }
+  }
+  return result;
+}
+
+SeedSpace solve_seed(const Constraints& constraints) {
   SeedSpace space;
-  if (constraints.seeds.rows() == 0) {
-    space.free = Eigen::Matrix3d::Identity();
-    return space;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(Matrix3d(constraints.seeds.transpose() * constraints.seeds));
+  Eigen::Index free = 0;
+  while (free < 3 && solver.eigenvalues()[free] < kRank) ++free;
+  space.free = solver.eigenvectors().leftCols(free);
+  space.kept = space.free * space.free.transpose();
+  Matrix3d inverse = Matrix3d::Zero();
+  for (Eigen::Index k = free; k < 3; ++k) {
+    inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / solver.eigenvalues()[k];
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(constraints.seeds, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::VectorXd& values = svd.singularValues();
-  Eigen::Index rank = 0;
-  while (rank < values.size() && values[rank] > kRank) ++rank;
-  space.free = svd.matrixV().rightCols(3 - rank);
-  if (constraints.translations.cols() == 0) return space;
-  const Eigen::MatrixXd rotated = svd.matrixU().transpose() * constraints.translations;
-  space.bound = Eigen::MatrixXd::Zero(3, rotated.cols());
-  for (Eigen::Index k = 0; k < rank; ++k) space.bound -= svd.matrixV().col(k) * rotated.row(k) / values[k];
-  for (Eigen::Index k = rank; k < rotated.rows(); ++k) {
-    if (rotated.row(k).norm() > kRank) pure.emplace_back(rotated.row(k));
-  }
+  const MatrixXd pseudo_inverse = inverse * constraints.seeds.transpose();
+  space.carriers = constraints.carriers;
+  space.bound = -pseudo_inverse * constraints.carried;
+  space.offset = -pseudo_inverse * constraints.constant;
   return space;
 }
 
-// Orthonormal basis of {t : rows t = 0} as columns.
-Eigen::MatrixXd null_space(const std::vector<Eigen::RowVectorXd>& rows, Eigen::Index columns) {
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns, columns);
-  for (const Eigen::RowVectorXd& row : rows) gram += row.transpose() * row;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
-  Eigen::Index free = 0;
-  while (free < columns && solver.eigenvalues()[free] < kRank) ++free;
-  return solver.eigenvectors().leftCols(free);
+// The constraints on carriers alone, as normal equations.
+class CarrierSystem {
+ public:
+  explicit CarrierSystem(int carriers)
+      : gram_(MatrixXd::Zero(3 * carriers, 3 * carriers)), side_(VectorXd::Zero(3 * carriers)) {}
+
+  void add(const Constraints& constraints, const SeedSpace& space) {
+    const MatrixXd pure = constraints.carried + constraints.seeds * space.bound;
+    const VectorXd constant = constraints.constant + constraints.seeds * space.offset;
+    const MatrixXd gram = pure.transpose() * pure;
+    const VectorXd side = pure.transpose() * constant;
+    conflict_ = std::max(conflict_, constant.size() > 0 ? constant.cwiseAbs().maxCoeff() : 0.0);
+    if (gram.size() == 0 || gram.cwiseAbs().maxCoeff() < 1e-20) return;
+    for (std::size_t i = 0; i < constraints.carriers.size(); ++i) {
+      side_.segment<3>(3 * constraints.carriers[i]) += side.segment<3>(3 * static_cast<Eigen::Index>(i));
+      for (std::size_t j = 0; j < constraints.carriers.size(); ++j) {
+        gram_.block<3, 3>(3 * constraints.carriers[i], 3 * constraints.carriers[j]) +=
+            gram.block<3, 3>(3 * static_cast<Eigen::Index>(i), 3 * static_cast<Eigen::Index>(j));
+      }
+    }
+  }
+
+  // Columns that span the carriers' free directions, few entries each.
+  MatrixXd free() const {
+    if (gram_.size() == 0) return MatrixXd::Zero(0, 0);
+    Eigen::FullPivLU<MatrixXd> lu(gram_);
+    lu.setThreshold(kRank);
+    if (lu.rank() == gram_.cols()) return MatrixXd::Zero(gram_.cols(), 0);
+    if (lu.rank() == 0) return MatrixXd::Identity(gram_.cols(), gram_.cols());
+    MatrixXd kernel = lu.kernel();
+    // Elimination leaves rounding's crumbs where zeros belong.
+    kernel = kernel.unaryExpr([](double entry) { return std::abs(entry) < 1e-13 ? 0.0 : entry; });
+    return kernel;
+  }
+
+  VectorXd particular() const {
+    if (gram_.size() == 0 || side_.cwiseAbs().maxCoeff() == 0) return VectorXd::Zero(side_.size());
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(gram_);
+    solver.setThreshold(kRank);
+    return -solver.solve(side_);
+  }
+
+  double conflict() const { return conflict_; }
+
+ private:
+  MatrixXd gram_;
+  VectorXd side_;
+  double conflict_ = 0;
+};
+
+// A largest set of columns that move the samples independently of one another (pivoted Cholesky of E^T E).
+std::vector<Eigen::Index> independent(const Eigen::SparseMatrix<double>& effect) {
+  MatrixXd gram(effect.transpose() * effect);
+  std::vector<Eigen::Index> chosen;
+  const double scale = std::max(1.0, gram.size() > 0 ? gram.diagonal().maxCoeff() : 1.0);
+  for (Eigen::Index step = 0; step < gram.cols(); ++step) {
+    Eigen::Index pivot = 0;
+    const double largest = gram.diagonal().maxCoeff(&pivot);
+    if (largest < kRank * scale) break;
+    chosen.push_back(pivot);
+    const VectorXd column = gram.col(pivot) / std::sqrt(largest);
+    gram -= column * column.transpose();
+    gram.row(pivot).setZero();
+    gram.col(pivot).setZero();
+  }
+  std::ranges::sort(chosen);
+  return chosen;
 }
 
 }  // namespace
 
-SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, int regions, bool floating) {
-  const Eigen::Index translations = floating ? 3 * Eigen::Index{regions} : 0;
+Binding binding_of(const std::vector<WordPair>& pairs, const CarriedTransports& transports) {
+  const SeedSpace space = solve_seed(constraints_of(pairs, transports, Vector3d::Zero()));
+  Binding binding;
+  binding.kept = space.kept;
+  binding.offset = space.offset;
+  for (int k = 0; k < 3 && transports.turned(); ++k) {
+    binding.slope.col(k) =
+        solve_seed(constraints_of(pairs, transports, Vector3d::Unit(k))).offset - space.offset;
+  }
+  for (std::size_t i = 0; i < space.carriers.size(); ++i) {
+    binding.bound.emplace_back(space.carriers[i], space.bound.middleCols<3>(3 * static_cast<Eigen::Index>(i)));
+  }
+  return binding;
+}
+
+SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, const CarriedTransports& transports, int carriers,
+                               const std::vector<BoundPoint>& elsewhere) {
   const auto orbits = static_cast<std::size_t>(sampling.orbits());
-
-  std::vector<std::vector<const SymmetricSampling::Constraint*>> constraints_of(orbits);
-  for (const auto& constraint : sampling.constraints) {
-    constraints_of[static_cast<std::size_t>(constraint.orbit)].push_back(&constraint);
+  std::vector<std::vector<WordPair>> pairs(orbits);
+  for (const auto& [orbit, left, right] : sampling.constraints) {
+    pairs[static_cast<std::size_t>(orbit)].push_back({left, right});
   }
+  CarrierSystem system(carriers);
   std::vector<SeedSpace> seeds(orbits);
-  std::vector<Eigen::RowVectorXd> pure;
   for (std::size_t orbit = 0; orbit < orbits; ++orbit) {
-    OrbitConstraints system;
-    const auto rows = 3 * static_cast<Eigen::Index>(constraints_of[orbit].size());
-    system.seeds = Eigen::MatrixXd::Zero(rows, 3);
-    system.translations = Eigen::MatrixXd::Zero(rows, translations);
-    for (std::size_t i = 0; i < constraints_of[orbit].size(); ++i) {
-      const auto row = 3 * static_cast<Eigen::Index>(i);
-      const auto& [number, left, right] = *constraints_of[orbit][i];
-      system.seeds.middleRows<3>(row) = left.frame - right.frame;
-      add_to(system.translations, row, left, 1);
-      add_to(system.translations, row, right, -1);
-    }
-    seeds[orbit] = solve_seed(system, pure);
+    std::ranges::sort(pairs[orbit]);
+    pairs[orbit].erase(std::unique(pairs[orbit].begin(), pairs[orbit].end()), pairs[orbit].end());
+    const Vector3d position = sampling.points.row(sampling.first_sample[orbit]).transpose();
+    const Constraints constraints = constraints_of(pairs[orbit], transports, position);
+    seeds[orbit] = solve_seed(constraints);
+    system.add(constraints, seeds[orbit]);
+  }
+  for (const BoundPoint& point : elsewhere) {
+    const Constraints constraints = constraints_of(point.words, transports, point.position);
+    system.add(constraints, solve_seed(constraints));
   }
 
-  // What the translations alone do to the samples: B_k + O_k bound. Directions that move nothing are no freedom.
-  Eigen::MatrixXd shift(0, 0);
-  Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(translations, 0);
-  if (translations > 0) {
-    const Eigen::MatrixXd allowed = null_space(pure, translations);
-    Eigen::MatrixXd effect = Eigen::MatrixXd::Zero(3 * sampling.points.rows(), allowed.cols());
-    Eigen::MatrixXd rows(3, translations);
-    for (Eigen::Index k = 0; k < sampling.points.rows(); ++k) {
-      const auto sample = static_cast<std::size_t>(k);
-      const SeedSpace& seed = seeds[static_cast<std::size_t>(sampling.orbit_of_sample[sample])];
-      const Transport& transport = sampling.transports[sample];
-      rows.setZero();
-      add_to(rows, 0, transport, 1);
-      if (seed.bound.cols() > 0) rows += transport.frame * seed.bound;
-      effect.middleRows<3>(3 * k) = rows * allowed;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(effect.transpose() * effect);
-    const double scale = std::max(1.0, solver.eigenvalues().size() > 0 ? solver.eigenvalues().maxCoeff() : 1.0);
-    Eigen::Index idle = 0;
-    while (idle < solver.eigenvalues().size() && solver.eigenvalues()[idle] < kRank * scale) ++idle;
-    const Eigen::MatrixXd moving = solver.eigenvectors().rightCols(allowed.cols() - idle);
-    carried = allowed * moving;
-    shift = effect * moving;
-  }
-
+  // What the carriers do to a sample: B_k + O_k bound. Directions that move no sample are no freedom.
+  const MatrixXd allowed = system.free();
   std::vector<Eigen::Triplet<double>> entries;
+  SymmetricBasis basis;
+  const Eigen::Index count = sampling.points.rows();
+  basis.offset.resize(3 * count);
+  basis.carried_offset = system.particular();
+  basis.conflict = system.conflict();
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto sample = static_cast<std::size_t>(k);
+    const auto orbit = static_cast<std::size_t>(sampling.orbit_of_sample[sample]);
+    const SeedSpace& seed = seeds[orbit];
+    const Transport& transport = transports.samples[sample];
+    Carried bound;
+    for (std::size_t i = 0; i < seed.carriers.size(); ++i) {
+      bound.emplace_back(seed.carriers[i], seed.bound.middleCols<3>(3 * static_cast<Eigen::Index>(i)));
+    }
+    const Vector3d start = sampling.points.row(sampling.first_sample[orbit]).transpose();
+    basis.offset.segment<3>(3 * k) = transport.frame * seed.offset;
+    if (transports.turned()) {
+      basis.offset.segment<3>(3 * k) += moved_by(transport, transports.rest_samples[sample], start);
+    }
+    for (const auto& [carrier, matrix] : carried_sum(transport.carried, transport.frame, bound)) {
+      basis.offset.segment<3>(3 * k) += matrix * basis.carried_offset.segment<3>(3 * carrier);
+      const MatrixXd block = matrix * allowed.middleRows<3>(3 * carrier);
+      for (Eigen::Index j = 0; j < block.cols(); ++j) {
+        for (Eigen::Index i = 0; i < 3; ++i) {
+          if (std::abs(block(i, j)) > 1e-14) entries.emplace_back(3 * k + i, j, block(i, j));
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> effect(3 * count, allowed.cols());
+  effect.setFromTriplets(entries.begin(), entries.end());
+  const std::vector<Eigen::Index> moving = independent(effect);
+
+  entries.clear();
   Eigen::Index column = 0;
   for (std::size_t orbit = 0; orbit < orbits; ++orbit) {
-    const Eigen::MatrixXd& free = seeds[orbit].free;
+    const MatrixXd& free = seeds[orbit].free;
     for (int k = sampling.first_sample[orbit]; k < sampling.first_sample[orbit + 1]; ++k) {
-      const Eigen::MatrixXd block = sampling.transports[static_cast<std::size_t>(k)].frame * free;
+      const MatrixXd block = transports.samples[static_cast<std::size_t>(k)].frame * free;
       for (Eigen::Index i = 0; i < 3; ++i) {
         for (Eigen::Index j = 0; j < free.cols(); ++j) {
           if (block(i, j) != 0) entries.emplace_back(3 * k + i, column + j, block(i, j));
@@ -126,16 +251,18 @@ SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, int regions, b
     }
     column += free.cols();
   }
-  for (Eigen::Index i = 0; i < shift.rows(); ++i) {
-    for (Eigen::Index j = 0; j < shift.cols(); ++j) {
-      if (shift(i, j) != 0) entries.emplace_back(i, column + j, shift(i, j));
+  for (std::size_t j = 0; j < moving.size(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(effect, moving[j]); entry; ++entry) {
+      entries.emplace_back(entry.row(), column + static_cast<Eigen::Index>(j), entry.value());
     }
   }
-  SymmetricBasis basis;
-  basis.columns.resize(3 * sampling.points.rows(), column + shift.cols());
+  const Eigen::Index freedom = column + static_cast<Eigen::Index>(moving.size());
+  basis.columns.resize(3 * count, freedom);
   basis.columns.setFromTriplets(entries.begin(), entries.end());
-  basis.carried = Eigen::MatrixXd::Zero(translations, column + shift.cols());
-  if (translations > 0) basis.carried.rightCols(shift.cols()) = carried;
+  basis.carried = MatrixXd::Zero(3 * carriers, freedom);
+  for (std::size_t j = 0; j < moving.size(); ++j) {
+    basis.carried.col(column + static_cast<Eigen::Index>(j)) = allowed.col(moving[j]);
+  }
   return basis;
 }
 

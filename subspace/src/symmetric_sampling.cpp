@@ -8,44 +8,58 @@
 #include <string>
 #include <unordered_map>
 
+#include <Eigen/Geometry>
+
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 
 namespace orbifit {
 
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
 constexpr double kDoublet = 1e-4;  // of the diagonal (paper, section 5)
 constexpr double kCrowded = 0.4;   // of r
+constexpr double kRingSpacing = 0.9;  // of r
 constexpr int kCandidatesPerDisc = 30;
 constexpr int kMostCandidates = 400000;
+constexpr int kCandidatesPerPlace = 24;
 
-// Samples in cells as wide as the disc radius.
+// Samples in cells as wide as the largest disc.
 class DiscGrid {
  public:
-  explicit DiscGrid(double radius) : radius_(radius) {}
+  DiscGrid(double radius, const RegionMap& regions) : width_(radius), regions_(regions) {}
 
-  bool covered(const Eigen::Vector3d& point) const {
+  bool covered(const Vector3d& point, int set, double radius) const {
     const Cell cell = cell_of(point);
     for (int k = 0; k < 27; ++k) {
       const auto found = cells_.find(key({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1}));
       if (found == cells_.end()) continue;
-      for (const Eigen::Vector3d& other : found->second) {
-        if ((other - point).squaredNorm() < radius_ * radius_) return true;
+      for (const Disc& disc : found->second) {
+        const double reach = std::min(radius, disc.radius);
+        if ((disc.centre - point).squaredNorm() < reach * reach && regions_.contains(disc.set, set)) return true;
       }
     }
     return false;
   }
 
-  void insert(const Eigen::Vector3d& point) { cells_[key(cell_of(point))].push_back(point); }
+  void insert(const Vector3d& point, int set, double radius) {
+    cells_[key(cell_of(point))].push_back({point, radius, set});
+  }
 
  private:
   using Cell = std::array<std::int64_t, 3>;
+  struct Disc {
+    Vector3d centre;
+    double radius;
+    int set;
+  };
 
-  Cell cell_of(const Eigen::Vector3d& point) const {
+  Cell cell_of(const Vector3d& point) const {
     Cell cell{};
-    for (int k = 0; k < 3; ++k) cell[static_cast<std::size_t>(k)] = std::llround(std::floor(point[k] / radius_));
+    for (int k = 0; k < 3; ++k) cell[static_cast<std::size_t>(k)] = std::llround(std::floor(point[k] / width_));
     return cell;
   }
 
@@ -58,77 +72,189 @@ class DiscGrid {
     return value;
   }
 
-  double radius_;
-  std::unordered_map<std::uint64_t, std::vector<Eigen::Vector3d>> cells_;
+  double width_;
+  const RegionMap& regions_;
+  std::unordered_map<std::uint64_t, std::vector<Disc>> cells_;
 };
 
-std::vector<int> random_order(Eigen::Index count, Random& random) {
-  std::vector<int> order(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
-  return order;
+struct Candidate {
+  Vector3d position;
+  int face;
+  int rank;  // drawn earlier: features, then points of many places, whose samples serve their surroundings too
+};
+
+void append(std::vector<Candidate>& candidates, const SurfaceSamples& samples, const RegionMap& regions, bool first) {
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    const int face = samples.faces[static_cast<std::size_t>(i)];
+    const int places = static_cast<int>(regions.regions_of_face(face).size());
+    candidates.push_back({samples.points.row(i).transpose(), face, 2 * places + (first ? 1 : 0)});
+  }
 }
 
-void append(SymmetricSampling& sampling, const Orbit& orbit, std::vector<Eigen::Vector3d>& points) {
+// In the order in which they are drawn.
+std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& regions, const SamplingOptions& options,
+                                       double least_radius, const RunContext& context) {
+  Random random(context.seed, "symmetric sampling");
+  const Eigen::VectorXd areas = face_areas(mesh);
+  const double discs = areas.sum() / (std::numbers::pi / 4 * least_radius * least_radius);
+  const int count = static_cast<int>(std::clamp(kCandidatesPerDisc * discs, 1000.0, double{kMostCandidates}));
+  std::vector<Candidate> candidates;
+  append(candidates, options.first, regions, true);
+  append(candidates, sample_surface(mesh, count, random), regions, false);
+  // Small places get candidates however small they are.
+  std::vector<int> drawn(static_cast<std::size_t>(regions.places()), 0);
+  for (const Candidate& candidate : candidates) {
+    for (const int place : regions.regions_of_face(candidate.face)) ++drawn[static_cast<std::size_t>(place)];
+  }
+  std::vector<std::vector<int>> missed(drawn.size());
+  for (Eigen::Index face = 0; face < areas.size(); ++face) {
+    if (!(areas[face] > 0)) continue;
+    for (const int place : regions.regions_of_face(static_cast<int>(face))) {
+      const auto number = static_cast<std::size_t>(place);
+      if (drawn[number] < kCandidatesPerPlace) missed[number].push_back(static_cast<int>(face));
+    }
+  }
+  for (const std::vector<int>& faces : missed) {
+    if (!faces.empty()) append(candidates, sample_surface(mesh, kCandidatesPerPlace, random, faces), regions, false);
+  }
+  for (std::size_t i = candidates.size(); i > 1; --i) std::swap(candidates[i - 1], candidates[random.below(i)]);
+  std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.rank > b.rank; });
+  return candidates;
+}
+
+// Turns from a canonical place to its copies, the identity first.
+std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& position, double radius) {
+  const double distance = continuum.distance(position);
+  std::vector<Motion> turns{Motion{}};
+  if (!(distance > 0)) return turns;
+  if (!continuum.spherical) {
+    const double around = 2 * std::numbers::pi * distance / (kRingSpacing * radius);
+    const int fold = continuum.fold;
+    const int count = std::max(fold * std::max(1, static_cast<int>(std::ceil(around / fold))), fold < 3 ? 6 : fold);
+    for (int k = 1; k < count; ++k) {
+      turns.push_back(Motion::rotation(continuum.axis, 2 * std::numbers::pi * k / count, continuum.centre));
+    }
+    return turns;
+  }
+  // A spiral of points at equal areas (Vogel 1979), the canonical pole first.
+  const double area = kRingSpacing * radius / distance;
+  const int count = std::max(12, static_cast<int>(std::ceil(4 * std::numbers::pi / (area * area))));
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const Vector3d side = continuum.axis.cross(continuum.reference);
+  for (int k = 1; k < count; ++k) {
+    const double height = 1 - 2 * (k + 0.5) / count;
+    const double level = std::sqrt(std::max(0.0, 1 - height * height));
+    const Vector3d direction = height * continuum.axis + level * std::cos(golden * k) * continuum.reference +
+                               level * std::sin(golden * k) * side;
+    turns.push_back(continuum.turn_to(continuum.centre + distance * direction));
+  }
+  return turns;
+}
+
+int continuous_place(const RegionMap& regions, int set) {
+  int chosen = -1;
+  for (const int place : regions.set_places(set)) {
+    const Continuum* continuum = regions.continuum(place);
+    if (continuum != nullptr && (chosen < 0 || continuum->spherical)) chosen = place;
+  }
+  return chosen;
+}
+
+void append(SymmetricSampling& sampling, const Orbit& orbit, const RegionMap& regions, double radius,
+            std::vector<Vector3d>& points, std::vector<double>& radii) {
   const int number = sampling.orbits();
   for (const OrbitPoint& point : orbit.points) {
-    points.push_back(point.position);
-    sampling.orbit_of_sample.push_back(number);
-    sampling.transports.push_back(point.transport);
+    const int place = continuous_place(regions, point.set);
+    const std::vector<Motion> turns =
+        place < 0 ? std::vector<Motion>{Motion{}} : copy_turns(*regions.continuum(place), point.position, radius);
+    const int first = static_cast<int>(points.size());
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      points.push_back(turns[k](point.position));
+      radii.push_back(radius);
+      sampling.orbit_of_sample.push_back(number);
+      sampling.words.push_back(point.word);
+      sampling.sets.push_back(point.set);
+      sampling.copies.push_back({place, first, turns[k]});
+      sampling.copy_counts.push_back(static_cast<int>(turns.size()));
+    }
   }
   for (const OrbitConstraint& constraint : orbit.constraints) {
-    const Transport& left = orbit.points[static_cast<std::size_t>(constraint.point)].transport;
-    sampling.constraints.push_back({number, left, constraint.other});
+    const int word = orbit.points[static_cast<std::size_t>(constraint.point)].word;
+    sampling.constraints.push_back({number, word, constraint.word});
   }
   sampling.first_sample.push_back(static_cast<int>(points.size()));
 }
 
 }  // namespace
 
-SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& regions, const SamplingOptions& options,
-                                       const RunContext& context) {
-  Random random(context.seed, "symmetric sampling");
-  const double r = options.radius;
-  const double discs = face_areas(mesh).sum() / (std::numbers::pi / 4 * r * r);
-  const int candidates = static_cast<int>(std::clamp(kCandidatesPerDisc * discs, 1000.0, double{kMostCandidates}));
-  const SurfaceSamples surface = sample_surface(mesh, candidates, random);
+SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& regions, GroupWords& words,
+                                       const SamplingOptions& options, const RunContext& context) {
+  const bool field = options.radius_field.size() == mesh.vertices.rows() && options.radius_field.size() > 0;
+  const double least = field ? options.radius_field.minCoeff() : options.radius;
+  const double largest = field ? options.radius_field.maxCoeff() : options.radius;
+  const std::vector<Candidate> candidates = draw_candidates(mesh, regions, options, least, context);
 
   SymmetricSampling sampling;
-  sampling.radius = r;
+  sampling.radius = options.radius;
   sampling.first_sample.push_back(0);
-  std::vector<Eigen::Vector3d> points;
-  DiscGrid grid(r);
+  std::vector<Vector3d> points;
+  std::vector<double> radii;
+  DiscGrid grid(largest, regions);
   ClosureOptions closure;
-  closure.floating = options.floating;
   closure.doublet = kDoublet * diagonal(mesh.vertices);
-  closure.snap = kCrowded * r;
-  int done = 0;
-  for (const int candidate : random_order(surface.points.rows(), random)) {
-    if (++done % 256 == 0) context.progress("sampling", double(done) / candidates);
-    const Eigen::Vector3d seed = surface.points.row(candidate);
-    const int face = surface.faces[static_cast<std::size_t>(candidate)];
-    if (grid.covered(seed)) continue;
-    Orbit orbit = orbit_of(seed, face, regions, closure);
+  std::size_t done = 0;
+  for (const Candidate& candidate : candidates) {
+    if (++done % 256 == 0) context.progress("sampling", double(done) / static_cast<double>(candidates.size()));
+    const int set = regions.set_of_face(candidate.face);
+    double radius = options.radius;
+    if (field) radius = options.radius_field(mesh.faces.row(candidate.face).transpose()).mean();
+    if (grid.covered(candidate.position, set, radius)) continue;
+    closure.snap = kCrowded * radius;
+    Orbit orbit = orbit_of(candidate.position, set, regions, words, closure);
     if (!orbit.stabilisers.empty()) {
-      const Eigen::Vector3d fixed = fixed_point(seed, orbit.stabilisers);
+      const Vector3d start = orbit.points.front().position;
+      const Vector3d fixed = fixed_point(start, orbit.stabilisers);
       // Motions without a common fixed point nearby crowd the seed by accident; it stays where it is.
-      if ((fixed - seed).norm() < r) {
+      if ((fixed - start).norm() < radius) {
         ClosureOptions exact = closure;
         exact.snap = 0;
-        orbit = orbit_of(fixed, face, regions, exact);
+        orbit = orbit_of(fixed, orbit.points.front().set, regions, words, exact);
       }
     }
-    if (points.size() + orbit.points.size() > static_cast<std::size_t>(options.most_samples)) {
+    const std::size_t before = points.size();
+    append(sampling, orbit, regions, radius, points, radii);
+    if (points.size() > static_cast<std::size_t>(options.most_samples)) {
       throw InputError(
-          "", "radius " + std::to_string(r),
+          "", "radius " + std::to_string(options.radius),
           "more than " + std::to_string(options.most_samples) + " samples are needed; take a larger radius");
     }
-    append(sampling, orbit, points);
-    for (const OrbitPoint& point : orbit.points) grid.insert(point.position);
+    // The candidate counts as covered even where its orbit moved off by almost r.
+    grid.insert(candidate.position, set, radius);
+    for (std::size_t k = before; k < points.size(); ++k) grid.insert(points[k], sampling.sets[k], radius);
   }
   sampling.points.resize(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i) sampling.points.row(static_cast<Eigen::Index>(i)) = points[i];
+  sampling.radii = Eigen::Map<const Eigen::VectorXd>(radii.data(), static_cast<Eigen::Index>(radii.size()));
   return sampling;
+}
+
+std::vector<Transport> sample_transports(const SymmetricSampling& sampling, const RegionMap& regions,
+                                         const std::vector<Transport>& words, bool floating,
+                                         const std::vector<Matrix3d>& rotations) {
+  std::vector<Transport> result;
+  result.reserve(sampling.words.size());
+  for (std::size_t k = 0; k < sampling.words.size(); ++k) {
+    const Transport& word = words[static_cast<std::size_t>(sampling.words[k])];
+    const SymmetricSampling::Copy& copy = sampling.copies[k];
+    if (copy.place < 0 || copy.first == static_cast<int>(k)) {
+      result.push_back(word);
+      continue;
+    }
+    const Matrix3d rotation =
+        rotations.empty() ? Matrix3d(Matrix3d::Identity()) : rotations[static_cast<std::size_t>(copy.place)];
+    result.push_back(composed(step_transport(regions, copy.place, -1, copy.turn, floating, rotation), word));
+  }
+  return result;
 }
 
 }  // namespace orbifit

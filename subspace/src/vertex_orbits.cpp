@@ -1,61 +1,179 @@
 #include "orbifit/subspace/vertex_orbits.h"
 
-#include <cstddef>
+#include <algorithm>
+#include <map>
 
-#include "orbifit/model/point_index.h"
+#include "vertex_grid.h"
 
 namespace orbifit {
 
-VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, double tolerance) {
-  VertexOrbits orbits;
-  for (int region = 0; region < regions.count(); ++region) {
-    if (!regions.whole(region)) continue;
-    if (orbits.region < 0 || regions.elements(region).size() > regions.elements(orbits.region).size()) {
-      orbits.region = region;
+namespace {
+
+// The places of all faces around each vertex's position.
+std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid) {
+  std::vector<int> own(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    const int set = regions.set_of_face(static_cast<int>(face));
+    for (const int vertex : mesh.faces.row(face)) {
+      int& here = own[static_cast<std::size_t>(vertex)];
+      if (here != set) here = regions.joined(here, set);
     }
   }
-  if (orbits.region < 0) return orbits;
-  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
-  const std::vector<Motion>& elements = regions.elements(orbits.region);
-  const PointIndex index(mesh.vertices);
-  orbits.source.assign(count, -1);
-  orbits.element.assign(count, 0);
-  for (std::size_t v = 0; v < count; ++v) {
-    if (orbits.source[v] >= 0) continue;
-    const int vertex = static_cast<int>(v);
-    const Eigen::Vector3d position = mesh.vertices.row(vertex);
-    VertexOrbits::Stabiliser stabiliser{vertex, {}};
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      for (const auto& [image, distance] : index.within(elements[e](position), tolerance)) {
-        const auto w = static_cast<std::size_t>(image);
-        if (image == vertex) stabiliser.elements.push_back(static_cast<int>(e));
-        if (orbits.source[w] >= 0) continue;
-        orbits.source[w] = vertex;
-        orbits.element[w] = static_cast<int>(e);
-      }
-    }
-    if (stabiliser.elements.size() > 1) orbits.stabilisers.push_back(std::move(stabiliser));
+  std::vector<int> result = own;
+  for (std::size_t v = 0; v < own.size(); ++v) {
+    grid.visit(mesh.vertices.row(static_cast<Eigen::Index>(v)).transpose(), [&](int other) {
+      const int set = own[static_cast<std::size_t>(other)];
+      if (set != result[v]) result[v] = regions.joined(result[v], set);
+    });
   }
-  return orbits;
+  return result;
 }
 
-void symmetrise(const VertexOrbits& orbits, const RegionMap& regions, const Eigen::Vector3d& translation,
-                Points& displacements) {
-  if (orbits.region < 0) return;
-  const std::vector<Motion>& elements = regions.elements(orbits.region);
-  const auto image = [&](int element, const Eigen::Vector3d& u) -> Eigen::Vector3d {
-    return elements[static_cast<std::size_t>(element)].linear * (u - translation) + translation;
-  };
-  for (const auto& [vertex, stabiliser] : orbits.stabilisers) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const int element : stabiliser) sum += image(element, displacements.row(vertex).transpose());
-    displacements.row(vertex) = sum / static_cast<double>(stabiliser.size());
+class OrbitBuilder {
+ public:
+  OrbitBuilder(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance)
+      : mesh_(mesh),
+        regions_(regions),
+        words_(words),
+        grid_(mesh.vertices, tolerance),
+        sets_(sets_of_vertices(mesh, regions, grid_)) {
+    closure_.doublet = tolerance;
+    closure_.set_at = [this](const Eigen::Vector3d& place) {
+      int set = -1;
+      grid_.visit(place, [&](int vertex) {
+        const int here = sets_[static_cast<std::size_t>(vertex)];
+        set = set < 0 ? here : regions_.joined(set, here);
+      });
+      return set;
+    };
+    result_.followers.assign(sets_.size(), {-1, 0, -1});
+    for (std::size_t v = 0; v < sets_.size(); ++v) {
+      continuous_ = continuous_ || continuum_of(sets_[v]) >= 0;
+      if (continuous_) break;
+    }
   }
-  for (std::size_t v = 0; v < orbits.source.size(); ++v) {
-    const int source = orbits.source[v];
-    if (static_cast<std::size_t>(source) == v) continue;
-    displacements.row(static_cast<Eigen::Index>(v)) = image(orbits.element[v], displacements.row(source).transpose());
+
+  VertexOrbits run(const RunContext& context) {
+    if (continuous_) find_canonical_places();
+    for (std::size_t v = 0; v < sets_.size(); ++v) {
+      if (v % 4096 == 0) context.progress("vertex orbits", double(v) / double(sets_.size()));
+      if (result_.followers[v].representative < 0) add_orbit(static_cast<int>(v));
+    }
+    result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
+    result_.positions.resize(static_cast<Eigen::Index>(positions_.size()), 3);
+    for (std::size_t i = 0; i < positions_.size(); ++i) result_.positions.row(static_cast<Eigen::Index>(i)) = positions_[i];
+    return std::move(result_);
   }
+
+ private:
+  int continuum_of(int set) const {
+    int chosen = -1;
+    for (const int place : regions_.set_places(set)) {
+      const Continuum* continuum = regions_.continuum(place);
+      if (continuum != nullptr && (chosen < 0 || continuum->spherical)) chosen = place;
+    }
+    return chosen;
+  }
+
+  // Vertices under continuous groups are looked for by their canonical places.
+  void find_canonical_places() {
+    canonical_.vertices = mesh_.vertices;
+    turn_of_vertex_.assign(sets_.size(), -1);
+    for (std::size_t v = 0; v < sets_.size(); ++v) {
+      const int place = continuum_of(sets_[v]);
+      if (place < 0) continue;
+      const Continuum& continuum = *regions_.continuum(place);
+      const Eigen::Vector3d position = mesh_.vertices.row(static_cast<Eigen::Index>(v)).transpose();
+      const Motion turn = continuum.turn_to(position);
+      Eigen::Vector3d there = inverse(turn)(position);
+      if (continuum.distance(there) < closure_.doublet) there = continuum.foot(there);
+      canonical_.vertices.row(static_cast<Eigen::Index>(v)) = there;
+      turn_of_vertex_[v] = static_cast<int>(result_.turns.size());
+      result_.turns.push_back({place, turn});
+    }
+    canonical_grid_.emplace(canonical_.vertices, closure_.doublet);
+  }
+
+  void add_orbit(int vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    const int number = static_cast<int>(positions_.size());
+    const Orbit orbit =
+        orbit_of(mesh_.vertices.row(vertex).transpose(), sets_[v], regions_, words_, closure_);
+    result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
+    positions_.push_back(orbit.points.front().position);
+    for (const OrbitPoint& point : orbit.points) {
+      result_.point_words.push_back(point.word);
+      result_.point_sets.push_back(point.set);
+      const bool turned = continuum_of(point.set) >= 0;
+      bool met = false;
+      const auto follow = [&](int other) {
+        const auto w = static_cast<std::size_t>(other);
+        if (continuous_ && (turn_of_vertex_[w] >= 0) != turned) return;
+        met = true;
+        if (result_.followers[w].representative >= 0) return;
+        result_.followers[w] = {number, point.word, continuous_ ? turn_of_vertex_[w] : -1};
+      };
+      if (turned) {
+        canonical_grid_->visit(point.position, follow);
+      } else {
+        grid_.visit(point.position, follow);
+      }
+      result_.images_are_vertices = result_.images_are_vertices && met;
+    }
+    if (result_.followers[v].representative < 0) {  // a rounding's width off its own canonical place
+      result_.followers[v] = {number, 0, continuous_ ? turn_of_vertex_[v] : -1};
+    }
+    result_.bound.push_back(binding(orbit));
+  }
+
+  int binding(const Orbit& orbit) {
+    if (orbit.constraints.empty()) return -1;
+    std::vector<WordPair> pairs;
+    for (const OrbitConstraint& constraint : orbit.constraints) {
+      pairs.push_back({orbit.points[static_cast<std::size_t>(constraint.point)].word, constraint.word});
+    }
+    std::ranges::sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    const auto [entry, added] = bindings_.try_emplace(pairs, static_cast<int>(result_.bindings.size()));
+    if (added) result_.bindings.push_back({orbit.points.front().position, pairs});
+    return entry->second;
+  }
+
+  const Mesh& mesh_;
+  const RegionMap& regions_;
+  GroupWords& words_;
+  VertexGrid grid_;
+  std::vector<int> sets_;
+  ClosureOptions closure_;
+  VertexOrbits result_;
+  bool continuous_ = false;
+  Mesh canonical_;
+  std::optional<VertexGrid> canonical_grid_;
+  std::vector<int> turn_of_vertex_;
+  std::vector<Eigen::Vector3d> positions_;
+  std::map<std::vector<WordPair>, int> bindings_;
+};
+
+}  // namespace
+
+VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
+                           const RunContext& context) {
+  return OrbitBuilder(mesh, regions, words, tolerance).run(context);
+}
+
+VertexOrbits lone_vertices(const Mesh& mesh) {
+  VertexOrbits result;
+  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
+  result.positions = mesh.vertices;
+  result.bound.assign(count, -1);
+  result.point_words.assign(count, 0);
+  result.point_sets.assign(count, 0);
+  for (std::size_t v = 0; v < count; ++v) {
+    result.followers.push_back({static_cast<int>(v), 0, -1});
+    result.first_point.push_back(static_cast<std::int64_t>(v));
+  }
+  result.first_point.push_back(static_cast<std::int64_t>(count));
+  return result;
 }
 
 }  // namespace orbifit

@@ -8,6 +8,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/subspace/deformer.h"
+#include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
@@ -44,7 +45,7 @@ CommandBody deform(CLI::App& app) {
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
   app.add_option("--laplacian", arguments->laplacian, "Laplacian of the samples")
-      ->check(CLI::IsMember({"graph"}))
+      ->check(CLI::IsMember({"graph", "cotangent", "point"}))
       ->capture_default_str();
   add_subspace_options(app, arguments->options);
   return [arguments](CommandContext& context) {
@@ -62,7 +63,7 @@ CommandBody deform(CLI::App& app) {
     const Subspace built = build_subspace(mesh, annotation, arguments->options, context.run);
     const auto with_subspace = Clock::now();
     context.run.progress("handles", 0);
-    Deformer deformer(built, mesh);
+    Deformer deformer(built, mesh, {parse_laplacian_kind(arguments->laplacian).value()}, context.run);
     deformer.set_handles(set.handles, set.alpha);
     const auto factorised = Clock::now();
     std::vector<Motion> motions;
@@ -70,18 +71,18 @@ CommandBody deform(CLI::App& app) {
     const Deformation deformation = deformer.solve(motions, set.iterations);
     const auto solved = Clock::now();
     Mesh edited = mesh;
-    edited.vertices += vertex_displacements(built, deformation.q);
+    edited.vertices += vertex_displacements(built, deformation.state, context.run);
     const auto lifted = Clock::now();
     double worst_field = 0;
     for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
       const Residual residual =
-          field_residual(built, mesh, annotation.regions[i], static_cast<int>(i), deformation.q, context.run);
+          field_residual(built, mesh, annotation.regions[i], static_cast<int>(i), deformation.state, context.run);
       worst_field = std::max(worst_field, residual.max);
     }
     context.run.check();
     write_mesh(arguments->output, edited);
     if (!arguments->annotation_output.empty()) {
-      write_annotation(arguments->annotation_output, carried_annotation(annotation, built, deformation.q, edited));
+      write_annotation(arguments->annotation_output, carried_annotation(annotation, built, deformation.state, edited));
     }
 
     const double size = diagonal(mesh.vertices);

@@ -21,6 +21,9 @@ struct Corotation {
 /// Graph Laplacian with edges below `distance` (the paper's 2 r).
 Corotation corotation(const Points& samples, double distance);
 
+/// Neighbours by the edges and any symmetric Laplacian, #S by #S.
+Corotation corotation(const Points& samples, const SampleEdges& edges, const Eigen::SparseMatrix<double>& laplacian);
+
 /// For each sample the rotation that takes its rest neighbourhood nearest to its deformed one (Sorkine and Alexa 2007):
 /// polar decomposition of the covariance. Directions that the neighbourhood leaves open follow `previous`.
 std::vector<Eigen::Matrix3d> local_rotations(const Corotation& corotation, const Points& deformed,

@@ -14,6 +14,9 @@ using SampleEdges = std::vector<std::pair<int, int>>;
 /// so that the graph keeps the points' symmetries.
 SampleEdges neighbour_graph(const Points& points, double distance);
 
+/// The same for a sampling of varying radius: pairs closer than the sum of their radii, #S.
+SampleEdges neighbour_graph(const Points& points, const Eigen::VectorXd& radii);
+
 /// Degree matrix less adjacency matrix, #S by #S (paper, section 6).
 Eigen::SparseMatrix<double> graph_laplacian(const SampleEdges& edges, Eigen::Index samples);
 

@@ -1,6 +1,15 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
@@ -10,38 +19,127 @@
 
 namespace orbifit {
 
-/// The regions S_i of an annotated mesh as the subspace needs them: their finite groups and who lies in which.
-/// Regions are numbered by their place in the annotation.
+/// How a displacement depends on the translations that carry the groups (method notes 2.2): the sum over the pairs of
+/// matrix * t_carrier, ascending by carrier.
+using Carried = std::vector<std::pair<int, Eigen::Matrix3d>>;
+
+/// a + factor * b, term by term.
+Carried carried_sum(const Carried& a, const Eigen::Matrix3d& factor, const Carried& b);
+
+/// The continuous part of a region's group: all rotations about an axis, or about a point (method notes 2.3).
+struct Continuum {
+  bool spherical = false;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< unit; spherical: where a point's canonical place lies
+  Eigen::Vector3d reference = Eigen::Vector3d::UnitX();  ///< unit, across the axis: the half-plane of canonical places
+  int fold = 1;  ///< order of the finite rotations about the same axis: copies of a ring come in multiples of it
+
+  /// The rotation that takes the canonical place of `point` to `point`; the identity on the axis.
+  Motion turn_to(const Eigen::Vector3d& point) const;
+
+  /// Distance from the axis, or from the centre.
+  double distance(const Eigen::Vector3d& point) const;
+
+  /// Nearest point of the axis, or the centre.
+  Eigen::Vector3d foot(const Eigen::Vector3d& point) const;
+};
+
+/// The regions S_i and the patterns of an annotated mesh as the subspace needs them: which motions act where, and what
+/// lies in what. A *place* is a set of faces on which motions act: places 0 ... count() - 1 are the regions, in the
+/// annotation's order, each mapped onto itself; the instances of the patterns follow, mapped onto one another. Sets of
+/// places have numbers: set_places() lists their members.
 class RegionMap {
  public:
-  /// Continuous groups are replaced by their largest finite subgroup under which the region's vertices map onto
-  /// vertices (12-fold where there is none), which is said in a message.
+  /// \param context hears of patterns whose instances follow no lattice and are kept as congruent copies
   RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
 
-  int count() const { return static_cast<int>(groups_.size()); }
+  int count() const { return regions_; }                            ///< regions
+  int places() const { return static_cast<int>(places_.size()); }   ///< regions, then pattern instances
+  int carriers() const { return carriers_; }                        ///< translations that carry regions, then patterns
 
-  /// All elements of G_i, the identity first.
-  const std::vector<Motion>& elements(int region) const { return groups_[static_cast<std::size_t>(region)]; }
+  /// The motions that act at a place, the identity among them: all elements of a finite group; of a continuous group one
+  /// of each component (the identity; a mirror, ...), the rotations being continuum(); from a pattern's instance to
+  /// every instance.
+  const std::vector<Motion>& elements(int place) const { return at(place).motions; }
 
-  const std::string& name(int region) const { return names_[static_cast<std::size_t>(region)]; }
+  /// The place where element number `element` of `place` arrives.
+  int arrival(int place, int element) const;
 
-  /// Regions that hold the face, ascending.
-  const std::vector<int>& regions_of_face(int face) const { return regions_of_face_[static_cast<std::size_t>(face)]; }
+  /// What a motion of `place` adds to a displacement besides turning it: (1 - O) t for a region.
+  Carried carried(int place, int element, const Eigen::Matrix3d& linear) const;
 
-  /// Regions that hold the point of S_region nearest to `point`; `region` is among them.
-  const std::vector<int>& regions_near(const Eigen::Vector3d& point, int region) const;
+  /// The translation of a pattern's instance in terms of the carriers; empty for a region.
+  const Carried& instance_shift(int place) const { return at(place).shift; }
+  /// What a pattern's generator gains in translation, likewise; empty for copies without lattice.
+  Carried generator_shift(int pattern, int generator) const;
+  int first_place_of_pattern(int pattern) const { return first_place_[static_cast<std::size_t>(pattern)]; }
 
-  /// Whether the region holds every face.
-  bool whole(int region) const { return whole_[static_cast<std::size_t>(region)]; }
+  const Continuum* continuum(int place) const { return at(place).continuum ? &*at(place).continuum : nullptr; }
+  const Eigen::Vector3d& centre(int place) const { return at(place).centre; }
+  const std::string& name(int place) const { return at(place).name; }
+
+  /// Elements to test a region by: all of a finite group; of a continuous one, rotations by odd angles with each
+  /// component.
+  std::vector<Motion> test_elements(int region) const;
+
+  int set_of_face(int face) const { return set_of_face_[static_cast<std::size_t>(face)]; }
+  const std::vector<int>& set_places(int set) const { return *sets_[static_cast<std::size_t>(set)]; }
+  const std::vector<int>& regions_of_face(int face) const { return set_places(set_of_face(face)); }
+
+  /// The set with a place, or all places of another set, added. Not for use by several threads.
+  int with(int set, int place) const;
+  int joined(int a, int b) const;
+  bool holds(int set, int place) const;
+  bool contains(int set, int subset) const;
+
+  /// The set at the point of the place's surface nearest to `point`; `place` is among it.
+  int set_near(const Eigen::Vector3d& point, int place) const;
+
+  /// Distance to the place's surface, at most `most` (infinity beyond). For use by several threads after prepare().
+  double distance(const Eigen::Vector3d& point, int place, double most) const;
+
+  /// Builds the places' trees now rather than when one is first needed.
+  void prepare() const;
+
+  std::size_t face_count(int place) const { return at(place).faces.size(); }
+
+  /// Whether the place holds every face.
+  bool whole(int place) const { return at(place).whole; }
 
  private:
-  std::vector<std::vector<Motion>> groups_;
-  std::vector<std::string> names_;
-  std::vector<std::vector<int>> regions_of_face_;
-  std::vector<char> whole_;
-  std::vector<std::vector<int>> common_regions_;  ///< of all its faces, where they agree; else empty
-  std::vector<SurfaceIndex> surfaces_;            ///< one a region, only where common_regions_ is empty
-  std::vector<int> surface_of_region_;
+  struct Place {
+    std::string name;
+    std::vector<Motion> motions;
+    std::optional<Continuum> continuum;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    std::vector<int> faces;
+    Eigen::AlignedBox3d box;
+    int common_set = -1;  // of all its faces, where they agree
+    bool whole = false;
+    int pattern_first = -1;  // place of the pattern's first instance; -1: a region
+    Carried shift;
+  };
+  const Place& at(int place) const { return places_[static_cast<std::size_t>(place)]; }
+  const SurfaceIndex& surface(int place) const;
+  int intern(const std::vector<int>& places) const;
+  void add_region(const Mesh& mesh, const Region& region);
+  void add_pattern(const Mesh& mesh, const Pattern& pattern, const RunContext& context);
+  void share_references();
+
+  Mesh mesh_;
+  std::vector<Place> places_;
+  std::vector<int> first_place_;
+  std::vector<int> first_step_;  // carrier of each pattern's first generator; -1: no lattice
+  int regions_ = 0;
+  int carriers_ = 0;
+  std::vector<int> set_of_face_;
+  mutable std::map<std::vector<int>, int> number_of_set_;
+  mutable std::vector<const std::vector<int>*> sets_;
+  mutable std::unordered_map<std::uint64_t, int> with_;
+  mutable std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;
 };
+
+/// The region with fewest faces among a set's places; -1: none.
+int innermost_region(const RegionMap& regions, int set);
 
 }  // namespace orbifit

@@ -1,36 +1,51 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/subspace/region_map.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/subspace/orbit.h"
+#include "orbifit/subspace/symmetric_basis.h"
 
 namespace orbifit {
 
-/// The vertices of a mesh grouped into orbits of the region that holds the whole mesh, where such a region exists and
-/// its elements map vertices onto vertices. A mesh read from a file of few digits has images that miss their vertices
-/// by the digits' rounding; taking the displacement of one vertex an orbit makes the deformed mesh as symmetric as the
-/// file was, to rounding in double precision.
+/// The vertices of a mesh in orbits: one representative each, whose displacement decides those of the others. A vertex
+/// is in all places of all faces around its position, so that borders have the symmetries of both sides. Vertices within
+/// a tolerance of an image of a representative follow it exactly, coincident ones too: a mesh read from a file of few
+/// digits stays as symmetric as the file was. Images that meet no vertex are kept as points of the orbit, so that the
+/// displacement is symmetric in space.
 struct VertexOrbits {
-  int region = -1;           ///< the whole-mesh region with the largest group; -1: none, and nothing below
-  std::vector<int> source;   ///< #V: the vertex whose displacement this one follows; itself for a source
-  std::vector<int> element;  ///< #V: number of the element of the region's group that maps source to here
-  struct Stabiliser {
-    int vertex;                 ///< a source
-    std::vector<int> elements;  ///< that map it to itself, the identity among them
+  struct Follower {
+    int representative = 0;  ///< number of it
+    int word = 0;            ///< from its canonical place to here
+    int turn = -1;           ///< in `turns`, from here on; -1: none
   };
-  std::vector<Stabiliser> stabilisers;  ///< of the sources that have more than the identity
+  std::vector<Follower> followers;  ///< #V
+  struct Turn {
+    int place;
+    Motion motion;
+  };
+  std::vector<Turn> turns;  ///< of vertices on circles or spheres, from their canonical places
+
+  Points positions;            ///< #R by 3, canonical places of the representatives
+  std::vector<int> bound;      ///< #R: number of the representative's binding, -1: free
+  std::vector<BoundPoint> bindings;
+  std::vector<std::int64_t> first_point;  ///< of each orbit in the lists below, and their length at the end
+  std::vector<int> point_words;           ///< from the canonical place; the first of each orbit is the identity
+  std::vector<int> point_sets;            ///< places that hold the point
+  bool images_are_vertices = true;        ///< of every point of every orbit
+
+  int representatives() const { return static_cast<int>(bound.size()); }
 };
 
-/// Vertices within `tolerance` (mesh units) of an image of a source, coincident ones included, follow it.
-/// O(V log V).
-VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, double tolerance);
+/// \param tolerance vertices nearer than this are one place, mesh units
+/// O(V * elements), memory about 60 bytes a vertex.
+/// \throw InputError when an orbit does not close
+VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
+                           const RunContext& context);
 
-/// Makes displacements exactly symmetric on the orbits: that of a source is averaged over its stabiliser, the others
-/// are u = O u_source + (I - O) t.
-/// \param displacements #V by 3
-/// \param translation   t of the region (floating); zero when groups are fixed
-void symmetrise(const VertexOrbits& orbits, const RegionMap& regions, const Eigen::Vector3d& translation,
-                Points& displacements);
+/// Every vertex its own representative, without symmetry.
+VertexOrbits lone_vertices(const Mesh& mesh);
 
 }  // namespace orbifit

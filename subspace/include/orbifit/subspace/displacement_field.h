@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/subspace/subspace.h"
+
+namespace orbifit {
+
+/// The displacement field at any points in space, #P by 3: the orbit average is taken anew at each point, without the
+/// baked lift.
+/// \param sets the places that each point counts to, #P (see RegionMap)
+Points displacement_field(const Subspace& subspace, const SubspaceState& state, const Points& points,
+                          const std::vector<int>& sets, const RunContext& context);
+
+/// How well the displacement is symmetric: |y(g p) - g' y(p)| over vertices p of a region and elements g, g' being g
+/// carried along, as a fraction of the diagonal. Where g p is a vertex its displacement as baked is taken; elsewhere
+/// both come from the field, in space at g p, which has no floor from the tessellation. Of a large region every k-th
+/// vertex is taken, so that about `pairs` pairs (p, g) are.
+Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
+                        const SubspaceState& state, const RunContext& context, int pairs = 20000);
+Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
+                        const Eigen::VectorXd& q, const RunContext& context);
+
+/// The same of a pattern's instances: each against instance 0.
+Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Pattern& pattern, int pattern_number,
+                          const SubspaceState& state, const RunContext& context);
+
+}  // namespace orbifit

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/subspace/symmetric_basis.h"
+#include "orbifit/subspace/symmetric_sampling.h"
+#include "orbifit/subspace/vertex_orbits.h"
+
+namespace orbifit {
+
+/// What the lift adds up: a sample's displacement as seen from where a word starts, or for a continuous group its part
+/// along or across the axis, or the displacement of the axis itself. The first #S atoms are the samples.
+struct LiftAtom {
+  enum class Kind : std::uint8_t { full, axial, across, centre };
+  int sample = -1;  ///< -1: the centre of `place`
+  int word = 0;     ///< pulled back by it
+  Kind kind = Kind::full;
+  int place = -1;
+};
+
+/// The lift from samples to vertices, averaged over orbits (method notes 2.1):
+///     u(p) = 1/N sum over (p_k, O_k) in orbit(p) of O_k^T u_plain(p_k),
+/// so exact in every region, partial, nested and overlapping ones too. Baked for one vertex an orbit, as scalar weights
+/// on the atoms' displacements; its images are carried copies.
+struct OrbitLift {
+  std::vector<LiftAtom> atoms;
+  std::vector<std::int64_t> first;    ///< of each representative's entries, and their number at the end
+  std::vector<std::uint16_t> atom;    ///< of each entry
+  std::vector<float> weight;          ///< multiples of 2^-24; those on full atoms and centres sum to 1 exactly
+  Points rest;                        ///< #R by 3 when groups may be turned: position less the weighted atoms' positions
+
+  std::size_t bytes() const { return weight.size() * sizeof(float) + atom.size() * sizeof(std::uint16_t); }
+};
+
+struct OrbitLiftOptions {
+  bool averaged = true;   ///< false: the paper's plain lift
+  bool moving = false;    ///< keep what turned groups need (`rest`)
+};
+
+/// O(vertices * samples within reach).
+/// \throw InputError when more than 65 536 atoms are needed
+OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
+                     const SymmetricBasis& basis, const VertexOrbits& vertices, const OrbitLiftOptions& options,
+                     const RunContext& context);
+
+/// An atom's displacement as a function of its orbit's seed and the carriers. `frame` need not be orthogonal.
+struct AtomMap {
+  int orbit = -1;                      ///< -1: carriers alone
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Zero();
+  Carried carried;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< at rest; relative to the axis for axial and across
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();    ///< displacement when the seed's and the carriers' are zero
+};
+
+AtomMap atom_map(const LiftAtom& atom, const SymmetricSampling& sampling, const RegionMap& regions,
+                 const CarriedTransports& transports, bool floating, const std::vector<Eigen::Matrix3d>& rotations);
+
+}  // namespace orbifit

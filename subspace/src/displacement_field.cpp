@@ -1,0 +1,272 @@
+#include "orbifit/subspace/displacement_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "orbifit/subspace/carried_regions.h"
+#include "plain_lift.h"
+#include "vertex_grid.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kDoublet = 1e-6;  // of the diagonal, as for vertices
+
+// Evaluates the field at one point after another.
+class FieldEvaluator {
+ public:
+  FieldEvaluator(const Subspace& subspace, const SubspaceState& state)
+      : subspace_(subspace),
+        basis_(basis_of(subspace, state)),
+        words_(*subspace.words),
+        plain_(subspace.sampling, *subspace.regions, subspace.lift_kind == LiftKind::orbit),
+        samples_(sample_displacements(subspace, state)) {
+    carriers_ = basis_.carried * state.q;
+    if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
+    closure_.doublet = kDoublet * subspace.diagonal;
+    refresh();
+  }
+
+  Vector3d operator()(const Vector3d& point, int set) {
+    if (subspace_.lift_kind == LiftKind::paper) return paper(point);
+    const Orbit orbit = orbit_of(point, set, *subspace_.regions, words_, closure_);
+    if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) refresh();
+    const Vector3d start = orbit.points.front().position;
+    Vector3d u = Vector3d::Zero();
+    Vector3d middle = Vector3d::Zero();
+    Matrix3d blend = Matrix3d::Zero();
+    for (const OrbitPoint& place : orbit.points) {
+      plain_.terms(place.position, place.set, scratch_);
+      for (const LiftTerm& term : scratch_.terms) {
+        const Seen& seen = look(term, place.word);
+        const double weight = term.weight / static_cast<double>(orbit.points.size());
+        u += weight * seen.displacement;
+        middle += weight * seen.position;
+        blend += weight * seen.rotation;
+      }
+    }
+    if (!basis_.rotations.empty()) u += blended_rotation(blend) * (start - middle) - (start - middle);
+    if (!orbit.constraints.empty()) {
+      std::vector<WordPair> pairs;
+      for (const OrbitConstraint& constraint : orbit.constraints) {
+        pairs.push_back({orbit.points[static_cast<std::size_t>(constraint.point)].word, constraint.word});
+      }
+      const Binding binding = binding_of(pairs, transports_);
+      Vector3d bound = binding.kept * u + binding.slope * start + binding.offset;
+      add_carried(binding.bound, bound);
+      u = bound;
+    }
+    if (orbit.turned_by < 0) return u;
+    const Transport rest = step_transport(*subspace_.regions, orbit.turned_by, -1, orbit.turn, floating());
+    Transport now = rest;
+    if (!basis_.rotations.empty()) {
+      now = step_transport(*subspace_.regions, orbit.turned_by, -1, orbit.turn, floating(),
+                           basis_.rotations[static_cast<std::size_t>(orbit.turned_by)]);
+    }
+    Vector3d turned = now.frame * (start + u) + now.shift - (rest.frame * start + rest.shift);
+    add_carried(now.carried, turned);
+    return turned;
+  }
+
+ private:
+  struct Seen {
+    Vector3d displacement, position;
+    Matrix3d rotation;
+  };
+
+  bool floating() const { return subspace_.mode != GroupMode::fixed; }
+
+  void refresh() {
+    transports_.words = words_.transports(basis_.rotations);
+    transports_.samples =
+        sample_transports(subspace_.sampling, *subspace_.regions, transports_.words, floating(), basis_.rotations);
+    if (!basis_.rotations.empty()) {
+      transports_.rest_words = words_.transports({});
+      transports_.rest_samples =
+          sample_transports(subspace_.sampling, *subspace_.regions, transports_.rest_words, floating());
+    }
+  }
+
+  Vector3d paper(const Vector3d& point) {
+    plain_.terms(point, 0, scratch_);
+    Vector3d u = Vector3d::Zero();
+    for (const LiftTerm& term : scratch_.terms) u += term.weight * samples_.row(term.sample).transpose();
+    return u;
+  }
+
+  void add_carried(const Carried& carried, Vector3d& u) const {
+    if (carriers_.size() == 0) return;
+    for (const auto& [carrier, matrix] : carried) u += matrix * carriers_.segment<3>(3 * carrier);
+  }
+
+  const Seen& look(const LiftTerm& term, int word) {
+    const std::array<int, 4> key{word, term.sample, static_cast<int>(term.kind), term.place};
+    const auto [entry, added] = seen_.try_emplace(key);
+    if (!added) return entry->second;
+    const LiftAtom atom{term.sample, word, static_cast<LiftAtom::Kind>(term.kind), term.place};
+    const AtomMap map =
+        atom_map(atom, subspace_.sampling, *subspace_.regions, transports_, floating(), basis_.rotations);
+    Seen& seen = entry->second;
+    seen.position = map.position;
+    seen.displacement = map.offset;
+    seen.rotation.setIdentity();
+    if (map.orbit >= 0) {
+      const int seed = subspace_.sampling.first_sample[static_cast<std::size_t>(map.orbit)];
+      seen.displacement += map.frame * samples_.row(seed).transpose();
+    }
+    add_carried(map.carried, seen.displacement);
+    if (basis_.rotations.empty()) return seen;
+    const int region = atom.sample >= 0 ? innermost_region(*subspace_.regions,
+                                                           subspace_.sampling.sets[static_cast<std::size_t>(atom.sample)])
+                                        : atom.place;
+    if (region >= 0) seen.rotation = basis_.rotations[static_cast<std::size_t>(region)];
+    seen.rotation = transports_.words[static_cast<std::size_t>(word)].frame.transpose() * seen.rotation *
+                    transports_.rest_words[static_cast<std::size_t>(word)].frame;
+    return seen;
+  }
+
+  const Subspace& subspace_;
+  const CarriedBasis& basis_;
+  GroupWords words_;
+  PlainLift plain_;
+  Points samples_;
+  Eigen::VectorXd carriers_;
+  CarriedTransports transports_;
+  ClosureOptions closure_;
+  PlainLift::Scratch scratch_;
+  std::map<std::array<int, 4>, Seen> seen_;
+};
+
+// The places that hold a vertex, as its orbit has them.
+int set_of_vertex(const VertexOrbits& orbits, int vertex) {
+  const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(vertex)];
+  const auto r = static_cast<std::size_t>(follower.representative);
+  for (auto k = orbits.first_point[r]; k < orbits.first_point[r + 1]; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (orbits.point_words[at] == follower.word) return orbits.point_sets[at];
+  }
+  return orbits.point_sets[static_cast<std::size_t>(orbits.first_point[r])];
+}
+
+// Pairs of a point and its image by one motion of a place, and how far the field is from carrying one to the other.
+class PairResidual {
+ public:
+  PairResidual(const Subspace& subspace, const Mesh& mesh, const SubspaceState& state)
+      : subspace_(subspace),
+        mesh_(mesh),
+        field_(subspace, state),
+        baked_(vertex_displacements(subspace, state)),
+        grid_(mesh.vertices, kDoublet * subspace.diagonal) {}
+
+  /// \param carried where the motion has gone
+  void add(int vertex, const Motion& motion, const Motion& carried, int arrival) {
+    const Vector3d place = mesh_.vertices.row(vertex).transpose();
+    const Vector3d image = motion(place);
+    int met = -1;
+    grid_.visit(image, [&](int other) { met = met < 0 ? other : met; });
+    Vector3d here = baked_.row(vertex).transpose();
+    Vector3d there;
+    if (met >= 0) {
+      there = baked_.row(met).transpose();
+    } else {
+      const int set = subspace_.lift_kind == LiftKind::orbit ? set_of_vertex(subspace_.orbits, vertex) : 0;
+      here = field_(place, set);
+      there = field_(image, subspace_.regions->with(subspace_.regions->set_near(image, arrival), arrival));
+    }
+    // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
+    const Vector3d due = carried(place + here) - motion(place);
+    const double error = (there - due).norm() / subspace_.diagonal;
+    residual_.max = std::max(residual_.max, error);
+    squares_ += error * error;
+    count_ += 1;
+  }
+
+  Residual residual() const {
+    Residual result = residual_;
+    if (count_ > 0) result.rms = std::sqrt(squares_ / count_);
+    return result;
+  }
+
+ private:
+  const Subspace& subspace_;
+  const Mesh& mesh_;
+  FieldEvaluator field_;
+  Points baked_;
+  VertexGrid grid_;
+  Residual residual_;
+  double squares_ = 0, count_ = 0;
+};
+
+std::vector<int> vertices_of(const Mesh& mesh, const std::vector<int>& faces) {
+  std::vector<int> result;
+  for (const int face : faces) {
+    for (const int vertex : mesh.faces.row(face)) result.push_back(vertex);
+  }
+  std::ranges::sort(result);
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+}  // namespace
+
+Points displacement_field(const Subspace& subspace, const SubspaceState& state, const Points& points,
+                          const std::vector<int>& sets, const RunContext& context) {
+  FieldEvaluator field(subspace, state);
+  Points result(points.rows(), 3);
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    if (p % 256 == 0) context.check();
+    result.row(p) = field(points.row(p).transpose(), sets[static_cast<std::size_t>(p)]).transpose();
+  }
+  return result;
+}
+
+Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
+                        const SubspaceState& state, const RunContext& context, int pairs) {
+  const std::vector<int> vertices = vertices_of(mesh, region.faces);
+  const std::vector<Motion> elements = subspace.regions->test_elements(region_number);
+  const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
+  const Motion carried = carried_motion(subspace, state, region_number);
+  PairResidual residual(subspace, mesh, state);
+  for (std::size_t v = 0; v < vertices.size(); v += step) {
+    context.check();
+    for (const Motion& element : elements) {
+      residual.add(vertices[v], element, conjugate(carried, element), region_number);
+    }
+  }
+  return residual.residual();
+}
+
+Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
+                        const Eigen::VectorXd& q, const RunContext& context) {
+  return field_residual(subspace, mesh, region, region_number, SubspaceState{q, nullptr}, context);
+}
+
+Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Pattern& pattern, int pattern_number,
+                          const SubspaceState& state, const RunContext& context) {
+  const RegionMap& regions = *subspace.regions;
+  const int first = regions.first_place_of_pattern(pattern_number);
+  const CarriedBasis& basis = basis_of(subspace, state);
+  Eigen::VectorXd carriers = basis.carried * state.q;
+  if (carriers.size() > 0) carriers += basis.carried_offset;
+  PairResidual residual(subspace, mesh, state);
+  for (const int vertex : vertices_of(mesh, pattern.instances.front().faces)) {
+    context.check();
+    for (std::size_t a = 1; a < pattern.instances.size(); ++a) {
+      Motion carried = regions.elements(first)[a];
+      for (const auto& [carrier, matrix] : regions.instance_shift(first + static_cast<int>(a))) {
+        if (carriers.size() > 0) carried.translation += matrix * carriers.segment<3>(3 * carrier);
+      }
+      residual.add(vertex, regions.elements(first)[a], carried, first + static_cast<int>(a));
+    }
+  }
+  return residual.residual();
+}
+
+}  // namespace orbifit

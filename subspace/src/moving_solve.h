@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "handle_rows.h"
+#include "orbifit/subspace/carried_regions.h"
+#include "orbifit/subspace/corotation.h"
+#include "orbifit/subspace/deformer.h"
+
+namespace orbifit {
+
+/// Co-rotated Laplace editing while the regions' groups turn (method notes 2.2, moving). An iteration solves for the
+/// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and the
+/// basis is built anew, so that every state keeps every carried symmetry to rounding.
+class MovingSolve {
+ public:
+  MovingSolve(const Subspace& subspace, const Corotation& corotation);
+
+  Deformation solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions, int iterations,
+                    const SubspaceState& start) const;
+
+ private:
+  const Subspace& subspace_;
+  const Corotation& corotation_;
+  CarriedRegions regions_;
+};
+
+}  // namespace orbifit

@@ -1,0 +1,228 @@
+#include "orbifit/subspace/orbit_lift.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <unordered_map>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/model/random.h"
+#include "plain_lift.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kQuantum = 1.0 / (1 << 24);
+constexpr double kSameAtom = 1e-7;
+
+// A random displacement of the basis, by which atoms are told apart.
+struct Fingerprint {
+  Points seeds;     // by orbit
+  Eigen::VectorXd carriers;
+};
+
+Fingerprint random_displacement(const SymmetricSampling& sampling, const SymmetricBasis& basis) {
+  Random random(7, "atoms");
+  Eigen::VectorXd q(basis.degrees_of_freedom());
+  for (double& coordinate : q) coordinate = random.normal();
+  const Eigen::VectorXd moved = basis.columns * q;
+  Fingerprint fingerprint;
+  fingerprint.seeds.resize(sampling.orbits(), 3);
+  for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
+    fingerprint.seeds.row(orbit) =
+        moved.segment<3>(3 * sampling.first_sample[static_cast<std::size_t>(orbit)]).transpose();
+  }
+  fingerprint.carriers = basis.carried * q;
+  return fingerprint;
+}
+
+// The atoms known so far, each with its place and its displacement under the fingerprint; alike ones are one.
+class AtomTable {
+ public:
+  AtomTable(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
+            const SymmetricBasis& basis)
+      : sampling_(sampling), regions_(regions), words_(words), fingerprint_(random_displacement(sampling, basis)) {
+    transports_.words = words.transports({});
+    transports_.samples = sample_transports(sampling, regions, transports_.words, words.floating());
+    for (int k = 0; k < static_cast<int>(sampling.words.size()); ++k) add({k, 0, LiftAtom::Kind::full, -1});
+  }
+
+  int number(const LiftTerm& term, int word) {
+    if (term.kind == LiftTerm::Kind::full && word == 0) return term.sample;
+    const LiftAtom atom{term.sample, word, static_cast<LiftAtom::Kind>(term.kind), term.place};
+    int& number = place_for(atom);
+    if (number < 0) number = find_or_add(atom);
+    return number;
+  }
+
+  const std::vector<LiftAtom>& atoms() const { return atoms_; }
+  const std::vector<Vector3d>& positions() const { return positions_; }
+  std::vector<LiftAtom> take() { return std::move(atoms_); }
+
+ private:
+  struct Look {
+    Vector3d position, displacement;
+    int orbit;
+  };
+
+  Look look(const LiftAtom& atom) const {
+    const AtomMap map = atom_map(atom, sampling_, regions_, transports_, words_.floating(), {});
+    Look result{map.position, Vector3d::Zero(), map.orbit};
+    if (map.orbit >= 0) result.displacement = map.frame * fingerprint_.seeds.row(map.orbit).transpose();
+    if (fingerprint_.carriers.size() == 0) return result;
+    for (const auto& [carrier, matrix] : map.carried) {
+      result.displacement += matrix * fingerprint_.carriers.segment<3>(3 * carrier);
+    }
+    return result;
+  }
+
+  // Where the number of an atom is kept: by word and sample for the many, by all of it for the few.
+  int& place_for(const LiftAtom& atom) {
+    if (atom.kind != LiftAtom::Kind::full) {
+      return pulled_parts_.try_emplace({atom.word, atom.sample, static_cast<int>(atom.kind), atom.place}, -1).first->second;
+    }
+    const auto word = static_cast<std::size_t>(atom.word);
+    if (pulled_.size() <= word) pulled_.resize(word + 1);
+    if (pulled_[word].empty()) pulled_[word].assign(sampling_.words.size(), -1);
+    return pulled_[word][static_cast<std::size_t>(atom.sample)];
+  }
+
+  int find_or_add(const LiftAtom& atom) {
+    const Look seen = look(atom);
+    const auto [begin, end] = by_orbit_.equal_range(seen.orbit);
+    for (auto entry = begin; entry != end; ++entry) {
+      const auto other = static_cast<std::size_t>(entry->second);
+      if (relative(atoms_[other].kind) != relative(atom.kind)) continue;
+      if ((positions_[other] - seen.position).norm() < 1e-3 * sampling_.radius &&
+          (displacements_[other] - seen.displacement).norm() < kSameAtom) {
+        return entry->second;
+      }
+    }
+    return add(atom);
+  }
+
+  static bool relative(LiftAtom::Kind kind) {
+    return kind == LiftAtom::Kind::axial || kind == LiftAtom::Kind::across;
+  }
+
+  int add(const LiftAtom& atom) {
+    const Look seen = look(atom);
+    const int number = static_cast<int>(atoms_.size());
+    if (number > std::numeric_limits<std::uint16_t>::max()) {
+      throw InputError("", "lift", "more than 65536 parts are needed; take a larger radius");
+    }
+    atoms_.push_back(atom);
+    positions_.push_back(seen.position);
+    displacements_.push_back(seen.displacement);
+    by_orbit_.emplace(seen.orbit, number);
+    return number;
+  }
+
+  const SymmetricSampling& sampling_;
+  const RegionMap& regions_;
+  const GroupWords& words_;
+  Fingerprint fingerprint_;
+  CarriedTransports transports_;
+  std::vector<LiftAtom> atoms_;
+  std::vector<Vector3d> positions_, displacements_;
+  std::unordered_multimap<int, int> by_orbit_;
+  std::vector<std::vector<int>> pulled_;
+  std::map<std::array<int, 4>, int> pulled_parts_;
+};
+
+// Rounds weights so that floats hold them exactly and those that must sum to 1 do.
+void quantise(std::vector<std::pair<int, double>>& row, const std::vector<LiftAtom>& kinds_of) {
+  double sum = 0;
+  std::size_t largest = row.size();
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    row[i].second = std::round(row[i].second / kQuantum) * kQuantum;
+    const LiftAtom::Kind kind = kinds_of[static_cast<std::size_t>(row[i].first)].kind;
+    if (kind != LiftAtom::Kind::full && kind != LiftAtom::Kind::centre) continue;
+    sum += row[i].second;
+    if (largest == row.size() || row[i].second > row[largest].second) largest = i;
+  }
+  if (largest < row.size()) row[largest].second += 1 - sum;
+  std::erase_if(row, [](const auto& entry) { return entry.second == 0; });
+}
+
+struct RawTerm {
+  LiftTerm term;
+  int word;
+};
+
+}  // namespace
+
+OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
+                     const SymmetricBasis& basis, const VertexOrbits& vertices, const OrbitLiftOptions& options,
+                     const RunContext& context) {
+  const PlainLift plain(sampling, regions, options.averaged);
+  if (options.averaged) regions.prepare();
+  AtomTable table(sampling, regions, words, basis);
+  OrbitLift lift;
+  const auto count = static_cast<std::size_t>(vertices.representatives());
+  lift.first.reserve(count + 1);
+  lift.first.push_back(0);
+  if (options.moving) lift.rest.resize(static_cast<Eigen::Index>(count), 3);
+
+  // In blocks: terms on all threads, atoms numbered in order on one, so that the numbers never depend on the threads.
+  constexpr std::size_t kBlock = 16384;
+  std::vector<std::vector<RawTerm>> terms;
+  std::vector<std::pair<int, double>> row;
+  std::vector<double> sums;
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    context.progress("lift", static_cast<double>(begin) / static_cast<double>(count));
+    const std::size_t size = std::min(kBlock, count - begin);
+    terms.resize(size);
+    parallel_for(context, size, [&](std::size_t from, std::size_t to) {
+      PlainLift::Scratch scratch;
+      for (std::size_t i = from; i < to; ++i) {
+        terms[i].clear();
+        const std::size_t r = begin + i;
+        const Vector3d position = vertices.positions.row(static_cast<Eigen::Index>(r)).transpose();
+        const std::int64_t points = vertices.first_point[r + 1] - vertices.first_point[r];
+        for (std::int64_t k = 0; k < points; ++k) {
+          const auto at = static_cast<std::size_t>(vertices.first_point[r] + k);
+          const int word = vertices.point_words[at];
+          plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch);
+          for (LiftTerm term : scratch.terms) {
+            term.weight /= static_cast<double>(points);
+            terms[i].push_back({term, word});
+          }
+        }
+      }
+    });
+    for (std::size_t i = 0; i < size; ++i) {
+      row.clear();
+      for (const RawTerm& raw : terms[i]) {
+        const auto atom = static_cast<std::size_t>(table.number(raw.term, raw.word));
+        if (sums.size() <= atom) sums.resize(atom + 256, 0);
+        if (sums[atom] == 0) row.emplace_back(static_cast<int>(atom), 0);
+        sums[atom] += raw.term.weight;
+      }
+      for (auto& [atom, weight] : row) weight = std::exchange(sums[static_cast<std::size_t>(atom)], 0);
+      std::ranges::sort(row);
+      quantise(row, table.atoms());
+      Vector3d middle = Vector3d::Zero();
+      for (const auto& [atom, weight] : row) {
+        lift.atom.push_back(static_cast<std::uint16_t>(atom));
+        lift.weight.push_back(static_cast<float>(weight));
+        middle += weight * table.positions()[static_cast<std::size_t>(atom)];
+      }
+      if (options.moving) {
+        const auto r = static_cast<Eigen::Index>(begin + i);
+        lift.rest.row(r) = vertices.positions.row(r) - middle.transpose();
+      }
+      lift.first.push_back(static_cast<std::int64_t>(lift.weight.size()));
+    }
+  }
+  lift.atoms = table.take();
+  return lift;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "orbifit/subspace/region_map.h"
+#include "orbifit/subspace/symmetric_sampling.h"
+
+namespace orbifit {
+
+/// One sample's part in the displacement of a point. In `full`, the sample's displacement; on a circle or sphere of a
+/// continuous group, the part of it along the axis (`axial`) or across it (`across`) relative to the carried centre, or
+/// the carried centre itself (`centre`, sample -1).
+struct LiftTerm {
+  enum class Kind : std::uint8_t { full, axial, across, centre };
+  int sample = -1;
+  Kind kind = Kind::full;
+  int place = -1;  ///< whose axis or centre; -1 for `full`
+  double weight = 0;
+};
+
+/// Gaussians about the samples as in the paper (section 5, "Lifting the displacements"), but a sample that lies outside
+/// a place fades out as the point comes near that place: its part is multiplied by a smooth step of the point's distance
+/// from the place, over one radius, and is next to nothing inside. So what happens in a place depends on the samples of
+/// that place alone, and goes over continuously into its surroundings. Under a continuous group the Gaussians are
+/// averaged over the circle or sphere in closed form (method notes 2.3).
+class PlainLift {
+ public:
+  /// \param faded false: the paper's lift, blind for the places
+  PlainLift(const SymmetricSampling& sampling, const RegionMap& regions, bool faded);
+
+  /// Room for one caller at a time.
+  struct Scratch {
+    std::vector<double> factors;           // by set
+    std::vector<int> stamps;               // by set
+    std::vector<std::pair<int, double>> near;  // places at hand and what they leave of samples outside
+    std::vector<LiftTerm> terms;
+    int stamp = 0;
+    bool blended = false;  ///< the last point lies in the fading band of a place
+  };
+
+  /// The terms for a point of a set, normalised so that those of kind full and centre sum to 1; in scratch.terms.
+  /// A point under a continuous group must be in its canonical place. O(samples within 3.7 radii).
+  void terms(const Eigen::Vector3d& point, int set, Scratch& scratch) const;
+
+  /// The place whose continuum acts on points of the set; -1: none.
+  int continuous_place(int set) const;
+
+ private:
+  void find_near(const Eigen::Vector3d& point, int set, Scratch& scratch) const;
+  double factor(int sample, Scratch& scratch) const;
+  void gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) const;
+  void ring_terms(const Eigen::Vector3d& point, int place, Scratch& scratch) const;
+
+  const SymmetricSampling& sampling_;
+  const RegionMap& regions_;
+  bool faded_;
+  std::vector<int> partial_places_;             // those that do not hold the whole mesh
+  std::vector<std::vector<int>> rings_;         // canonical samples, by place
+  double width_;                                // of the grid's cells
+  Eigen::Vector3d origin_;
+  std::array<int, 3> cells_{};
+  std::vector<int> first_in_cell_, samples_by_cell_;
+};
+
+}  // namespace orbifit
