@@ -33,7 +33,7 @@ struct Edit {
   }
 
   Points deformed(const Deformation& deformation) const {
-    return model.mesh.vertices + vertex_displacements(subspace, deformation.q);
+    return model.mesh.vertices + vertex_displacements(subspace, deformation.state);
   }
 
   GeneratedModel model;
@@ -117,9 +117,9 @@ TEST(Deformer, SolutionMinimisesTheEnergy) {
   // Along directions that leave the handles' vertices in place the Laplace energy alone must have no slope.
   std::vector<int> held = foot.vertices;
   held.insert(held.end(), top.vertices.begin(), top.vertices.end());
-  Eigen::MatrixXd handle_rows(3 * static_cast<Eigen::Index>(held.size()), solution.q.size());
-  for (Eigen::Index c = 0; c < solution.q.size(); ++c) {
-    const Points moved = vertex_displacements(edit.subspace, Eigen::VectorXd::Unit(solution.q.size(), c));
+  Eigen::MatrixXd handle_rows(3 * static_cast<Eigen::Index>(held.size()), solution.state.q.size());
+  for (Eigen::Index c = 0; c < solution.state.q.size(); ++c) {
+    const Points moved = vertex_displacements(edit.subspace, Eigen::VectorXd::Unit(solution.state.q.size(), c));
     for (std::size_t i = 0; i < held.size(); ++i) {
       handle_rows.block<3, 1>(3 * static_cast<Eigen::Index>(i), c) = moved.row(held[i]).transpose();
     }
@@ -132,11 +132,11 @@ TEST(Deformer, SolutionMinimisesTheEnergy) {
     const auto energy = [&](const Eigen::VectorXd& q) {
       return laplace_energy(rest, still, sample_displacements(edit.subspace, q));
     };
-    return std::abs(energy(solution.q + direction) - energy(solution.q - direction)) / 2;
+    return std::abs(energy(solution.state.q + direction) - energy(solution.state.q - direction)) / 2;
   };
   const auto normal = [&] { return random.normal(); };
   for (int trial = 0; trial < 10; ++trial) {
-    const double free = slope(Eigen::VectorXd::NullaryExpr(solution.q.size(), normal));
+    const double free = slope(Eigen::VectorXd::NullaryExpr(solution.state.q.size(), normal));
     EXPECT_LT(slope(kernel * Eigen::VectorXd::NullaryExpr(kernel.cols(), normal)), 1e-5 * free) << "trial " << trial;
   }
 }
@@ -150,7 +150,7 @@ TEST(Deformer, BarBentByNinetyDegreesHasNoFlippedTriangles) {
   const Motion still;
   for (int step = 1; step <= 9; ++step) {
     const Motion turn = Motion::rotation(Eigen::Vector3d::UnitY(), step * M_PI / 18, {0, 0, 0});
-    deformation = deformer.solve({still, turn}, 40, deformation.q);
+    deformation = deformer.solve({still, turn}, 40, deformation.state);
   }
   Mesh bent = mesh;
   bent.vertices = edit.deformed(deformation);
@@ -170,9 +170,9 @@ TEST(Deformer, SolvesTheSameWhateverWasSolvedBefore) {
   Deformer deformer(edit.subspace, edit.model.mesh);
   deformer.set_handles({handle_at(edit.model.mesh, edit.model.mesh.vertices.row(0).transpose(), 0.2)}, 100);
   const Motion motion{Eigen::Matrix3d::Identity(), {0.05, 0.02, 0.1}};
-  const Eigen::VectorXd first = deformer.solve({motion}, 5).q;
+  const Eigen::VectorXd first = deformer.solve({motion}, 5).state.q;
   deformer.solve({Motion{Eigen::Matrix3d::Identity(), {1, 1, 1}}}, 5);
-  EXPECT_EQ(deformer.solve({motion}, 5).q, first);
+  EXPECT_EQ(deformer.solve({motion}, 5).state.q, first);
 }
 
 TEST(Deformer, RefusesAsManyMotionsAsThereAreNoHandles) {

@@ -11,6 +11,15 @@
 namespace orbifit {
 namespace {
 
+// The orbit of a point on face 0, with its words.
+struct Followed {
+  explicit Followed(const RegionMap& map) : regions(map), words(map, true) {}
+  Orbit of(const Eigen::Vector3d& seed) { return orbit_of(seed, regions.set_of_face(0), regions, words, {}); }
+
+  const RegionMap& regions;
+  GroupWords words;
+};
+
 // One triangle, so that a point's regions are known, with two regions of the groups given.
 RegionMap two_regions(const std::vector<Motion>& a, const std::vector<Motion>& b, Mesh& mesh) {
   mesh.vertices.resize(3, 3);
@@ -37,7 +46,7 @@ std::vector<Motion> mirror(const Eigen::Vector3d& normal, const Eigen::Vector3d&
 TEST(Orbit, TwoMirrorsAtARightAngleGiveFourPoints) {
   Mesh mesh;
   const RegionMap regions = two_regions(mirror({1, 0, 0}, {0, 0, 0}), mirror({0, 1, 0}, {0, 0, 0}), mesh);
-  const Orbit orbit = orbit_of({0.3, 0.2, 0}, 0, regions, {});
+  const Orbit orbit = Followed(regions).of({0.3, 0.2, 0});
   EXPECT_EQ(orbit.points.size(), 4U);
   EXPECT_TRUE(orbit.constraints.empty());
 }
@@ -46,14 +55,14 @@ TEST(Orbit, MirrorsAtThirtyDegreesCloseToADihedralOrbit) {
   Mesh mesh;
   const RegionMap regions = two_regions(
       mirror({1, 0, 0}, {0, 0, 0}), mirror(axis_rotation(Eigen::Vector3d::UnitZ(), M_PI / 6).col(0), {0, 0, 0}), mesh);
-  EXPECT_EQ(orbit_of({0.3, 0.2, 0}, 0, regions, {}).points.size(), 12U);
+  EXPECT_EQ(Followed(regions).of({0.3, 0.2, 0}).points.size(), 12U);
 }
 
 TEST(Orbit, RegionsThatDoNotCloseAreNamed) {
   Mesh mesh;
   const RegionMap regions = two_regions(mirror({1, 0, 0}, {0, 0, 0}), mirror({1, 0, 0}, {0.7, 0, 0}), mesh);
   try {
-    orbit_of({0.3, 0.2, 0}, 0, regions, {});
+    Followed(regions).of({0.3, 0.2, 0});
     FAIL() << "an endless orbit was accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("left"), std::string::npos) << error.what();
@@ -64,10 +73,12 @@ TEST(Orbit, RegionsThatDoNotCloseAreNamed) {
 TEST(Orbit, APointOnAMirrorIsReachedTwice) {
   Mesh mesh;
   const RegionMap regions = two_regions(mirror({1, 0, 0}, {0, 0, 0}), {Motion{}}, mesh);
-  const Orbit orbit = orbit_of({0, 0.2, 0}, 0, regions, {});
+  Followed followed(regions);
+  const Orbit orbit = followed.of({0, 0.2, 0});
   ASSERT_EQ(orbit.points.size(), 1U);
   ASSERT_EQ(orbit.constraints.size(), 1U);
-  EXPECT_EQ(orbit.constraints[0].other.frame, Eigen::Matrix3d(Eigen::Vector3d(-1, 1, 1).asDiagonal()));
+  EXPECT_EQ(followed.words.transport(orbit.constraints[0].word).frame,
+            Eigen::Matrix3d(Eigen::Vector3d(-1, 1, 1).asDiagonal()));
 }
 
 TEST(Orbit, FixedPointIsFixedAndNearest) {
@@ -87,17 +98,19 @@ TEST_P(OrbitOfGroup, OfAGenericPointHasTheGroupsOrderAndFrames) {
   const GeneratedModel model = generate_orbit(group, options);
   const RegionMap regions(model.mesh, model.truth, RunContext{});
   const Eigen::Vector3d seed = model.mesh.vertices.row(0);
-  const Orbit orbit = orbit_of(seed, 0, regions, {});
+  Followed followed(regions);
+  const Orbit orbit = followed.of(seed);
   ASSERT_EQ(static_cast<int>(orbit.points.size()), group.order());
   EXPECT_TRUE(orbit.constraints.empty());
   for (const OrbitPoint& point : orbit.points) {
-    EXPECT_LT((point.motion(seed) - point.position).norm(), 1e-13);
-    EXPECT_LT((point.motion.linear - point.transport.frame).norm(), 1e-13);
+    const Motion& motion = followed.words.motion(point.word);
+    const Transport& transport = followed.words.transport(point.word);
+    EXPECT_LT((motion(seed) - point.position).norm(), 1e-13);
+    EXPECT_LT((motion.linear - transport.frame).norm(), 1e-13);
     // A common translation t of seed and group moves every image by t: frame t + (1 - frame) t.
-    ASSERT_LE(point.transport.carried.size(), 1U);
-    if (!point.transport.carried.empty()) {
-      EXPECT_LT((point.transport.frame + point.transport.carried[0].second - Eigen::Matrix3d::Identity()).norm(),
-                1e-13);
+    ASSERT_LE(transport.carried.size(), 1U);
+    if (!transport.carried.empty()) {
+      EXPECT_LT((transport.frame + transport.carried[0].second - Eigen::Matrix3d::Identity()).norm(), 1e-13);
     }
   }
 }

@@ -15,6 +15,7 @@
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/displacement_field.h"
 
 namespace orbifit {
 namespace {
