@@ -7,12 +7,12 @@
 #include <Eigen/Cholesky>
 
 #include "handle_rows.h"
+#include "kernels.h"
 #include "moving_solve.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/mesh_laplacian.h"
 #include "orbifit/subspace/point_laplacian.h"
 #include "quotient.h"
-#include "solver_kernels.h"
 
 namespace orbifit {
 
@@ -111,7 +111,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
     // Equation (4), right, with the Laplace coordinates turned.
     quotient.pull(rotations, side);
     side += handle_pull;
-    cholesky_solve(factor, side);
+    kernels().cholesky_solve(factor.data(), freedom, side.data());
     previous.swap(q);
     q.swap(side);
     quotient.rotate(q, rotations);

@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 constexpr double kQuantum = 1.0 / (1 << 24);
 constexpr double kSameAtom = 1e-7;
 
+using Row = std::vector<std::pair<int, double>>;
+
 // A random displacement of the basis, by which atoms are told apart.
 struct Fingerprint {
   Points seeds;     // by orbit
@@ -137,7 +139,7 @@ class AtomTable {
 };
 
 // Rounds weights so that floats hold them exactly and those that must sum to 1 do.
-void quantise(std::vector<std::pair<int, double>>& row, const std::vector<LiftAtom>& kinds_of) {
+void quantise(Row& row, const std::vector<LiftAtom>& kinds_of) {
   double sum = 0;
   std::size_t largest = row.size();
   for (std::size_t i = 0; i < row.size(); ++i) {
@@ -149,6 +151,31 @@ void quantise(std::vector<std::pair<int, double>>& row, const std::vector<LiftAt
   }
   if (largest < row.size()) row[largest].second += 1 - sum;
   std::erase_if(row, [](const auto& entry) { return entry.second == 0; });
+}
+
+using Block = std::array<Row, OrbitLift::kLanes>;
+
+// Appends the rows with the union of their atoms, and clears them.
+void append_block(Block& block, OrbitLift& lift) {
+  std::vector<int> atoms;
+  for (const Row& row : block) {
+    for (const auto& entry : row) atoms.push_back(entry.first);
+  }
+  std::ranges::sort(atoms);
+  atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
+  const std::size_t start = lift.atom.size();
+  for (const int atom : atoms) lift.atom.push_back(static_cast<std::uint16_t>(atom));
+  lift.weight.resize(OrbitLift::kLanes * lift.atom.size(), 0.0F);
+  for (std::size_t lane = 0; lane < block.size(); ++lane) {
+    std::size_t at = 0;
+    for (const auto& [atom, weight] : block[lane]) {
+      while (atoms[at] != atom) ++at;
+      lift.weight[OrbitLift::kLanes * (start + at) + lane] = static_cast<float>(weight);
+    }
+    lift.used += static_cast<std::int64_t>(block[lane].size());
+    block[lane].clear();
+  }
+  lift.first.push_back(static_cast<std::int64_t>(lift.atom.size()));
 }
 
 struct RawTerm {
@@ -166,15 +193,16 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
   AtomTable table(sampling, regions, words, basis);
   OrbitLift lift;
   const auto count = static_cast<std::size_t>(vertices.representatives());
-  lift.first.reserve(count + 1);
+  lift.first.reserve(count / OrbitLift::kLanes + 2);
   lift.first.push_back(0);
   if (options.moving) lift.rest.resize(static_cast<Eigen::Index>(count), 3);
 
   // In blocks: terms on all threads, atoms numbered in order on one, so that the numbers never depend on the threads.
   constexpr std::size_t kBlock = 16384;
   std::vector<std::vector<RawTerm>> terms;
-  std::vector<std::pair<int, double>> row;
+  Row row;
   std::vector<double> sums;
+  Block block;
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     context.progress("lift", static_cast<double>(begin) / static_cast<double>(count));
     const std::size_t size = std::min(kBlock, count - begin);
@@ -208,17 +236,13 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
       for (auto& [atom, weight] : row) weight = std::exchange(sums[static_cast<std::size_t>(atom)], 0);
       std::ranges::sort(row);
       quantise(row, table.atoms());
+      block[(begin + i) % OrbitLift::kLanes] = row;
+      if ((begin + i + 1) % OrbitLift::kLanes == 0 || begin + i + 1 == count) append_block(block, lift);
+      if (!options.moving) continue;
       Vector3d middle = Vector3d::Zero();
-      for (const auto& [atom, weight] : row) {
-        lift.atom.push_back(static_cast<std::uint16_t>(atom));
-        lift.weight.push_back(static_cast<float>(weight));
-        middle += weight * table.positions()[static_cast<std::size_t>(atom)];
-      }
-      if (options.moving) {
-        const auto r = static_cast<Eigen::Index>(begin + i);
-        lift.rest.row(r) = vertices.positions.row(r) - middle.transpose();
-      }
-      lift.first.push_back(static_cast<std::int64_t>(lift.weight.size()));
+      for (const auto& [atom, weight] : row) middle += weight * table.positions()[static_cast<std::size_t>(atom)];
+      const auto r = static_cast<Eigen::Index>(begin + i);
+      lift.rest.row(r) = vertices.positions.row(r) - middle.transpose();
     }
   }
   lift.atoms = table.take();

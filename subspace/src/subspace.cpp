@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lift_kernel.h"
+#include "kernels.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/carried_regions.h"
 
@@ -16,6 +16,16 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+// Rows of three as rows of four, the last zero.
+std::vector<double> padded_by_four(const Eigen::VectorXd& stacked) {
+  const auto count = static_cast<std::size_t>(stacked.size() / 3);
+  std::vector<double> padded(4 * count, 0.0);
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t c = 0; c < 3; ++c) padded[4 * k + c] = stacked[static_cast<Eigen::Index>(3 * k + c)];
+  }
+  return padded;
+}
+
 // Displacement of a point when its word goes from rest to now, the displacement where the word starts being u.
 Vector3d carried_by(const Transport& now, const Transport* rest, const Vector3d& start, const Vector3d& u,
                     const Eigen::VectorXd& carriers) {
@@ -25,36 +35,69 @@ Vector3d carried_by(const Transport& now, const Transport* rest, const Vector3d&
   return result;
 }
 
-void bind(const Binding& binding, const Vector3d& position, const Eigen::VectorXd& carriers, Eigen::Ref<Vector3d> u) {
+void bind(const Binding& binding, const Vector3d& position, const Eigen::VectorXd& carriers, Vector3d& u) {
   Vector3d bound = binding.kept * u + binding.slope * position + binding.offset;
   for (const auto& [carrier, matrix] : binding.bound) bound += matrix * carriers.segment<3>(3 * carrier);
   u = bound;
 }
 
-// A word's transport with the carriers put in: u -> frame u + slope x + shift.
-struct Copier {
-  Matrix3d frame, slope;
-  Vector3d shift;
-};
-
-Copier copier_of(const Transport& now, const Transport* rest, const Eigen::VectorXd& carriers) {
-  Copier copier{now.frame, Matrix3d::Zero(), Vector3d::Zero()};
-  copier.shift = carried_by(now, rest, Vector3d::Zero(), Vector3d::Zero(), carriers);
-  if (rest != nullptr) copier.slope = now.frame - rest->frame;
-  return copier;
-}
-
 // The part of the lift that turns with the regions (method notes 2.2): (R - 1) (p - sum of w x), R blended.
-void add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, Eigen::Index representative,
-                     Eigen::Ref<Vector3d> u) {
-  const auto r = static_cast<std::size_t>(representative);
+void add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, int representative, Vector3d& u) {
   Matrix3d blend = Matrix3d::Zero();
-  for (std::int64_t e = subspace.lift.first[r]; e < subspace.lift.first[r + 1]; ++e) {
-    const auto entry = static_cast<std::size_t>(e);
-    blend += double{subspace.lift.weight[entry]} * basis.atom_rotations[subspace.lift.atom[entry]];
-  }
+  subspace.lift.visit(representative, [&](int atom, double weight) {
+    blend += weight * basis.atom_rotations[static_cast<std::size_t>(atom)];
+  });
   const Vector3d rest = subspace.lift.rest.row(representative).transpose();
   u += blended_rotation(blend) * rest - rest;
+}
+
+// Everything that one lift needs of the state.
+struct LiftState {
+  std::vector<double> atoms;     // four doubles each
+  Eigen::VectorXd carriers;
+  std::vector<double> copiers;   // sixteen doubles a word: frame's columns and shift
+};
+
+LiftState lift_state(const CarriedBasis& basis, const SubspaceState& state) {
+  const bool turned = !basis.rotations.empty();
+  LiftState result;
+  Eigen::VectorXd atoms = basis.atoms * state.q;
+  result.carriers = basis.carried * state.q;
+  if (turned) {
+    atoms += basis.atom_offset;
+    result.carriers += basis.carried_offset;
+  }
+  result.atoms = padded_by_four(atoms);
+  const std::vector<Transport>& words = basis.transports.words;
+  result.copiers.assign(16 * words.size(), 0.0);
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    double* copier = result.copiers.data() + 16 * w;
+    for (Eigen::Index c = 0; c < 3; ++c) Eigen::Map<Vector3d>(copier + 4 * c) = words[w].frame.col(c);
+    Eigen::Map<Vector3d>(copier + 12) = carried_by(words[w], turned ? &basis.transports.rest_words[w] : nullptr,
+                                                   Vector3d::Zero(), Vector3d::Zero(), result.carriers);
+  }
+  return result;
+}
+
+// What the copy of a vertex lacks: how its word turns the place itself, and the turn on its circle.
+Vector3d finished(const Subspace& subspace, const CarriedBasis& basis, const VertexOrbits::Follower& follower,
+                  const Eigen::VectorXd& carriers, const Vector3d& copied) {
+  const bool turned = !basis.rotations.empty();
+  const Vector3d start = subspace.orbits.positions.row(follower.representative).transpose();
+  Vector3d u = copied;
+  if (turned) {
+    const auto word = static_cast<std::size_t>(follower.word);
+    u += (basis.transports.words[word].frame - basis.transports.rest_words[word].frame) * start;
+  }
+  if (follower.turn < 0) return u;
+  const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
+  const bool floating = subspace.mode != GroupMode::fixed;
+  const Transport rest = step_transport(*subspace.regions, place, -1, motion, floating);
+  const Transport now =
+      turned ? step_transport(*subspace.regions, place, -1, motion, floating,
+                              basis.rotations[static_cast<std::size_t>(place)])
+             : rest;
+  return carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers);
 }
 
 }  // namespace
@@ -103,64 +146,44 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
   const CarriedBasis& basis = basis_of(subspace, state);
   const bool turned = !basis.rotations.empty();
   const VertexOrbits& orbits = subspace.orbits;
-  Eigen::VectorXd atoms = basis.atoms * state.q;
-  Eigen::VectorXd carriers = basis.carried * state.q;
-  if (turned) {
-    atoms += basis.atom_offset;
-    carriers += basis.carried_offset;
-  }
-  const std::vector<double> padded = padded_by_four(atoms);
+  const OrbitLift& lift = subspace.lift;
+  const LiftState now = lift_state(basis, state);
 
   // Representatives.
-  const auto representatives = static_cast<std::size_t>(orbits.representatives());
-  Points sources(static_cast<Eigen::Index>(representatives), 3);
-  parallel_for(context, representatives, [&](std::size_t begin, std::size_t end) {
-    weighted_sums(subspace.lift, padded, begin, end, sources.data());
-    for (std::size_t r = begin; r < end; ++r) {
+  constexpr std::size_t kLanes = OrbitLift::kLanes;
+  const std::size_t blocks = lift.first.size() - 1;
+  const std::unique_ptr<double[]> sources(new double[4 * kLanes * blocks]);
+  parallel_for(context, blocks, [&](std::size_t begin, std::size_t end) {
+    kernels().blocked_sums(lift.first.data(), lift.atom.data(), lift.weight.data(), now.atoms.data(), begin, end,
+                           sources.get());
+    const std::size_t last = std::min(end * kLanes, orbits.bound.size());
+    for (std::size_t r = begin * kLanes; r < last; ++r) {
       const int bound = orbits.bound[r];
       if (bound < 0 && !turned) continue;
-      const auto row = static_cast<Eigen::Index>(r);
-      Vector3d u = sources.row(row).transpose();
-      if (turned) add_turned_rest(subspace, basis, row, u);
+      Eigen::Map<Vector3d> source(sources.get() + 4 * r);
+      Vector3d u = source;
+      if (turned) add_turned_rest(subspace, basis, static_cast<int>(r), u);
       if (bound >= 0) {
-        bind(basis.bindings[static_cast<std::size_t>(bound)], orbits.positions.row(row).transpose(), carriers, u);
+        bind(basis.bindings[static_cast<std::size_t>(bound)],
+             orbits.positions.row(static_cast<Eigen::Index>(r)).transpose(), now.carriers, u);
       }
-      sources.row(row) = u.transpose();
+      source = u;
     }
   });
 
   // Their images.
-  const std::vector<Transport>& words = basis.transports.words;
-  std::vector<Copier> copiers;
-  copiers.reserve(words.size());
-  for (std::size_t w = 0; w < words.size(); ++w) {
-    copiers.push_back(copier_of(words[w], turned ? &basis.transports.rest_words[w] : nullptr, carriers));
-  }
+  static_assert(sizeof(VertexOrbits::Follower) == 3 * sizeof(int));
   Points displacements(static_cast<Eigen::Index>(orbits.followers.size()), 3);
   parallel_for(context, orbits.followers.size(), [&](std::size_t begin, std::size_t end) {
+    kernels().carried_copies(&orbits.followers.data()->representative, sources.get(), now.copiers.data(), begin, end,
+                             displacements.data());
+    if (!turned && orbits.turns.empty()) return;
     for (std::size_t v = begin; v < end; ++v) {
       const VertexOrbits::Follower& follower = orbits.followers[v];
-      const double* source = sources.data() + 3 * static_cast<std::ptrdiff_t>(follower.representative);
-      double* target = displacements.data() + 3 * static_cast<std::ptrdiff_t>(v);
-      if (follower.word == 0 && follower.turn < 0) {
-        std::copy(source, source + 3, target);
-        continue;
-      }
-      const Copier& copier = copiers[static_cast<std::size_t>(follower.word)];
-      Vector3d u = copier.frame * Eigen::Map<const Vector3d>(source) + copier.shift;
-      if (turned) u += copier.slope * orbits.positions.row(follower.representative).transpose();
-      if (follower.turn >= 0) {
-        const auto& [place, motion] = orbits.turns[static_cast<std::size_t>(follower.turn)];
-        const bool floating = subspace.mode != GroupMode::fixed;
-        const Matrix3d rotation =
-            turned ? basis.rotations[static_cast<std::size_t>(place)] : Matrix3d(Matrix3d::Identity());
-        const Transport now = step_transport(*subspace.regions, place, -1, motion, floating, rotation);
-        const Transport rest = step_transport(*subspace.regions, place, -1, motion, floating);
-        const Vector3d canonical = subspace.words->motion(follower.word)(
-            Vector3d(orbits.positions.row(follower.representative).transpose()));
-        u = carried_by(now, turned ? &rest : nullptr, canonical, u, carriers);
-      }
-      std::copy(u.data(), u.data() + 3, target);
+      if (!turned && follower.turn < 0) continue;
+      const auto row = static_cast<Eigen::Index>(v);
+      displacements.row(row) =
+          finished(subspace, basis, follower, now.carriers, displacements.row(row).transpose()).transpose();
     }
   });
   return displacements;
@@ -196,16 +219,13 @@ void add_vertex_row(const Subspace& subspace, int vertex, const Vector3d& direct
     add_carried(binding.bound);
     along = binding.kept.transpose() * along;
   }
-  for (std::int64_t e = subspace.lift.first[r]; e < subspace.lift.first[r + 1]; ++e) {
-    const auto entry = static_cast<std::size_t>(e);
+  subspace.lift.visit(follower.representative, [&](int atom, double weight) {
     for (int c = 0; c < 3; ++c) {
-      const double factor = double{subspace.lift.weight[entry]} * along[c];
-      for (decltype(basis.atoms)::InnerIterator it(basis.atoms, 3 * Eigen::Index{subspace.lift.atom[entry]} + c); it;
-           ++it) {
-        row[it.col()] += factor * it.value();
+      for (decltype(basis.atoms)::InnerIterator it(basis.atoms, 3 * Eigen::Index{atom} + c); it; ++it) {
+        row[it.col()] += weight * along[c] * it.value();
       }
     }
-  }
+  });
 }
 
 SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,

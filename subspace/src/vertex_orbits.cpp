@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "vertex_grid.h"
 
@@ -25,6 +26,55 @@ std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions, co
       const int set = own[static_cast<std::size_t>(other)];
       if (set != result[v]) result[v] = regions.joined(result[v], set);
     });
+  }
+  return result;
+}
+
+// Position along a curve that fills the box (Morton 1966): neighbours in space come to lie next to one another.
+std::uint64_t curve_position(const Eigen::Vector3d& unit) {
+  std::uint64_t result = 0;
+  for (int k = 0; k < 3; ++k) {
+    auto bits = static_cast<std::uint64_t>(std::clamp(unit[k], 0.0, 1.0) * ((1 << 16) - 1));
+    for (int b = 0; b < 16; ++b) result |= (bits >> static_cast<unsigned>(b) & 1U) << static_cast<unsigned>(3 * b + k);
+  }
+  return result;
+}
+
+// Representatives next to one another share samples, which makes the lift's lists short.
+VertexOrbits in_space_order(VertexOrbits orbits) {
+  const auto count = static_cast<std::size_t>(orbits.representatives());
+  if (count == 0) return orbits;
+  const Eigen::RowVector3d low = orbits.positions.colwise().minCoeff();
+  const double size = std::max(1e-300, (orbits.positions.colwise().maxCoeff() - low).maxCoeff());
+  std::vector<std::pair<std::uint64_t, int>> order(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    const Eigen::Vector3d unit = (orbits.positions.row(static_cast<Eigen::Index>(r)) - low).transpose() / size;
+    order[r] = {curve_position(unit), static_cast<int>(r)};
+  }
+  std::ranges::sort(order);
+  VertexOrbits result;
+  result.turns = std::move(orbits.turns);
+  result.bindings = std::move(orbits.bindings);
+  result.images_are_vertices = orbits.images_are_vertices;
+  result.positions.resize(static_cast<Eigen::Index>(count), 3);
+  result.point_words.reserve(orbits.point_words.size());
+  result.point_sets.reserve(orbits.point_sets.size());
+  std::vector<int> place(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    const auto from = static_cast<std::size_t>(order[r].second);
+    place[from] = static_cast<int>(r);
+    result.positions.row(static_cast<Eigen::Index>(r)) = orbits.positions.row(order[r].second);
+    result.bound.push_back(orbits.bound[from]);
+    result.first_point.push_back(static_cast<std::int64_t>(result.point_words.size()));
+    for (auto k = orbits.first_point[from]; k < orbits.first_point[from + 1]; ++k) {
+      result.point_words.push_back(orbits.point_words[static_cast<std::size_t>(k)]);
+      result.point_sets.push_back(orbits.point_sets[static_cast<std::size_t>(k)]);
+    }
+  }
+  result.first_point.push_back(static_cast<std::int64_t>(result.point_words.size()));
+  result.followers = std::move(orbits.followers);
+  for (VertexOrbits::Follower& follower : result.followers) {
+    follower.representative = place[static_cast<std::size_t>(follower.representative)];
   }
   return result;
 }
@@ -62,7 +112,7 @@ class OrbitBuilder {
     result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
     result_.positions.resize(static_cast<Eigen::Index>(positions_.size()), 3);
     for (std::size_t i = 0; i < positions_.size(); ++i) result_.positions.row(static_cast<Eigen::Index>(i)) = positions_[i];
-    return std::move(result_);
+    return in_space_order(std::move(result_));
   }
 
  private:
@@ -173,7 +223,7 @@ VertexOrbits lone_vertices(const Mesh& mesh) {
     result.first_point.push_back(static_cast<std::int64_t>(v));
   }
   result.first_point.push_back(static_cast<std::int64_t>(count));
-  return result;
+  return in_space_order(std::move(result));
 }
 
 }  // namespace orbifit

@@ -52,7 +52,7 @@ CommandBody subspace(CLI::App& app) {
     const Subspace built = build_subspace(mesh, annotation, arguments->options, context.run);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::vector<Residual> residuals = random_field_residuals(mesh, annotation, built, context.run);
-    const double neighbours = static_cast<double>(built.lift.weight.size()) / std::max(1, built.orbits.representatives());
+    const double neighbours = static_cast<double>(built.lift.used) / std::max(1, built.orbits.representatives());
     if (context.json) {
       nlohmann::ordered_json regions = nlohmann::ordered_json::array();
       for (std::size_t i = 0; i < residuals.size(); ++i) {

@@ -28,14 +28,31 @@ struct LiftAtom {
 ///     u(p) = 1/N sum over (p_k, O_k) in orbit(p) of O_k^T u_plain(p_k),
 /// so exact in every region, partial, nested and overlapping ones too. Baked for one vertex an orbit, as scalar weights
 /// on the atoms' displacements; its images are carried copies.
+///
+/// Eight representatives next to one another share one list of atoms, so that the weights stream through memory and eight
+/// sums go on at once.
 struct OrbitLift {
+  static constexpr int kLanes = 8;
   std::vector<LiftAtom> atoms;
-  std::vector<std::int64_t> first;    ///< of each representative's entries, and their number at the end
-  std::vector<std::uint16_t> atom;    ///< of each entry
-  std::vector<float> weight;          ///< multiples of 2^-24; those on full atoms and centres sum to 1 exactly
-  Points rest;                        ///< #R by 3 when groups may be turned: position less the weighted atoms' positions
+  std::vector<std::int64_t> first;  ///< of each block's entries, and their number at the end
+  std::vector<std::uint16_t> atom;  ///< of each entry
+  std::vector<float> weight;        ///< kLanes of each entry: multiples of 2^-24, on full atoms and centres summing to 1
+  std::int64_t used = 0;            ///< weights that are not zero
+  Points rest;                      ///< #R by 3 when groups may be turned: position less the weighted atoms' positions
 
   std::size_t bytes() const { return weight.size() * sizeof(float) + atom.size() * sizeof(std::uint16_t); }
+
+  /// Calls visit(atom, weight) for each part of a representative.
+  template <class Visit>
+  void visit(int representative, const Visit& visit) const {
+    const auto block = static_cast<std::size_t>(representative / kLanes);
+    const auto lane = static_cast<std::size_t>(representative % kLanes);
+    for (std::int64_t e = first[block]; e < first[block + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      const float part = weight[kLanes * entry + lane];
+      if (part != 0) visit(int{atom[entry]}, double{part});
+    }
+  }
 };
 
 struct OrbitLiftOptions {

@@ -1,0 +1,9 @@
+#include "kernels.h"
+
+#include "kernels_body.h"
+
+namespace orbifit {
+
+const Kernels kWideKernels{blocked_sums, carried_copies, gather_blocks, cholesky_solve};
+
+}  // namespace orbifit
