@@ -7,6 +7,8 @@
 #include "orbifit/subspace/sharp_features.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "rest_basis.h"
+
 namespace orbifit {
 
 namespace {
@@ -14,7 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kDefaultSamples = 600;
+constexpr int kDefaultSamples = 1200;
 constexpr int kDefaultDegreesOfFreedom = 200;
 constexpr double kVertexOntoVertex = 1e-6;  // of the diagonal
 constexpr int kSearchRounds = 6;
@@ -118,16 +120,20 @@ void add_atoms(const Subspace& subspace, CarriedBasis& basis) {
   basis.atoms.setFromTriplets(entries.begin(), entries.end());
 }
 
-CarriedBasis basis_without_atoms(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
-  CarriedBasis basis;
+void add_transports(const Subspace& subspace, const std::vector<Matrix3d>& rotations, CarriedBasis& basis) {
   basis.rotations = rotations;
   basis.transports = transports_of(subspace.sampling, *subspace.regions, *subspace.words, rotations);
-  const int carriers = subspace.mode == GroupMode::fixed ? 0 : subspace.regions->carriers();
-  static_cast<SymmetricBasis&>(basis) =
-      symmetric_basis(subspace.sampling, basis.transports, carriers, subspace.orbits.bindings);
   for (const BoundPoint& bound : subspace.orbits.bindings) {
     basis.bindings.push_back(binding_of(bound.words, basis.transports));
   }
+}
+
+CarriedBasis basis_without_atoms(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
+  CarriedBasis basis;
+  add_transports(subspace, rotations, basis);
+  const int carriers = subspace.mode == GroupMode::fixed ? 0 : subspace.regions->carriers();
+  static_cast<SymmetricBasis&>(basis) =
+      symmetric_basis(subspace.sampling, basis.transports, carriers, subspace.orbits.bindings);
   return basis;
 }
 
@@ -151,13 +157,19 @@ CarriedBasis carried_basis(const Subspace& subspace, const std::vector<Matrix3d>
   return basis;
 }
 
+void complete_rest_basis(Subspace& subspace) {
+  add_transports(subspace, {}, subspace.basis);
+  add_atoms(subspace, subspace.basis);
+}
+
 Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, const SubspaceOptions& options,
                         const RunContext& context) {
   options.validate();
   if (!(face_areas(mesh).sum() > 0)) throw InputError("", "mesh", "its faces have no area");
   if (options.relative_radii.size() > 0 && options.relative_radii.size() != mesh.vertices.rows()) {
     throw UsageError("relative_radii has " + std::to_string(options.relative_radii.size()) +
-                     " entries; it must have one for each of the " + std::to_string(mesh.vertices.rows()) + " vertices");
+                     " entries; it must have one for each of the " + std::to_string(mesh.vertices.rows()) +
+                     " vertices");
   }
   Subspace subspace;
   subspace.mode = options.mode;
@@ -168,9 +180,9 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   subspace.words = words;
   subspace.sampling = choose_sampling(mesh, *subspace.regions, *words, options, context);
   const bool averaged = options.lift == LiftKind::orbit;
-  subspace.orbits = averaged ? vertex_orbits(mesh, *subspace.regions, *words,
-                                             kVertexOntoVertex * subspace.diagonal, context)
-                             : lone_vertices(mesh);
+  subspace.orbits = averaged
+                        ? vertex_orbits(mesh, *subspace.regions, *words, kVertexOntoVertex * subspace.diagonal, context)
+                        : lone_vertices(mesh);
   subspace.basis = basis_without_atoms(subspace, {});
   subspace.lift = orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits,
                              {averaged, options.mode == GroupMode::moving}, context);

@@ -145,6 +145,19 @@ class Closure {
     };
     if (centred || continuum.spherical) demand(continuum.axis);
     if (centred && continuum.spherical) demand(continuum.reference);
+    for (const int other : regions_.set_places(point.set)) {
+      if (other == place || regions_.continuum(other) == nullptr || !followed(other)) continue;
+      // To turn by one region and back by the other must do nothing: their axes are carried together.
+      const Continuum& second = *regions_.continuum(other);
+      const auto turn_and_back = [&](const Eigen::Vector3d& axis) {
+        const Motion turn = Motion::rotation(axis, kTurnOfOneRadian, second.centre);
+        const int there = words_.extended(point.word, place, -1, turn);
+        const int back = words_.extended(there, other, -1, inverse(turn));
+        if (!words_.same(point.word, back)) orbit_.constraints.push_back({index, back});
+      };
+      turn_and_back(second.axis);
+      if (second.spherical) turn_and_back(second.reference);
+    }
     const double nearness = 2 * continuum.distance(point.position);
     if (index == 0 && !centred && nearness < options_.snap) {
       orbit_.stabilisers.push_back(Motion::rotation(continuum.axis, kTurnOfOneRadian, continuum.centre));

@@ -143,7 +143,8 @@ void PlainLift::gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) c
         const double sigma = sampling_.radii[sample];
         const double squared = (sampling_.points.row(sample).transpose() - point).squaredNorm() / (sigma * sigma);
         if (squared >= kReach * kReach) continue;
-        const double weight = (std::exp(-0.5 * squared) - kCutOff) * factor(sample, scratch);
+        const double weight = (std::exp(-0.5 * squared) - kCutOff) * factor(sample, scratch) *
+                              sampling_.shares[static_cast<std::size_t>(sample)];
         if (!(weight > 0)) continue;
         largest = std::max(largest, weight);
         scratch.terms.push_back({sample, LiftTerm::Kind::full, -1, weight});
@@ -189,7 +190,8 @@ void PlainLift::ring_terms(const Eigen::Vector3d& point, int place, Scratch& scr
     squared /= sigma * sigma;
     const double kappa = distance * other_distance / (sigma * sigma);
     const GaussianAverage average = continuum.spherical ? sphere_average(kappa) : circle_average(kappa);
-    const double copies = sampling_.copy_counts[static_cast<std::size_t>(sample)];
+    const double copies = sampling_.copy_counts[static_cast<std::size_t>(sample)] *
+                          sampling_.shares[static_cast<std::size_t>(sample)];
     const double weight = (std::exp(-0.5 * squared) - kCutOff) * average.weight * copies * factor(sample, scratch);
     nearest = std::min(nearest, squared);
     rings.push_back({sample, weight, average.ratio, squared});

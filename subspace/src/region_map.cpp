@@ -93,7 +93,7 @@ Motion Continuum::turn_to(const Vector3d& point) const {
 RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
   for (const Region& region : annotation.regions) add_region(mesh, region);
   regions_ = carriers_ = places();
-  share_references();
+  share_references(diagonal(mesh.vertices));
   for (const Region& region : annotation.regions) {
     Place& place = places_[static_cast<std::size_t>(&region - annotation.regions.data())];
     if (place.continuum) place.motions = components(region.group, *place.continuum);
@@ -144,11 +144,7 @@ void RegionMap::add_region(const Mesh&, const Region& region) {
 
 // Regions on one line share its direction, and the half-plane of canonical places lies in a mirror of finite groups
 // about the line, so that copies of a ring have their symmetries.
-void RegionMap::share_references() {
-  double size = 1e-300;
-  for (const Place& place : places_) {
-    for (const Place& other : places_) size = std::max(size, (place.centre - other.centre).norm());
-  }
+void RegionMap::share_references(double size) {
   for (std::size_t b = 0; b < places_.size(); ++b) {
     if (!places_[b].continuum || places_[b].continuum->spherical) continue;
     Continuum& own = *places_[b].continuum;

@@ -104,7 +104,7 @@ class CarrierSystem {
     const VectorXd constant = constraints.constant + constraints.seeds * space.offset;
     const MatrixXd gram = pure.transpose() * pure;
     const VectorXd side = pure.transpose() * constant;
-    conflict_ = std::max(conflict_, constant.size() > 0 ? constant.cwiseAbs().maxCoeff() : 0.0);
+    if (constant.size() > 0 && constant.cwiseAbs().maxCoeff() > 0) rows_.push_back({constraints.carriers, pure, constant});
     if (gram.size() == 0 || gram.cwiseAbs().maxCoeff() < 1e-20) return;
     for (std::size_t i = 0; i < constraints.carriers.size(); ++i) {
       side_.segment<3>(3 * constraints.carriers[i]) += side.segment<3>(3 * static_cast<Eigen::Index>(i));
@@ -135,12 +135,28 @@ class CarrierSystem {
     return -solver.solve(side_);
   }
 
-  double conflict() const { return conflict_; }
+  // The largest constant that the carriers leave unmet.
+  double conflict(const VectorXd& carriers) const {
+    double result = 0;
+    for (const Row& row : rows_) {
+      VectorXd missed = row.constant;
+      for (std::size_t i = 0; i < row.carriers.size(); ++i) {
+        missed += row.pure.middleCols<3>(3 * static_cast<Eigen::Index>(i)) * carriers.segment<3>(3 * row.carriers[i]);
+      }
+      result = std::max(result, missed.cwiseAbs().maxCoeff());
+    }
+    return result;
+  }
 
  private:
+  struct Row {
+    std::vector<int> carriers;
+    MatrixXd pure;
+    VectorXd constant;
+  };
   MatrixXd gram_;
   VectorXd side_;
-  double conflict_ = 0;
+  std::vector<Row> rows_;  // those with a constant
 };
 
 // A largest set of columns that move the samples independently of one another (pivoted Cholesky of E^T E).
@@ -208,7 +224,7 @@ SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, const CarriedT
   const Eigen::Index count = sampling.points.rows();
   basis.offset.resize(3 * count);
   basis.carried_offset = system.particular();
-  basis.conflict = system.conflict();
+  basis.conflict = system.conflict(basis.carried_offset);
   for (Eigen::Index k = 0; k < count; ++k) {
     const auto sample = static_cast<std::size_t>(k);
     const auto orbit = static_cast<std::size_t>(sampling.orbit_of_sample[sample]);

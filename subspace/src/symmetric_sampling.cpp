@@ -23,6 +23,7 @@ using Eigen::Vector3d;
 constexpr double kDoublet = 1e-4;  // of the diagonal (paper, section 5)
 constexpr double kCrowded = 0.4;   // of r
 constexpr double kRingSpacing = 0.9;  // of r
+constexpr int kFewestCopies = 6;
 constexpr int kCandidatesPerDisc = 30;
 constexpr int kMostCandidates = 400000;
 constexpr int kCandidatesPerPlace = 24;
@@ -122,15 +123,19 @@ std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& region
   return candidates;
 }
 
-// Turns from a canonical place to its copies, the identity first.
-std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& position, double radius) {
+// Turns from a canonical place to its copies, the identity first, and how many the radius asks for.
+std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& position, double radius,
+                               double& needed) {
   const double distance = continuum.distance(position);
   std::vector<Motion> turns{Motion{}};
+  needed = 1;
   if (!(distance > 0)) return turns;
   if (!continuum.spherical) {
     const double around = 2 * std::numbers::pi * distance / (kRingSpacing * radius);
     const int fold = continuum.fold;
-    const int count = std::max(fold * std::max(1, static_cast<int>(std::ceil(around / fold))), fold < 3 ? 6 : fold);
+    const int count = fold > 1 ? fold * static_cast<int>(std::ceil(around / fold))
+                               : std::max(kFewestCopies, static_cast<int>(std::ceil(around)));
+    needed = std::max(double{kFewestCopies}, around);
     for (int k = 1; k < count; ++k) {
       turns.push_back(Motion::rotation(continuum.axis, 2 * std::numbers::pi * k / count, continuum.centre));
     }
@@ -139,6 +144,7 @@ std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& posit
   // A spiral of points at equal areas (Vogel 1979), the canonical pole first.
   const double area = kRingSpacing * radius / distance;
   const int count = std::max(12, static_cast<int>(std::ceil(4 * std::numbers::pi / (area * area))));
+  needed = count;
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const Vector3d side = continuum.axis.cross(continuum.reference);
   for (int k = 1; k < count; ++k) {
@@ -165,8 +171,10 @@ void append(SymmetricSampling& sampling, const Orbit& orbit, const RegionMap& re
   const int number = sampling.orbits();
   for (const OrbitPoint& point : orbit.points) {
     const int place = continuous_place(regions, point.set);
-    const std::vector<Motion> turns =
-        place < 0 ? std::vector<Motion>{Motion{}} : copy_turns(*regions.continuum(place), point.position, radius);
+    double needed = 1;
+    const std::vector<Motion> turns = place < 0
+                                          ? std::vector<Motion>{Motion{}}
+                                          : copy_turns(*regions.continuum(place), point.position, radius, needed);
     const int first = static_cast<int>(points.size());
     for (std::size_t k = 0; k < turns.size(); ++k) {
       points.push_back(turns[k](point.position));
@@ -176,6 +184,7 @@ void append(SymmetricSampling& sampling, const Orbit& orbit, const RegionMap& re
       sampling.sets.push_back(point.set);
       sampling.copies.push_back({place, first, turns[k]});
       sampling.copy_counts.push_back(static_cast<int>(turns.size()));
+      sampling.shares.push_back(std::min(1.0, needed / static_cast<double>(turns.size())));
     }
   }
   for (const OrbitConstraint& constraint : orbit.constraints) {

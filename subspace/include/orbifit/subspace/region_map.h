@@ -86,6 +86,11 @@ class RegionMap {
   const std::vector<int>& set_places(int set) const { return *sets_[static_cast<std::size_t>(set)]; }
   const std::vector<int>& regions_of_face(int face) const { return set_places(set_of_face(face)); }
 
+  /// How many sets have numbers so far, and the number of a set, given anew where it has none. Not for use by several
+  /// threads.
+  int set_count() const { return static_cast<int>(sets_.size()); }
+  int set_of(const std::vector<int>& places) const { return intern(places); }
+
   /// The set with a place, or all places of another set, added. Not for use by several threads.
   int with(int set, int place) const;
   int joined(int a, int b) const;
@@ -124,7 +129,7 @@ class RegionMap {
   int intern(const std::vector<int>& places) const;
   void add_region(const Mesh& mesh, const Region& region);
   void add_pattern(const Mesh& mesh, const Pattern& pattern, const RunContext& context);
-  void share_references();
+  void share_references(double size);
 
   Mesh mesh_;
   std::vector<Place> places_;

@@ -28,7 +28,10 @@ struct SymmetricSampling {
     Motion turn;
   };
   std::vector<Copy> copies;       ///< #S
-  std::vector<int> copy_counts;   ///< #S: how many stand for the circle of a canonical sample; 1 without continuum
+  /// #S: for how many samples at distance r each stands; less than 1 where a finite group about the same axis asks for
+  /// more copies on a circle than the radius does.
+  std::vector<double> shares;
+  std::vector<int> copy_counts;  ///< #S: how many stand for the circle of a canonical sample; 1 without continuum
   struct Constraint {
     int orbit;
     int left, right;  ///< words to one place: they must give the same displacement
