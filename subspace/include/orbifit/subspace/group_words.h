@@ -36,6 +36,12 @@ Transport step_transport(const RegionMap& regions, int place, int element, const
 /// Many points go the same ways, so there are few words.
 class GroupWords {
  public:
+  /// The last motion of a word, and the word before it.
+  struct Step {
+    int parent, place, element;
+    Motion motion;
+  };
+
   GroupWords(const RegionMap& regions, bool floating);
 
   /// First `word`, then a motion of `place`: element number `element`, or for -1 a rotation of its continuum.
@@ -43,6 +49,7 @@ class GroupWords {
 
   int count() const { return static_cast<int>(steps_.size()); }
   bool floating() const { return floating_; }
+  const Step& step(int word) const { return steps_[static_cast<std::size_t>(word)]; }
   const Motion& motion(int word) const { return motions_[static_cast<std::size_t>(word)]; }
   const Transport& transport(int word) const { return transports_[static_cast<std::size_t>(word)]; }
 
@@ -53,10 +60,6 @@ class GroupWords {
   std::vector<Transport> transports(const std::vector<Eigen::Matrix3d>& rotations) const;
 
  private:
-  struct Step {
-    int parent, place, element;
-    Motion motion;
-  };
   const RegionMap& regions_;
   bool floating_;
   std::vector<Step> steps_;
