@@ -37,11 +37,13 @@ constexpr std::array kCommands{
             commands::symmetrize},
     Command{"subspace", "Build the symmetric subspace of a mesh and say what it holds.",
             "orbifit subspace chair.obj chair.json\n"
-            "orbifit subspace chair.obj chair.json --samples 300 --mode fixed",
+            "orbifit subspace chair.obj chair.json --samples 300 --mode fixed -o chair.basis\n"
+            "orbifit subspace chair.obj chair.json --lift paper --compare-lifts",
             commands::subspace},
     Command{"deform", "Edit a mesh with handles, its symmetries kept.",
             "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj\n"
-            "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj --annotation-out edited.json",
+            "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj --annotation-out edited.json\n"
+            "orbifit deform chair.obj chair.json --basis chair.basis --handles handles.json -o edited.obj",
             commands::deform},
     Command{"fit", "Fit a template to a scan, its symmetries kept and its hidden sides completed by them.",
             "orbifit fit chair.obj scan.ply -o fitted.obj\n"

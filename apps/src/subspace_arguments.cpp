@@ -1,26 +1,63 @@
 #include "subspace_arguments.h"
 
+#include <array>
+#include <cmath>
 #include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "orbifit/model/errors.h"
+#include "orbifit/subspace/radius_field.h"
+
 namespace orbifit {
 
 namespace {
+
 const std::map<std::string, GroupMode> kModes{
     {"fixed", GroupMode::fixed}, {"floating", GroupMode::floating}, {"moving", GroupMode::moving}};
-}
+const std::map<std::string, LiftKind> kLifts{{"orbit", LiftKind::orbit}, {"paper", LiftKind::paper}};
+constexpr std::array kNames{"--mode", "--lift", "--radius", "--samples", "--radius-field", "--sharp-features"};
+constexpr double kUsualSamples = 600;
 
-void add_subspace_options(CLI::App& app, SubspaceOptions& options) {
+}  // namespace
+
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
+  SubspaceOptions& options = arguments.options;
   app.add_option("--mode", options.mode,
-                 "What may become of the groups: fixed (as they are), floating (each moved by a translation) or moving (each by a rigid motion)")
+                 "What may become of the groups: fixed (as they are), floating (each moved by a translation) or moving "
+                 "(each by a rigid motion)")
       ->transform(CLI::CheckedTransformer(kModes).description(""))
       ->type_name("MODE")
       ->default_str("floating");
+  app.add_option("--lift", options.lift,
+                 "How vertices follow the samples: orbit (exact in every region) or paper (not exact in partial ones)")
+      ->transform(CLI::CheckedTransformer(kLifts).description(""))
+      ->type_name("LIFT")
+      ->default_str("orbit");
   auto* radius =
       app.add_option("--radius", options.radius, "Sampling radius in the mesh's units: smaller edits, more unknowns");
   app.add_option("--samples", options.samples, "Number of samples to aim at instead of a radius")->excludes(radius);
+  app.add_option("--radius-field", arguments.radius_field,
+                 "Where sampling is finer or coarser (.json): painted areas, thin parts")
+      ->type_name("FILE");
+  app.add_flag("--sharp-features", options.sharp_features_first, "Sample sharp edges and corners first");
+}
+
+void exclude_subspace_options(CLI::App& app, CLI::Option& option) {
+  for (const char* name : kNames) option.excludes(app.get_option(name));
+}
+
+SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh& mesh, const RunContext& context) {
+  SubspaceOptions options = arguments.options;
+  options.validate();
+  if (arguments.radius_field.empty()) return options;
+  const double area = face_areas(mesh).sum();
+  if (!(area > 0)) throw InputError("", "mesh", "its faces have no area");
+  const double samples = options.samples > 0 ? options.samples : kUsualSamples;
+  const double base = options.radius > 0 ? options.radius : std::sqrt(area / (0.7 * samples));
+  options.relative_radii = radius_field(mesh, read_radius_field(arguments.radius_field, base), context) / base;
+  return options;
 }
 
 }  // namespace orbifit

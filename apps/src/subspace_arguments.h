@@ -1,14 +1,33 @@
 #pragma once
 
+#include <string>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
 #include "orbifit/subspace/subspace.h"
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace orbifit {
 
-/// Adds --mode, --radius and --samples, which subspace, deform and fit share.
-void add_subspace_options(CLI::App& app, SubspaceOptions& options);
+/// What subspace, deform and fit are told about the subspace to build.
+struct SubspaceArguments {
+  SubspaceOptions options;
+  std::string radius_field;  ///< file, or empty
+};
+
+/// Adds --mode, --lift, --radius, --samples, --radius-field and --sharp-features.
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments);
+
+/// Makes an option useless together with any of those.
+void exclude_subspace_options(CLI::App& app, CLI::Option& option);
+
+/// The options with the radius field, if there is one, drawn up for a mesh: for the radius given, or else for the one
+/// that the number of samples suggests.
+/// \throw UsageError, InputError
+SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh& mesh, const RunContext& context);
 
 }  // namespace orbifit

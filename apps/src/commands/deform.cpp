@@ -10,6 +10,7 @@
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/handles.h"
+#include "orbifit/subspace/subspace_io.h"
 
 #include "../commands.h"
 #include "../subspace_arguments.h"
@@ -19,10 +20,10 @@ namespace orbifit::commands {
 namespace {
 
 struct DeformArguments {
-  std::string mesh, annotation, handles, output, annotation_output;
+  std::string mesh, annotation, handles, output, annotation_output, basis;
   std::string laplacian = "graph";
   int iterations = 0;
-  SubspaceOptions options;
+  SubspaceArguments subspace;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -47,20 +48,28 @@ CommandBody deform(CLI::App& app) {
   app.add_option("--laplacian", arguments->laplacian, "Laplacian of the samples")
       ->check(CLI::IsMember({"graph", "cotangent", "point"}))
       ->capture_default_str();
-  add_subspace_options(app, arguments->options);
+  auto* basis =
+      app.add_option("--basis", arguments->basis, "Stored basis to load instead of building one")->type_name("FILE");
+  add_subspace_options(app, arguments->subspace);
+  exclude_subspace_options(app, *basis);
   return [arguments](CommandContext& context) {
-    arguments->options.validate();
-    check_output(arguments->output, {}, {arguments->annotation, arguments->handles});
+    arguments->subspace.options.validate();
+    const std::string& radius_field = arguments->subspace.radius_field;
+    check_output(arguments->output, {}, {arguments->annotation, arguments->handles, arguments->basis, radius_field});
     if (!arguments->annotation_output.empty()) {
-      check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->handles, arguments->output});
+      check_output(arguments->annotation_output, {".json"},
+                   {arguments->mesh, arguments->handles, arguments->output, arguments->basis, radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
     const SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     HandleSet set = read_handles(arguments->handles, mesh);
     if (arguments->iterations > 0) set.iterations = arguments->iterations;
 
+    const bool loads = !arguments->basis.empty();
+    const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = Clock::now();
-    const Subspace built = build_subspace(mesh, annotation, arguments->options, context.run);
+    const Subspace built = loads ? read_subspace(arguments->basis, mesh, annotation, context.run)
+                                 : build_subspace(mesh, annotation, options, context.run);
     const auto with_subspace = Clock::now();
     context.run.progress("handles", 0);
     Deformer deformer(built, mesh, {parse_laplacian_kind(arguments->laplacian).value()}, context.run);
@@ -89,6 +98,8 @@ CommandBody deform(CLI::App& app) {
     const double missed = deformation.handle_error / size;
     if (context.json) {
       const nlohmann::ordered_json summary{{"mode", to_string(built.mode)},
+                                           {"lift", to_string(built.lift_kind)},
+                                           {"basis", loads ? "loaded" : "built"},
                                            {"samples", built.sampling.points.rows()},
                                            {"degrees_of_freedom", built.degrees_of_freedom()},
                                            {"handles", set.handles.size()},
@@ -107,7 +118,7 @@ CommandBody deform(CLI::App& app) {
     }
     print(arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
           count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", handles missed by " +
-          short_number(100 * missed, 3) + " % of the diagonal\n" + "subspace " +
+          short_number(100 * missed, 3) + " % of the diagonal\n" + (loads ? "basis loaded " : "subspace ") +
           short_number(milliseconds(start, with_subspace), 3) + " ms, prefactor " +
           short_number(milliseconds(with_subspace, factorised), 3) + " ms, " + count_of(set.iterations, "iteration") +
           " " + short_number(milliseconds(factorised, solved), 3) + " ms, lift " +

@@ -28,6 +28,7 @@ struct FitArguments {
   std::vector<double> up{0, 0, 1};
   bool aligned = false;
   FitOptions options;
+  SubspaceArguments subspace;
 };
 
 void check_outputs(const FitArguments& arguments) {
@@ -75,14 +76,16 @@ CommandBody fit(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
   app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
-  add_subspace_options(app, options.subspace);
+  add_subspace_options(app, arguments->subspace);
   return [arguments](CommandContext& context) {
     FitOptions& chosen = arguments->options;
     chosen.align = !arguments->aligned;
+    chosen.subspace = arguments->subspace.options;
     chosen.validate();
     const Eigen::Vector3d up = to_direction("--up", arguments->up);
     check_outputs(*arguments);
     const Mesh mesh = read_mesh(arguments->mesh);
+    chosen.subspace = subspace_options(arguments->subspace, mesh, context.run);
     const PointCloud scan = read_scan(arguments->scan);
     if (scan.dropped > 0) {
       context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
