@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 // x forwards, y to the left, z up; metres.
-constexpr double kTyreWidth = 0.21;
+constexpr double kTyreWidth = 0.26;
 constexpr int kSpokes = 5;
 constexpr int kTread = 10;  // blocks around the tyre, a multiple of the spokes
 
@@ -40,24 +40,24 @@ double lower_edge(double x, const Size& size) {
   return from >= 1 ? sill : sill + (arch - sill) * std::pow(1 - from * from * from * from, 1.4);
 }
 
+// Bonnet and boot alike, as off-road cars nearly have it: C2v.
 Mesh body(const Size& size, int detail) {
   const double nose = size.half_length;
   const Curve outline(trace_profile({{0, -nose, 0, 1},
-                                     {0.93 * size.half_width, -nose, 0.28, 1},
+                                     {0.93 * size.half_width, -nose, 0.3, 1},
                                      {size.half_width, 0, 2, 1},
-                                     {0.93 * size.half_width, nose, 0.4, 1},
+                                     {0.93 * size.half_width, nose, 0.3, 1},
                                      {0, nose, 0, 1}},
                                     24, false));
   return capped_skin({6, 4 * detail, 44 * detail}, [&](double share, double cosine, double sine) {
     const Vector3d place = outline(share);
     const double x = place.z();
     const double in = place.x() / size.half_width;
-    const double upper =
-        smooth_table({{-1, 0.88}, {-0.85, 0.94}, {-0.3, 0.95}, {0.3, 0.93}, {0.8, 0.8}, {1, 0.66}}, x / nose);
+    const double upper = smooth_table({{0.3, 1.02}, {0.8, 0.94}, {1, 0.8}}, std::abs(x) / nose);
     const double lower = lower_edge(x, size);
     // Towards the caps' middles the section closes on the bumpers' height.
     const double closing = std::min(1.0, 1.25 * in);
-    const double middle = (1 - closing) * 0.52 + closing * 0.5 * (upper + lower);
+    const double middle = (1 - closing) * 0.62 + closing * 0.5 * (upper + lower);
     const double half_height = 0.5 * (upper - lower) * std::min(1.0, in * 1.08);
     const Eigen::Vector2d around = rounded_square(cosine, sine, 4.2);
     return Vector3d(x, place.x() * (1 - 0.06 * around.x() * around.x()) * around.y(),
@@ -74,11 +74,10 @@ Mesh cabin(const Size& size, int detail) {
     const double in = place.x() / 0.9;
     const Eigen::Vector2d around = rounded_square(cosine, sine, 3.3);
     const double up = around.x() * in;
-    // Narrower at the roof, and leaning: the windscreen more than the rear window.
-    const double lean = place.z() > 0 ? 0.42 : 0.3;
-    const double x = place.z() * (1 - lean * 0.5 * (up + 1));
-    return Vector3d(x - 0.12 * size.half_length, (0.87 - 0.17 * (up + 1) * 0.5) * size.half_width * in * around.y(),
-                    0.98 + 0.45 * up - 0.06 * x * x);
+    // Narrower at the roof; windscreen and rear window lean alike.
+    const double x = place.z() * (1 - 0.3 * 0.5 * (up + 1));
+    return Vector3d(x, (0.87 - 0.17 * (up + 1) * 0.5) * size.half_width * in * around.y(),
+                    1.06 + 0.45 * up - 0.06 * x * x);
   });
 }
 
@@ -226,7 +225,7 @@ GeneratedModel build_car(const ModelValues& values) {
   const Size size{values["length"] / 2, values["width"] / 2, values["wheelbase"] / 2, values["wheel_radius"]};
   const double camber = values["camber"] * std::numbers::pi / 180;
   ModelBuilder builder(0);
-  std::vector<PartFaces> parts{builder.add(body(size, detail)), builder.add(cabin(size, detail))};
+  std::vector<PartFaces> shell{builder.add(body(size, detail)), builder.add(cabin(size, detail))};
 
   // The front left wheel's z looks out to the left and its x, a spoke, upwards.
   Matrix3d outwards;
@@ -243,7 +242,8 @@ GeneratedModel build_car(const ModelValues& values) {
     wheels.push_back(add_wheel(builder, wheel_places.back(), size.wheel, detail));
     all_wheels.push_back(wheels.back().all);
   }
-  parts.push_back(joined(all_wheels));
+  shell.insert(shell.end(), all_wheels.begin(), all_wheels.end());
+  std::vector<PartFaces> parts = shell;
 
   struct Fitting {
     std::string name;
@@ -258,8 +258,8 @@ GeneratedModel build_car(const ModelValues& values) {
   const double side = size.half_width;
   // Swept back and tilted: a pair in one line would have more symmetries than each of the two.
   const std::array<Fitting, 4> fittings{
-      {{"headlight", {0.07, 0.17, 0.075}, {0.93 * nose, 0.6 * side, 0.63}, 22, -20, fine, 2.3},
-       {"tail light", {0.05, 0.15, 0.06}, {-0.97 * nose, 0.62 * side, 0.72}, -14, 10, fine, 3},
+      {{"headlight", {0.07, 0.17, 0.075}, {0.985 * nose, 0.55 * side, 0.66}, 22, -20, fine, 2.3},
+       {"tail light", {0.05, 0.15, 0.06}, {-0.985 * nose, 0.6 * side, 0.7}, -14, 10, fine, 3},
        {"mirror", {0.06, 0.1, 0.065}, {0.2 * nose, 0.93 * side, 0.88}, 15, -10, small, 2.4},
        {"door handle", {0.1, 0.025, 0.02}, {-0.12 * nose, 0.99 * side, 0.78}, 2, 5, small, 3}}};
   std::vector<std::pair<std::string, PartFaces>> fitted;
@@ -286,13 +286,14 @@ GeneratedModel build_car(const ModelValues& values) {
       parts.push_back(fitted.back().second);
     }
   }
-  const Vector3d roof(-0.16 * nose, 0, 1.47);
-  const PartFaces roof_box = builder.add(box({0.58, 0.34, 0.1}, {6 * detail, 4 * detail, 2 * detail}, 0.08, detail),
+  const Vector3d roof(-0.05 * nose, 0, 1.56);
+  const PartFaces roof_box = builder.add(box({0.5, 0.36, 0.1}, {6 * detail, 4 * detail, 2 * detail}, 0.08, detail),
                                          {Matrix3d::Identity(), roof});
   parts.push_back(roof_box);
 
   builder.declare("car", {Family::Cs, 1}, {frame_about(Vector3d::UnitY()), Vector3d::Zero()}, joined(parts));
-  builder.declare("wheels", {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(0, 0, size.wheel)}, joined(all_wheels));
+  builder.declare("body and wheels", {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(0, 0, size.wheel)},
+                  joined(shell));
   // elements() of C2v: the wheel itself, its opposite, and the two mirror images.
   for (const auto& [name, x, first, second] :
        {std::tuple{"front wheels", size.axle, 0, 3}, {"rear wheels", -size.axle, 1, 2}}) {
@@ -315,11 +316,12 @@ GeneratedModel build_car(const ModelValues& values) {
 ModelDefinition car_model() {
   return {
       {"car",
-       "a car with 61 symmetric regions: a mirror plane, four cambered wheels with tyres, spokes and nuts, fittings",
-       {{"length", 4.3, 3.8, 6, false, "m"},
-        {"width", 1.8, 1.5, 2.2, false, "m"},
-        {"wheelbase", 2.6, 2.2, 3.2, false, "from the front to the rear axle, m"},
-        {"wheel_radius", 0.33, 0.28, 0.42, false, "of the tyres, m"},
+       "a car with 61 symmetric regions: a mirror plane, a body alike in front and behind, four cambered wheels with "
+       "tyres, spokes and nuts, fittings",
+       {{"length", 4.0, 3.5, 6, false, "m"},
+        {"width", 1.65, 1.4, 2.2, false, "m"},
+        {"wheelbase", 2.4, 2.1, 3.2, false, "from the front to the rear axle, m"},
+        {"wheel_radius", 0.40, 0.3, 0.44, false, "of the tyres, m"},
         {"camber", 2, 1, 6, false, "how far each wheel leans inwards, degrees; upright ones would share their axles"},
         {"detail", 3, 1, 20, true, "fineness of the mesh"}}},
       build_car};
