@@ -6,16 +6,17 @@
 #include <optional>
 
 #include <CLI/CLI.hpp>
+#include <malloc.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/file.h"
 
 #include "benchmarks.h"
-#include "refined.h"
 #include "stopwatch.h"
 #include "subject.h"
 
@@ -23,12 +24,12 @@ namespace orbifit::benchmarks {
 
 namespace {
 
-constexpr int kSamples = 600;
+constexpr double kRadius = 0.035;  // of the diagonal
 constexpr double kSizes[] = {1e4, 1e5, 1e6, 1e7};
 
 struct ScalingOptions {
   double most = 1e7;
-  std::string model = "chair";
+  std::string model = "plane";
   std::string json;
   int threads = 1;
 };
@@ -54,11 +55,23 @@ void reset_peak() {
   std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-ScalingRow measure(const GeneratedModel& base, int cuts, const ScalingOptions& options, const RunContext& context) {
-  GeneratedModel generated = refined(base, cuts);
+// The fineness at which the model has about so many vertices; they grow with its square.
+int detail_for(const std::string& model, double vertices) {
+  const auto& all = generators();
+  const auto generator = std::ranges::find(all, model, &Generator::name);
+  if (generator == all.end()) throw UsageError("unknown model '" + model + "'; 'orbifit generate --list' names them");
+  const auto detail = std::ranges::find(generator->parameters, "detail", &GeneratorParameter::name);
+  if (detail == generator->parameters.end()) throw UsageError("--model is " + model + ": it has no 'detail'");
+  static const double usual = static_cast<double>(generate(model).mesh.vertices.rows());
+  return static_cast<int>(
+      std::clamp(std::round(detail->value * std::sqrt(vertices / usual)), detail->minimum, detail->maximum));
+}
+
+ScalingRow measure(int detail, const ScalingOptions& options, const RunContext& context) {
+  GeneratedModel generated = generate(options.model, {{"detail", detail}});
   const BenchmarkModel model{options.model, std::move(generated.mesh), std::move(generated.truth), {}, {}};
-  // The same radius for every size: the surface is the same.
-  const double radius = std::sqrt(face_areas(base.mesh).sum() / (0.7 * kSamples));
+  const double radius = kRadius * diagonal(model.mesh.vertices);
+  ::malloc_trim(0);  // what the generator held and gave back would be taken again unseen
   ScalingRow row;
   row.vertices = static_cast<double>(model.mesh.vertices.rows());
   reset_peak();
@@ -78,8 +91,7 @@ ScalingRow measure(const GeneratedModel& base, int cuts, const ScalingOptions& o
 }
 
 // In a process of its own, so that no size sees what another one left in memory.
-std::optional<ScalingRow> measure_apart(const GeneratedModel& base, int cuts, const ScalingOptions& options,
-                                        const RunContext& context) {
+std::optional<ScalingRow> measure_apart(int detail, const ScalingOptions& options, const RunContext& context) {
   int ends[2];
   if (::pipe(ends) != 0) throw NoResultError("no pipe to a process of its own");
   const pid_t child = ::fork();
@@ -88,7 +100,7 @@ std::optional<ScalingRow> measure_apart(const GeneratedModel& base, int cuts, co
     ::close(ends[0]);
     int code = kNoResult;
     try {
-      const ScalingRow row = measure(base, cuts, options, context);
+      const ScalingRow row = measure(detail, options, context);
       if (::write(ends[1], &row, sizeof(row)) == static_cast<ssize_t>(sizeof(row))) code = kDone;
     } catch (const std::exception& error) {
       std::fprintf(stderr, "orbifit-benchmark: %s\n", error.what());
@@ -141,7 +153,7 @@ std::string text_of(const std::vector<ScalingRow>& rows, const ScalingOptions& o
   }
   return text +
          "  MB before: the process with the mesh and its annotation; MB peak: the most while building, that included;\n"
-         "  bytes/vertex: what building adds to the former. Triangles of one model are cut ever finer; same radius.\n";
+         "  bytes/vertex: what building adds to the former. One model, ever finer; the same radius.\n";
 }
 
 std::string json_of(const std::vector<ScalingRow>& rows, const ScalingOptions& options) {
@@ -172,7 +184,6 @@ int run(const ScalingOptions& options, const CommandContext& context) {
     throw UsageError("--threads is " + std::to_string(options.threads) + ": must be from 1 to 4096");
   }
   if (!options.json.empty()) check_output(options.json);
-  const GeneratedModel base = generate(options.model);
   RunContext stages = context.run;
   stages.on_message = nullptr;
   stages.threads = options.threads;
@@ -181,12 +192,12 @@ int run(const ScalingOptions& options, const CommandContext& context) {
   double failed = 0;
   for (const double size : kSizes) {
     const double wanted = std::min(size, options.most);
-    const int cuts = std::max(1, static_cast<int>(std::lround(std::sqrt(wanted / base.mesh.vertices.rows()))));
-    if (cuts == last) continue;
-    last = cuts;
+    const int detail = detail_for(options.model, wanted);
+    if (detail == last) continue;
+    last = detail;
     context.run.check();
     context.run.message("about " + short_number(wanted, 9) + " vertices");
-    const auto row = measure_apart(base, cuts, options, stages);
+    const auto row = measure_apart(detail, options, stages);
     if (!row) {
       failed = wanted;
       break;

@@ -74,7 +74,9 @@ void measure_ours(const BenchmarkModel& model, double radius, GroupMode mode, co
 void measure(const std::string& name, const Table1Options& options, const RunContext& given,
              std::vector<Table1Row>& rows) {
   const BenchmarkModel model = benchmark_model(name);
-  const GroupMode mode = options.mode == "fixed" ? GroupMode::fixed : GroupMode::floating;
+  const GroupMode mode = options.mode == "fixed"      ? GroupMode::fixed
+                         : options.mode == "floating" ? GroupMode::floating
+                                                      : GroupMode::moving;
   RunContext context = given;
   context.on_message = nullptr;  // of the stages: they are run many times
   TimingOptions timing;
@@ -136,7 +138,7 @@ CommandBody table1(CLI::App& app) {
       ->delimiter(',')
       ->type_name("N,...");
   app.add_option("--mode", options->mode, "What may become of the groups; the paper's are fixed")
-      ->check(CLI::IsMember({"fixed", "floating"}))
+      ->check(CLI::IsMember({"fixed", "floating", "moving"}))
       ->capture_default_str();
   app.add_option("--repeat", options->repeat, "Batches of which the median time is taken")
       ->type_name("K")
