@@ -110,6 +110,7 @@ double SectionReader::real(const char* field) {
   if (bytes_.size() < kWord) refuse(field, "the section ends before it");
   double value = 0;
   take(&value, sizeof value);
+  require_finite(field, value);
   return value;
 }
 

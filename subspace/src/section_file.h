@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -69,7 +70,8 @@ class SectionWriter {
   std::vector<std::pair<std::string, std::size_t>> starts_;
 };
 
-/// Reads the fields of one section in order; every count is held against the bytes that are left.
+/// Reads the fields of one section in order; every count is held against the bytes that are left, and floating-point
+/// numbers must be finite.
 class SectionReader {
  public:
   SectionReader(std::string file, std::string section, std::string_view bytes)
@@ -78,12 +80,15 @@ class SectionReader {
   /// \throw InputError unless lowest <= value <= highest
   std::int64_t integer(const char* field, std::int64_t lowest = std::numeric_limits<std::int64_t>::min(),
                        std::int64_t highest = std::numeric_limits<std::int64_t>::max());
-  double real(const char* field);
+  double real(const char* field);  ///< \throw InputError unless finite
 
   template <class Number>
   std::vector<Number> array(const char* field) {
     std::vector<Number> numbers(claim(field, sizeof(Number)));
     take(numbers.data(), numbers.size() * sizeof(Number));
+    if constexpr (std::is_floating_point_v<Number>) {
+      for (const Number number : numbers) require_finite(field, number);
+    }
     return numbers;
   }
 
@@ -117,6 +122,9 @@ class SectionReader {
   [[noreturn]] void refuse(const std::string& field, const std::string& reason) const;
 
  private:
+  void require_finite(const char* field, double number) const {
+    if (!std::isfinite(number)) refuse(field, "holds a number that is not finite");
+  }
   std::size_t claim(const char* field, std::size_t size_of_one);
   void take(void* bytes, std::size_t size);
 
