@@ -35,7 +35,8 @@ double radius_for_samples(const BenchmarkModel& model, int samples, GroupMode mo
   // Secant steps on samples ~ radius^-2 come near; orbits make the count jump there, so radii close by are tried too.
   for (int round = 0; round < kSearchRounds && best_error > std::log1p(kWithin); ++round) {
     sampling.radius = round < 8 ? radius : best * (1 + 0.004 * (round - 7) * (round % 2 == 0 ? 1 : -1));
-    const auto count = static_cast<double>(sample_symmetrically(model.mesh, regions, words, sampling, context).points.rows());
+    const auto count =
+        static_cast<double>(sample_symmetrically(model.mesh, regions, words, sampling, context).points.rows());
     const double error = std::abs(std::log(count / samples));
     if (error < best_error) {
       best = sampling.radius;
@@ -118,10 +119,14 @@ void Subject::lift() {
 }
 
 Subject::Traffic Subject::lift_traffic() const {
+  const OrbitLift& lift = subspace_.lift;
   const std::size_t vertices = subspace_.orbits.followers.size();
-  return {subspace_.lift.bytes() + subspace_.lift.first.size() * sizeof(subspace_.lift.first[0]) +
+  // Representatives are summed up in whole blocks, then copied to their images: written and read once each.
+  const std::size_t sources = 4 * OrbitLift::kLanes * (lift.first.size() - 1) * sizeof(double);
+  return {lift.bytes() + lift.first.size() * sizeof(lift.first[0]) +
+              subspace_.orbits.bound.size() * sizeof(subspace_.orbits.bound[0]) + sources +
               vertices * sizeof(VertexOrbits::Follower),
-          3 * vertices * sizeof(double)};
+          sources + 3 * vertices * sizeof(double)};
 }
 
 double Subject::field_residual() const {

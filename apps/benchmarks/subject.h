@@ -54,7 +54,8 @@ class Subject {
   int samples() const { return static_cast<int>(subspace_.sampling.points.rows()); }
   int degrees_of_freedom() const { return subspace_.degrees_of_freedom(); }
 
-  /// Bytes that a lift reads of its own (weights, numbers of samples) and writes (the vertices' displacements).
+  /// Bytes that a lift reads of its own (weights, numbers of atoms, representatives, who follows them) and writes (the
+  /// displacements of representatives and of all vertices).
   struct Traffic {
     std::size_t read = 0, written = 0;
   };

@@ -37,7 +37,8 @@ LiftResiduals random_field_residuals(const Mesh& mesh, const SymmetryAnnotation&
                                      const RunContext& run) {
   Random random(run.seed, "field residual");
   Eigen::VectorXd q(subspace.degrees_of_freedom());
-  for (double& coordinate : q) coordinate = 0.05 * diagonal(mesh.vertices) * random.normal();
+  const double size = 0.05 * subspace.diagonal;
+  for (double& coordinate : q) coordinate = size * random.normal();
   LiftResiduals residuals{subspace.lift_kind, {}};
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     run.progress("residuals", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
