@@ -92,17 +92,26 @@ bool GroupWords::same(int a, int b) const {
 }
 
 std::vector<Transport> GroupWords::transports(const std::vector<Eigen::Matrix3d>& rotations) const {
-  if (rotations.empty()) return transports_;
-  std::vector<Transport> result(steps_.size());
-  for (std::size_t word = 1; word < steps_.size(); ++word) {
+  std::vector<Transport> result;
+  append_transports(rotations, result);
+  return result;
+}
+
+void GroupWords::append_transports(const std::vector<Eigen::Matrix3d>& rotations,
+                                   std::vector<Transport>& known) const {
+  if (rotations.empty()) {
+    known.insert(known.end(), transports_.begin() + static_cast<std::ptrdiff_t>(known.size()), transports_.end());
+    return;
+  }
+  if (known.empty()) known.emplace_back();
+  for (std::size_t word = known.size(); word < steps_.size(); ++word) {
     const Step& step = steps_[word];
     const bool region = step.place < regions_.count();
     const Eigen::Matrix3d rotation =
         region ? rotations[static_cast<std::size_t>(step.place)] : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-    result[word] = composed(step_transport(regions_, step.place, step.element, step.motion, floating_, rotation),
-                            result[static_cast<std::size_t>(step.parent)]);
+    known.push_back(composed(step_transport(regions_, step.place, step.element, step.motion, floating_, rotation),
+                             known[static_cast<std::size_t>(step.parent)]));
   }
-  return result;
 }
 
 }  // namespace orbifit

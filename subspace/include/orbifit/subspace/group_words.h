@@ -59,6 +59,9 @@ class GroupWords {
   /// The transports of all words when region i's group is turned by rotations[i]; empty: as they are.
   std::vector<Transport> transports(const std::vector<Eigen::Matrix3d>& rotations) const;
 
+  /// Adds to a list of transports() those of the words that came since.
+  void append_transports(const std::vector<Eigen::Matrix3d>& rotations, std::vector<Transport>& known) const;
+
  private:
   const RegionMap& regions_;
   bool floating_;
