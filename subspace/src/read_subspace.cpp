@@ -144,6 +144,7 @@ void get_sampling(SectionReader section, const RegionMap& regions, int words, Sy
 
 void get_orbits(SectionReader section, const RegionMap& regions, int words, std::size_t vertices,
                 VertexOrbits& orbits) {
+  orbits.tolerance = section.real("tolerance");
   const std::vector<int> representatives = section.array<int>("representatives", vertices);
   const std::vector<int> ways = section.numbers("words", vertices, 0, words);
   const std::vector<int> turned = section.array<int>("turned", vertices);

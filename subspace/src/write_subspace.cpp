@@ -100,8 +100,10 @@ void put_sampling(SectionWriter& file, const SymmetricSampling& sampling) {
 }
 
 void put_orbits(SectionWriter& file, const VertexOrbits& orbits) {
-  const auto& [followers, turns, positions, bound, bindings, first_point, point_words, point_sets, images] = orbits;
+  const auto& [tolerance, followers, turns, positions, bound, bindings, first_point, point_words, point_sets, images] =
+      orbits;
   file.begin("orbits");
+  file.real(tolerance);
   put_each(file, followers, [](const auto& follower) { return follower.representative; });
   put_each(file, followers, [](const auto& follower) { return follower.word; });
   put_each(file, followers, [](const auto& follower) { return follower.turn; });

@@ -16,6 +16,7 @@ namespace orbifit {
 /// digits stays as symmetric as the file was. Images that meet no vertex are kept as points of the orbit, so that the
 /// displacement is symmetric in space.
 struct VertexOrbits {
+  double tolerance = 0;  ///< vertices nearer than this are one place, mesh units
   struct Follower {
     int representative = 0;  ///< number of it
     int word = 0;            ///< from its canonical place to here
