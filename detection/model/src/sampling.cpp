@@ -8,11 +8,13 @@
 namespace orbifit {
 
 SurfaceSamples sample_surface(const Mesh& mesh, int count, Random& random, const std::vector<int>& faces) {
-  std::vector<int> chosen = faces;
-  if (chosen.empty()) {
-    chosen.resize(static_cast<std::size_t>(mesh.faces.rows()));
-    std::iota(chosen.begin(), chosen.end(), 0);
+  if (!faces.empty()) {  // areas and normals of these alone: small places of large meshes are sampled one by one
+    SurfaceSamples samples = sample_surface(submesh(mesh, faces), count, random);
+    for (int& face : samples.faces) face = faces[static_cast<std::size_t>(face)];
+    return samples;
   }
+  std::vector<int> chosen(static_cast<std::size_t>(mesh.faces.rows()));
+  std::iota(chosen.begin(), chosen.end(), 0);
   const Eigen::VectorXd areas = face_areas(mesh);
   std::erase_if(chosen, [&](int face) { return !(areas[face] > 0); });
   double total = 0;
