@@ -1,0 +1,255 @@
+// Identities that hold on every region of every model: partial, nested and overlapping ones, and patterns.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/mesh_io.h"
+#include "orbifit/model/random.h"
+#include "orbifit/subspace/deformer.h"
+#include "orbifit/subspace/displacement_field.h"
+
+#include "subspaces.h"
+#include "temporary_folder.h"
+#include "vertex_grid.h"
+
+namespace orbifit {
+namespace {
+
+struct ModelCase {
+  std::string name;
+  std::map<std::string, double> parameters;
+  double radius;  // of the diagonal
+};
+
+// Table 1's own models among them, coarser.
+const std::vector<ModelCase> kModels{{"bar", {}, 0.1},
+                                     {"table", {{"detail", 1}}, 0.06},
+                                     {"chair", {{"detail", 1}}, 0.08},
+                                     {"fan", {{"wires", 12}}, 0.15},
+                                     {"wheel", {{"detail", 1}}, 0.15},
+                                     {"desk_fan", {{"detail", 1}}, 0.1},
+                                     {"armchair", {{"detail", 1}}, 0.08},
+                                     {"yard_tool", {{"detail", 1}}, 0.08},
+                                     {"wind_mill", {{"detail", 1}}, 0.1},
+                                     {"car", {{"detail", 1}}, 0.1}};
+
+using Case = std::tuple<int, GroupMode>;
+
+class EveryRegion : public testing::TestWithParam<Case> {
+ protected:
+  EveryRegion() : case_(kModels[static_cast<std::size_t>(std::get<0>(GetParam()))]), mode_(std::get<1>(GetParam())) {
+    model_ = generate(case_.name, case_.parameters);
+    subspace_ = subspace_of(model_, mode_, case_.radius);
+    state_ = random_state(subspace_, 0.03);
+  }
+
+  const ModelCase& case_;
+  GroupMode mode_;
+  GeneratedModel model_;
+  Subspace subspace_;
+  SubspaceState state_;
+};
+
+TEST_P(EveryRegion, IsExactUnderRandomCoordinates) {
+  EXPECT_LT(basis_of(subspace_, state_).conflict, 1e-12 * subspace_.diagonal);
+  const WorstResidual worst = worst_residual(model_, subspace_, state_, 200);
+  EXPECT_LT(worst.residual, 1e-12) << worst.name;
+
+  Mesh deformed = model_.mesh;
+  deformed.vertices += vertex_displacements(subspace_, state_);
+  RunContext context;
+  const SymmetryAnnotation carried = carried_annotation(model_.truth, subspace_, state_, deformed);
+  const SymmetryReport report = symmetry_residual(deformed, carried, nullptr, CarriedMotions::fixed, context);
+  for (const RegionResidual& region : report.regions) EXPECT_LT(region.floor.max, 1e-12) << region.name;
+  for (const PatternResidual& pattern : report.patterns) EXPECT_LT(pattern.floor.max, 1e-12) << pattern.name;
+}
+
+// The baked lift is the field, but for its weights' rounding to 24 bits.
+TEST_P(EveryRegion, BakedLiftIsTheFieldAtTheVertices) {
+  const Points baked = vertex_displacements(subspace_, state_);
+  const VertexOrbits& orbits = subspace_.orbits;
+  Random random(3, "vertices");
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto v = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(baked.rows())));
+    const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(v)];
+    const auto r = static_cast<std::size_t>(follower.representative);
+    int set = -1;
+    for (auto k = orbits.first_point[r]; k < orbits.first_point[r + 1] && set < 0; ++k) {
+      if (orbits.point_words[static_cast<std::size_t>(k)] == follower.word) {
+        set = orbits.point_sets[static_cast<std::size_t>(k)];
+      }
+    }
+    ASSERT_GE(set, 0);
+    const Points field = displacement_field(subspace_, state_, model_.mesh.vertices.row(v), {set}, RunContext{});
+    EXPECT_LT((field.row(0) - baked.row(v)).norm(), 1e-5 * subspace_.diagonal) << "vertex " << v;
+  }
+}
+
+// u(image) = transport of u(vertex), for the vertices' own orbits.
+TEST_P(EveryRegion, LiftCommutesWithTheGroups) {
+  const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, state_);
+  const Points& rest = model_.mesh.vertices;
+  Random random(4, "pairs");
+  const VertexGrid at(rest, 1e-9 * subspace_.diagonal);
+  int pairs = 0;
+  for (std::size_t i = 0; i < model_.truth.regions.size(); ++i) {
+    const Motion carried = carried_motion(subspace_, state_, static_cast<int>(i));
+    const std::vector<int> vertices = vertices_of_faces(model_.mesh, model_.truth.regions[i].faces);
+    for (const Motion& element : model_.truth.regions[i].elements) {
+      for (int trial = 0; trial < 20; ++trial) {
+        const int vertex = vertices[random.below(vertices.size())];
+        int image = -1;
+        at.visit(element(rest.row(vertex).transpose()), [&](int other) { image = other; });
+        if (image < 0) continue;
+        const Eigen::Vector3d due = conjugate(carried, element)(moved.row(vertex).transpose());
+        ASSERT_LT((moved.row(image).transpose() - due).norm(), 1e-12 * subspace_.diagonal)
+            << model_.truth.regions[i].name;
+        ++pairs;
+      }
+    }
+  }
+  EXPECT_GT(pairs, 20);
+}
+
+// A large drag, then the files as users get them.
+TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
+  const Mesh& mesh = model_.mesh;
+  const double size = subspace_.diagonal;
+  Eigen::Index low = 0;
+  Eigen::Index high = 0;
+  mesh.vertices.rowwise().sum().minCoeff(&low);
+  mesh.vertices.rowwise().sum().maxCoeff(&high);
+  Deformer deformer(subspace_, mesh);
+  deformer.set_handles({handle_at(mesh, mesh.vertices.row(low).transpose(), 0.1 * size),
+                        handle_at(mesh, mesh.vertices.row(high).transpose(), 0.1 * size)},
+                       100);
+  const Motion drag = Motion{Eigen::Matrix3d::Identity(), size * Eigen::Vector3d(0.25, 0.15, 0.2)} *
+                      Motion::rotation(Eigen::Vector3d::UnitZ(), 0.6, mesh.vertices.row(high).transpose());
+  const Deformation deformation = deformer.solve({Motion{}, drag}, 6);
+  const Points displacements = vertex_displacements(subspace_, deformation.state);
+  EXPECT_GT(displacements.rowwise().norm().maxCoeff(), 0.02 * size);
+  Mesh deformed = mesh;
+  deformed.vertices += displacements;
+  const TemporaryFolder folder;
+  write_annotation(folder.file("carried.json"),
+                   carried_annotation(model_.truth, subspace_, deformation.state, deformed));
+  for (const std::string name : {"deformed.ply", "deformed.obj"}) {
+    write_mesh(folder.file(name), deformed);
+    const Mesh written = read_mesh(folder.file(name));
+    const SymmetryAnnotation carried = read_annotation(folder.file("carried.json"), written);
+    RunContext context;
+    const SymmetryReport report = symmetry_residual(written, carried, nullptr, CarriedMotions::fixed, context);
+    for (const RegionResidual& region : report.regions) EXPECT_LT(region.floor.max, 1e-9) << name << " " << region.name;
+    for (const PatternResidual& pattern : report.patterns) {
+      EXPECT_LT(pattern.floor.max, 1e-9) << name << " " << pattern.name;
+    }
+  }
+}
+
+// Two faces at an edge where places begin or end.
+struct Border {
+  int inside, outside;
+  Eigen::Vector3d middle;
+};
+
+std::vector<Border> borders_of(const Mesh& mesh, const RegionMap& regions) {
+  std::map<std::pair<int, int>, int> first;
+  std::vector<Border> result;
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto edge = std::minmax(mesh.faces(f, k), mesh.faces(f, (k + 1) % 3));
+      const auto [known, added] = first.try_emplace(edge, static_cast<int>(f));
+      if (added || regions.set_of_face(known->second) == regions.set_of_face(static_cast<int>(f))) continue;
+      result.push_back({known->second, static_cast<int>(f),
+                        0.5 * (mesh.vertices.row(edge.first) + mesh.vertices.row(edge.second)).transpose()});
+    }
+  }
+  return result;
+}
+
+// Along a path over the surface and across a border the field changes by no more than in proportion to the step.
+TEST_P(EveryRegion, IsContinuousAcrossItsBorder) {
+  const std::vector<Border> borders = borders_of(model_.mesh, *subspace_.regions);
+  if (borders.empty()) GTEST_SKIP() << "the regions are separate parts";
+  Random random(5, "borders");
+  const auto centroid = [&](int face) {
+    const Eigen::RowVector3i corners = model_.mesh.faces.row(face);
+    return Eigen::Vector3d((model_.mesh.vertices.row(corners[0]) + model_.mesh.vertices.row(corners[1]) +
+                            model_.mesh.vertices.row(corners[2]))
+                               .transpose() /
+                           3);
+  };
+  for (int trial = 0; trial < 3; ++trial) {
+    const Border& border = borders[random.below(borders.size())];
+    const auto largest_step = [&](int steps) {  // over the last fiftieth of the way on either side
+      Points path(2 * steps, 3);
+      std::vector<int> sets;
+      for (int k = 0; k < 2 * steps; ++k) {
+        const bool before = k < steps;
+        const double share = 0.02 * (before ? steps - 0.5 - k : k - steps + 0.5) / steps;
+        const int face = before ? border.inside : border.outside;
+        path.row(k) = (border.middle + share * (centroid(face) - border.middle)).transpose();
+        sets.push_back(subspace_.regions->set_of_face(face));
+      }
+      const Points field = displacement_field(subspace_, state_, path, sets, RunContext{});
+      return (field.bottomRows(2 * steps - 1) - field.topRows(2 * steps - 1)).rowwise().norm().maxCoeff();
+    };
+    const double coarse = largest_step(8);
+    const double fine = largest_step(32);
+    // The weights below 1e-5 that are left out jump too, by less than a thousandth of what the field is.
+    EXPECT_LT(fine, 0.5 * coarse + 1e-5 * subspace_.diagonal)
+        << subspace_.regions->name(innermost_region(*subspace_.regions, subspace_.regions->set_of_face(border.inside)));
+  }
+}
+
+std::string case_name(const testing::TestParamInfo<Case>& info) {
+  return kModels[static_cast<std::size_t>(std::get<0>(info.param))].name + "_" + to_string(std::get<1>(info.param));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, EveryRegion,
+                         testing::Combine(testing::Range(0, static_cast<int>(kModels.size())),
+                                          testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
+                         case_name);
+
+// Where vertices have no vertices as images the field in space is what is symmetric.
+class BetweenVertices : public EveryRegion {};
+
+TEST_P(BetweenVertices, EveryRegionIsExact) {
+  const GeneratedModel cut = cut_irregularly(model_);
+  const Subspace subspace = subspace_of(cut, mode_, case_.radius);
+  EXPECT_FALSE(subspace.orbits.images_are_vertices);
+  const WorstResidual worst = worst_residual(cut, subspace, random_state(subspace, 0.03), 60);
+  EXPECT_LT(worst.residual, 1e-12) << worst.name;
+}
+
+// Those that are quickly followed from point to point.
+INSTANTIATE_TEST_SUITE_P(Models, BetweenVertices,
+                         testing::Combine(testing::Values(0, 1, 5, 7, 8),
+                                          testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
+                         case_name);
+
+// What the comparison of the two lifts shows: the paper's breaks regions that the samples keep.
+TEST(PaperLift, BreaksPartialRegions) {
+  const GeneratedModel model = generate("table");
+  for (const GroupMode mode : {GroupMode::fixed, GroupMode::floating, GroupMode::moving}) {
+    const Subspace subspace = subspace_of(model, mode, 0.06, LiftKind::paper);
+    EXPECT_GT(worst_residual(model, subspace, random_state(subspace, 0.03), 500).residual, 1e-4) << to_string(mode);
+  }
+}
+
+TEST(PaperLift, KeepsTheWhole) {
+  const GeneratedModel model = generate("bar");
+  const Subspace subspace = subspace_of(model, GroupMode::fixed, 0.1, LiftKind::paper);
+  EXPECT_LT(worst_residual(model, subspace, random_state(subspace, 0.03), 500).residual, 1e-6);
+}
+
+}  // namespace
+}  // namespace orbifit
