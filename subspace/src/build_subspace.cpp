@@ -18,8 +18,15 @@ using Eigen::Vector3d;
 
 constexpr int kDefaultSamples = 1200;
 constexpr int kDefaultDegreesOfFreedom = 200;
-constexpr double kVertexOntoVertex = 1e-6;  // of the diagonal
 constexpr int kSearchRounds = 6;
+
+// Vertices nearer to an image than this are the image: as for doublet samples (paper, section 5), but well below the
+// edges' length.
+double place_tolerance(const Mesh& mesh) {
+  const double size = diagonal(mesh.vertices);
+  const double edge = std::sqrt(2 * face_areas(mesh).sum() / static_cast<double>(mesh.faces.rows()));
+  return std::clamp(0.03 * edge, 1e-6 * size, 1e-4 * size);
+}
 
 CarriedTransports transports_of(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
                                 const std::vector<Matrix3d>& rotations) {
@@ -151,6 +158,15 @@ void SubspaceOptions::validate() const {
   }
 }
 
+bool keeps_freedom(const Subspace& subspace, const std::vector<Matrix3d>& rotations, double tolerance) {
+  const CarriedBasis basis = basis_without_atoms(subspace, rotations);
+  if (!(basis.conflict <= tolerance) || basis.columns.cols() < subspace.basis.columns.cols()) return false;
+  for (std::size_t i = 0; i < basis.bindings.size(); ++i) {
+    if (basis.bindings[i].kept.trace() < subspace.basis.bindings[i].kept.trace() - 0.5) return false;
+  }
+  return true;
+}
+
 CarriedBasis carried_basis(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
   CarriedBasis basis = basis_without_atoms(subspace, rotations);
   add_atoms(subspace, basis);
@@ -180,9 +196,8 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   subspace.words = words;
   subspace.sampling = choose_sampling(mesh, *subspace.regions, *words, options, context);
   const bool averaged = options.lift == LiftKind::orbit;
-  subspace.orbits = averaged
-                        ? vertex_orbits(mesh, *subspace.regions, *words, kVertexOntoVertex * subspace.diagonal, context)
-                        : lone_vertices(mesh);
+  subspace.orbits =
+      averaged ? vertex_orbits(mesh, *subspace.regions, *words, place_tolerance(mesh), context) : lone_vertices(mesh);
   subspace.basis = basis_without_atoms(subspace, {});
   subspace.lift = orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits,
                              {averaged, options.mode == GroupMode::moving}, context);

@@ -1,6 +1,7 @@
 #include "orbifit/subspace/carried_regions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
@@ -17,7 +18,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 constexpr double kFree = 1e-7;
-constexpr double kNear = 1e-5;  // of the diagonal
+constexpr double kNear = 1e-5;    // of the diagonal
+constexpr double kAgree = 1e-11;  // of the diagonal
 
 }  // namespace
 
@@ -74,7 +76,34 @@ CarriedRegions::CarriedRegions(const Subspace& subspace) : subspace_(subspace) {
   }
   std::vector<char> taken(count, 0);
   for (std::size_t place = 0; place < order.size(); ++place) {
-    if (taken[static_cast<std::size_t>(order[place])] == 0) gather(place, order, centroids, kNear * subspace.diagonal, taken);
+    if (taken[static_cast<std::size_t>(order[place])] == 0)
+      gather(place, order, centroids, kNear * subspace.diagonal, taken);
+  }
+  if (subspace.mode == GroupMode::moving) keep_agreeing();
+}
+
+// Adds one way after another and turns them all, each by another angle. Ways that lose freedom are given up too:
+// regions whose mirrors no longer agree would leave their common points no way to move but along both.
+void CarriedRegions::keep_agreeing() {
+  std::vector<MatrixXd> wanted;
+  for (Family& family : families_) {
+    wanted.push_back(family.free);
+    family.free.resize(3, 0);
+  }
+  freedom_ = 0;
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    for (Eigen::Index d = 0; d < wanted[f].cols(); ++d) {
+      MatrixXd& free = families_[f].free;
+      const MatrixXd before = free;
+      free.conservativeResize(3, before.cols() + 1);
+      free.rightCols<1>() = wanted[f].col(d);
+      ++freedom_;
+      Eigen::VectorXd angles(freedom_);
+      for (Eigen::Index k = 0; k < freedom_; ++k) angles[k] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(k));
+      if (keeps_freedom(subspace_, rotations(turned(rest(), angles)), kAgree * subspace_.diagonal)) continue;
+      free = before;
+      --freedom_;
+    }
   }
 }
 
@@ -154,6 +183,15 @@ CarriedRegions::Turns CarriedRegions::turns_of(const std::vector<Matrix3d>& rota
     const auto first = static_cast<std::size_t>(families_[f].members.front().region);
     result[f] = rotations[first];
     if (around_[first] >= 0) result[f] = rotations[static_cast<std::size_t>(around_[first])].transpose() * result[f];
+  }
+  return result;
+}
+
+CarriedRegions::Turns CarriedRegions::as_one(const Matrix3d& rotation) const {
+  Turns result = rest();
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    const auto first = static_cast<std::size_t>(families_[f].members.front().region);
+    if (around_[first] < 0 && families_[f].free.cols() == 3) result[f] = rotation;
   }
   return result;
 }

@@ -14,7 +14,7 @@ namespace orbifit {
 namespace {
 
 constexpr std::size_t kTrialPoints = 128;  // of each region
-constexpr double kDoublet = 1e-4;         // of the diagonal, as in the sampling
+constexpr double kDoublet = 1e-6;          // of the diagonal, as for the vertices
 
 // Orbits of groups that fit together have no more points than the product of the orders of the places on the way, and
 // a few times that where mirrors meet at an angle.

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "orbifit/subspace/carried_regions.h"
+
 #include "plain_lift.h"
 #include "vertex_grid.h"
 
@@ -19,10 +20,22 @@ using Eigen::Vector3d;
 
 constexpr double kDoublet = 1e-6;  // of the diagonal, as for vertices
 
+// The places that hold a vertex, as its orbit has them.
+int set_of_vertex(const VertexOrbits& orbits, int vertex) {
+  const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(vertex)];
+  const auto r = static_cast<std::size_t>(follower.representative);
+  for (auto k = orbits.first_point[r]; k < orbits.first_point[r + 1]; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (orbits.point_words[at] == follower.word) return orbits.point_sets[at];
+  }
+  return orbits.point_sets[static_cast<std::size_t>(orbits.first_point[r])];
+}
+
 // Evaluates the field at one point after another.
 class FieldEvaluator {
  public:
-  FieldEvaluator(const Subspace& subspace, const SubspaceState& state)
+  /// \param grid of the mesh's vertices, whose places are known; null: the nearest surface decides
+  FieldEvaluator(const Subspace& subspace, const SubspaceState& state, const VertexGrid* grid = nullptr)
       : subspace_(subspace),
         basis_(basis_of(subspace, state)),
         words_(*subspace.words),
@@ -31,13 +44,25 @@ class FieldEvaluator {
     carriers_ = basis_.carried * state.q;
     if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
     closure_.doublet = kDoublet * subspace.diagonal;
-    refresh();
+    if (grid != nullptr && subspace.lift_kind == LiftKind::orbit) {
+      closure_.set_at = [this, grid](const Vector3d& place) {
+        int set = -1;
+        grid->visit(place, [&](int vertex) {
+          const int here = set_of_vertex(subspace_.orbits, vertex);
+          set = set < 0 ? here : subspace_.regions->joined(set, here);
+        });
+        return set;
+      };
+    }
+    transports_ = basis_.transports;
   }
 
-  Vector3d operator()(const Vector3d& point, int set) {
+  /// \param normal of the surface there; zero: unknown
+  Vector3d operator()(const Vector3d& point, int set, const Vector3d& normal = Vector3d::Zero()) {
+    closure_.normal = normal;
     if (subspace_.lift_kind == LiftKind::paper) return paper(point);
     const Orbit orbit = orbit_of(point, set, *subspace_.regions, words_, closure_);
-    if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) refresh();
+    if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) add_new_words();
     const Vector3d start = orbit.points.front().position;
     Vector3d u = Vector3d::Zero();
     Vector3d middle = Vector3d::Zero();
@@ -83,15 +108,10 @@ class FieldEvaluator {
 
   bool floating() const { return subspace_.mode != GroupMode::fixed; }
 
-  void refresh() {
-    transports_.words = words_.transports(basis_.rotations);
-    transports_.samples =
-        sample_transports(subspace_.sampling, *subspace_.regions, transports_.words, floating(), basis_.rotations);
-    if (!basis_.rotations.empty()) {
-      transports_.rest_words = words_.transports({});
-      transports_.rest_samples =
-          sample_transports(subspace_.sampling, *subspace_.regions, transports_.rest_words, floating());
-    }
+  // Points bring new words; the samples' stay as they are.
+  void add_new_words() {
+    words_.append_transports(basis_.rotations, transports_.words);
+    if (!basis_.rotations.empty()) words_.append_transports({}, transports_.rest_words);
   }
 
   Vector3d paper(const Vector3d& point) {
@@ -123,9 +143,10 @@ class FieldEvaluator {
     }
     add_carried(map.carried, seen.displacement);
     if (basis_.rotations.empty()) return seen;
-    const int region = atom.sample >= 0 ? innermost_region(*subspace_.regions,
-                                                           subspace_.sampling.sets[static_cast<std::size_t>(atom.sample)])
-                                        : atom.place;
+    const int region =
+        atom.sample >= 0
+            ? innermost_region(*subspace_.regions, subspace_.sampling.sets[static_cast<std::size_t>(atom.sample)])
+            : atom.place;
     if (region >= 0) seen.rotation = basis_.rotations[static_cast<std::size_t>(region)];
     seen.rotation = transports_.words[static_cast<std::size_t>(word)].frame.transpose() * seen.rotation *
                     transports_.rest_words[static_cast<std::size_t>(word)].frame;
@@ -144,41 +165,35 @@ class FieldEvaluator {
   std::map<std::array<int, 4>, Seen> seen_;
 };
 
-// The places that hold a vertex, as its orbit has them.
-int set_of_vertex(const VertexOrbits& orbits, int vertex) {
-  const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(vertex)];
-  const auto r = static_cast<std::size_t>(follower.representative);
-  for (auto k = orbits.first_point[r]; k < orbits.first_point[r + 1]; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (orbits.point_words[at] == follower.word) return orbits.point_sets[at];
-  }
-  return orbits.point_sets[static_cast<std::size_t>(orbits.first_point[r])];
-}
-
 // Pairs of a point and its image by one motion of a place, and how far the field is from carrying one to the other.
 class PairResidual {
  public:
   PairResidual(const Subspace& subspace, const Mesh& mesh, const SubspaceState& state)
       : subspace_(subspace),
         mesh_(mesh),
-        field_(subspace, state),
         baked_(vertex_displacements(subspace, state)),
-        grid_(mesh.vertices, kDoublet * subspace.diagonal) {}
+        images_(mesh.vertices, kDoublet * subspace.diagonal),
+        grid_(mesh.vertices, subspace.orbits.tolerance),
+        normals_(corner_normals(mesh)),
+        field_(subspace, state, &grid_) {}
 
+  /// \param motion that of element number `element` of the place, or with a rotation of its continuum after it
   /// \param carried where the motion has gone
-  void add(int vertex, const Motion& motion, const Motion& carried, int arrival) {
+  void add(int vertex, const Motion& motion, const Motion& carried, int from_place, int element) {
     const Vector3d place = mesh_.vertices.row(vertex).transpose();
     const Vector3d image = motion(place);
     int met = -1;
-    grid_.visit(image, [&](int other) { met = met < 0 ? other : met; });
+    images_.visit(image, [&](int other) { met = met < 0 ? other : met; });
     Vector3d here = baked_.row(vertex).transpose();
     Vector3d there;
     if (met >= 0) {
       there = baked_.row(met).transpose();
     } else {
       const int set = subspace_.lift_kind == LiftKind::orbit ? set_of_vertex(subspace_.orbits, vertex) : 0;
-      here = field_(place, set);
-      there = field_(image, subspace_.regions->with(subspace_.regions->set_near(image, arrival), arrival));
+      const Vector3d normal = normals_.row(vertex).transpose();
+      const Vector3d turned = motion.linear * normal;
+      here = field_(place, set, normal);
+      there = field_(image, subspace_.regions->set_of_image(set, from_place, element, image, turned), turned);
     }
     // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
     const Vector3d due = carried(place + here) - motion(place);
@@ -197,9 +212,11 @@ class PairResidual {
  private:
   const Subspace& subspace_;
   const Mesh& mesh_;
-  FieldEvaluator field_;
   Points baked_;
-  VertexGrid grid_;
+  VertexGrid images_;  // vertices that are images
+  VertexGrid grid_;    // vertices whose places are those of what is near
+  Points normals_;
+  FieldEvaluator field_;
   Residual residual_;
   double squares_ = 0, count_ = 0;
 };
@@ -231,13 +248,15 @@ Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region
                         const SubspaceState& state, const RunContext& context, int pairs) {
   const std::vector<int> vertices = vertices_of(mesh, region.faces);
   const std::vector<Motion> elements = subspace.regions->test_elements(region_number);
+  const std::size_t components = subspace.regions->elements(region_number).size();
   const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
   const Motion carried = carried_motion(subspace, state, region_number);
   PairResidual residual(subspace, mesh, state);
   for (std::size_t v = 0; v < vertices.size(); v += step) {
     context.check();
-    for (const Motion& element : elements) {
-      residual.add(vertices[v], element, conjugate(carried, element), region_number);
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      residual.add(vertices[v], elements[e], conjugate(carried, elements[e]), region_number,
+                   static_cast<int>(e % components));
     }
   }
   return residual.residual();
@@ -263,7 +282,7 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
       for (const auto& [carrier, matrix] : regions.instance_shift(first + static_cast<int>(a))) {
         if (carriers.size() > 0) carried.translation += matrix * carriers.segment<3>(3 * carrier);
       }
-      residual.add(vertex, regions.elements(first)[a], carried, first + static_cast<int>(a));
+      residual.add(vertex, regions.elements(first)[a], carried, first, static_cast<int>(a));
     }
   }
   return residual.residual();

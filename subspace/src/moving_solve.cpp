@@ -1,9 +1,11 @@
 #include "moving_solve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/SVD>
 
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/lift.h"
@@ -34,10 +36,12 @@ MatrixXd applied(const Eigen::SparseMatrix<double, Eigen::RowMajor>& scalar, con
 // The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset.
 class SampleEnergy {
  public:
-  SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights, double alpha)
+  SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights,
+               double alpha)
       : laplacian_(corotation.laplacian), points_(points) {
     weights_.resize(3 * points.rows());
-    for (Eigen::Index i = 0; i < weights_.size(); ++i) weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
+    for (Eigen::Index i = 0; i < weights_.size(); ++i)
+      weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
   }
 
   struct Solution {
@@ -45,13 +49,18 @@ class SampleEnergy {
     double energy = 0;
   };
 
-  // The last `turns` columns are turns.
-  Solution solve(const MatrixXd& columns, Eigen::Index turns, const VectorXd& offset, const VectorXd& laplace,
-                 const VectorXd& targets) const {
+  // The last columns are turns; `turned` says how each turns the Laplace coordinates asked for.
+  // `arms` how it turns the points about the samples that they follow.
+  Solution solve(const MatrixXd& columns, const MatrixXd& turned, const MatrixXd& arms, const VectorXd& offset,
+                 const VectorXd& laplace, const VectorXd& targets) const {
+    const Eigen::Index turns = turned.cols();
     MatrixXd rows(3 * (laplacian_.rows() + points_.rows()), columns.cols());
     VectorXd right(rows.rows());
     rows.topRows(3 * laplacian_.rows()) = applied(laplacian_, columns);
-    rows.bottomRows(weights_.size()) = weights_.asDiagonal() * applied(points_, columns);
+    rows.topRightCorner(3 * laplacian_.rows(), turns) -= turned;
+    MatrixXd points = applied(points_, columns);
+    points.rightCols(turns) += arms;
+    rows.bottomRows(weights_.size()) = weights_.asDiagonal() * points;
     right.head(3 * laplacian_.rows()) = laplace - applied(laplacian_, offset);
     right.tail(weights_.size()) = weights_.cwiseProduct(targets - VectorXd(applied(points_, offset)));
     MatrixXd normal = MatrixXd::Zero(columns.cols(), columns.cols());
@@ -89,6 +98,46 @@ Points centres_now(const Subspace& subspace, const SubspaceState& state) {
 MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation)
     : subspace_(subspace), corotation_(corotation), regions_(subspace) {}
 
+// How turning moves points besides moving the samples: omega x (p - sum of w x), omega that of the samples, blended.
+MatrixXd MovingSolve::arms_of(const LiftWeights& spread, const Points& points,
+                              const CarriedRegions::Turns& turns) const {
+  const Points& rest = corotation_.rest;
+  const Points none = Points::Zero(subspace_.regions->count(), 3);
+  std::array<MatrixXd, 3> across;  // omega x e_c
+  for (int c = 0; c < 3; ++c) {
+    Points arm = Points::Zero(rest.rows(), 3);
+    arm.col(c).setOnes();
+    across[static_cast<std::size_t>(c)] = applied(spread, regions_.columns(turns, arm, none));
+  }
+  const Points missing = points - spread * rest;
+  MatrixXd result = MatrixXd::Zero(3 * points.rows(), regions_.freedom());
+  for (Eigen::Index p = 0; p < points.rows(); ++p) {
+    for (int c = 0; c < 3; ++c) {
+      result.middleRows<3>(3 * p) += missing(p, c) * across[static_cast<std::size_t>(c)].middleRows<3>(3 * p);
+    }
+  }
+  return result;
+}
+
+// As the handles turn all in all.
+CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const VectorXd& targets) const {
+  constexpr double kLine = 1e-6;  // of the largest singular value: points on a line leave the turn about it open
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  const Points& rest = handles.rest();
+  Points there = rest;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) there.row(i) += targets.segment<3>(3 * i).transpose();
+  const Eigen::RowVector3d from = rest.colwise().mean();
+  const Eigen::RowVector3d to = there.colwise().mean();
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    sum += handles.weights()[static_cast<std::size_t>(i)] * (there.row(i) - to).transpose() * (rest.row(i) - from);
+  }
+  const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::Matrix3d>(sum).singularValues();
+  if (!(values[1] > kLine * values[0])) return regions_.rest();
+  CarriedRegions::Turns turns = regions_.as_one(blended_rotation(sum));
+  const bool agree = keeps_freedom(subspace_, regions_.rotations(turns), kConflict * subspace_.diagonal);
+  return agree ? turns : regions_.rest();
+}
+
 Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions,
                                int iterations, const SubspaceState& start) const {
   const Points& rest = corotation_.rest;
@@ -98,49 +147,76 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
 
   CarriedRegions::Turns turns = regions_.rest();
   std::vector<Eigen::Matrix3d> local(static_cast<std::size_t>(rest.rows()), Eigen::Matrix3d::Identity());
+  const auto turned_coordinates = [&](const std::vector<Eigen::Matrix3d>& by) {
+    Points turned(rest.rows(), 3);
+    for (Eigen::Index k = 0; k < rest.rows(); ++k) {
+      turned.row(k) = (by[static_cast<std::size_t>(k)] * corotation_.delta.row(k).transpose()).transpose();
+    }
+    return turned;
+  };
   Deformation result;
   SubspaceState& state = result.state;
-  if (start.basis && start.q.size() == start.basis->columns.cols()) {
+  const bool fresh = !(start.basis && start.q.size() == start.basis->columns.cols());
+  if (!fresh) {
     turns = regions_.turns_of(start.basis->rotations);
     state = start;
     local = local_rotations(corotation_, rest + sample_displacements(subspace_, state), local);
   } else {
+    turns = first_turns(handles, targets);
     const auto basis = std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(turns)));
     state = {VectorXd::Zero(basis->columns.cols()), basis};
     if (start.q.size() == state.q.size()) state.q = start.q;
+    for (std::size_t k = 0; k < local.size(); ++k) {
+      const int region = innermost_region(*subspace_.regions, subspace_.sampling.sets[k]);
+      if (region >= 0) local[k] = basis->rotations[static_cast<std::size_t>(region)];
+    }
   }
+  // The best coordinates for groups that stand as they do, and the local rotations to them.
+  const auto follow = [&](const Points& before, const VectorXd& wanted, const Points& turned_delta) {
+    const auto solution =
+        energy.solve(MatrixXd(state.basis->columns), MatrixXd(3 * rest.rows(), 0), MatrixXd(wanted.size(), 0),
+                     state.basis->offset, stacked(turned_delta - corotation_.delta), wanted);
+    state.q = solution.z;
+    result.energy = solution.energy;
+    const Points after = sample_displacements(subspace_, state);
+    result.last_change = (after - before).rowwise().norm().maxCoeff();
+    local = local_rotations(corotation_, rest + after, local);
+  };
+  if (fresh) follow(sample_displacements(subspace_, state), targets, turned_coordinates(local));
   for (int iteration = 0; iteration < iterations; ++iteration) {
     const Points before = sample_displacements(subspace_, state);
     // Where the lift differs from mere Gaussians about the samples, the handles' targets make up for it.
     const Points lifted = vertex_displacements(subspace_, state)(handles.vertices(), Eigen::all);
     const VectorXd wanted = targets - stacked(lifted) + VectorXd(applied(spread, stacked(before)));
-    Points turned_delta(rest.rows(), 3);
-    for (Eigen::Index k = 0; k < rest.rows(); ++k) {
-      turned_delta.row(k) =
-          (local[static_cast<std::size_t>(k)] * corotation_.delta.row(k).transpose()).transpose() - corotation_.delta.row(k);
-    }
-    const VectorXd laplace = stacked(turned_delta);
+    Points turned_delta = turned_coordinates(local);
     if (regions_.freedom() > 0) {
       const MatrixXd turning = regions_.columns(turns, rest + before, centres_now(subspace_, state));
       MatrixXd columns(3 * rest.rows(), state.q.size() + turning.cols());
       columns << MatrixXd(state.basis->columns), turning;
-      const VectorXd both = energy.solve(columns, turning.cols(), state.basis->offset, laplace, wanted).z;
+      // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
+      const MatrixXd along = regions_.columns(turns, turned_delta, Points::Zero(subspace_.regions->count(), 3));
+      const VectorXd laplace = stacked(turned_delta - corotation_.delta);
+      const VectorXd both =
+          energy.solve(columns, along, arms_of(spread, handles.rest(), turns), state.basis->offset, laplace, wanted).z;
       VectorXd angles = both.tail(turning.cols());
       const double largest = angles.cwiseAbs().maxCoeff();
       if (largest > kMostTurn) angles *= kMostTurn / largest;
       const CarriedRegions::Turns next = regions_.turned(turns, angles);
       auto basis = std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(next)));
       if (basis->conflict <= kConflict * subspace_.diagonal) {
+        for (Eigen::Index k = 0; k < rest.rows(); ++k) {
+          const auto sample = static_cast<std::size_t>(k);
+          const int region = innermost_region(*subspace_.regions, subspace_.sampling.sets[sample]);
+          if (region < 0) continue;
+          const auto r = static_cast<std::size_t>(region);
+          local[sample] = basis->rotations[r] * state.basis->rotations[r].transpose() * local[sample];
+        }
+        turned_delta = turned_coordinates(local);
         turns = next;
         state.basis = std::move(basis);
       }
     }
-    const auto solution = energy.solve(MatrixXd(state.basis->columns), 0, state.basis->offset, laplace, wanted);
-    state.q = solution.z;
-    result.energy = solution.energy;
-    const Points after = sample_displacements(subspace_, state);
-    result.last_change = (after - before).rowwise().norm().maxCoeff();
-    local = local_rotations(corotation_, rest + after, local);
+    follow(before, wanted, turned_delta);
   }
   const Points lifted = vertex_displacements(subspace_, state)(handles.vertices(), Eigen::all);
   const VectorXd missed = stacked(lifted) - targets;

@@ -2,16 +2,18 @@
 
 #include <vector>
 
-#include "handle_rows.h"
 #include "orbifit/subspace/carried_regions.h"
 #include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/deformer.h"
+#include "orbifit/subspace/lift.h"
+
+#include "handle_rows.h"
 
 namespace orbifit {
 
 /// Co-rotated Laplace editing while the regions' groups turn (method notes 2.2, moving). An iteration solves for the
-/// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and the
-/// basis is built anew, so that every state keeps every carried symmetry to rounding.
+/// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and
+/// the basis is built anew, so that every state keeps every carried symmetry to rounding.
 class MovingSolve {
  public:
   MovingSolve(const Subspace& subspace, const Corotation& corotation);
@@ -20,6 +22,9 @@ class MovingSolve {
                     const SubspaceState& start) const;
 
  private:
+  CarriedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
+  Eigen::MatrixXd arms_of(const LiftWeights& spread, const Points& points, const CarriedRegions::Turns& turns) const;
+
   const Subspace& subspace_;
   const Corotation& corotation_;
   CarriedRegions regions_;

@@ -187,7 +187,7 @@ class Closure {
     int set = -1;
     int known = doublets_.find(position);
     if (known < 0) {
-      set = set_at(position, arrival);
+      set = set_at(position, from.set, place, element, word);
       const int turning = continuous_place(set);
       if (turning >= 0) {
         const Continuum& continuum = *regions_.continuum(turning);
@@ -204,7 +204,7 @@ class Closure {
       orbit_.stabilisers.push_back(whole);
     }
     if (known >= 0) {
-      meet(known, word, arrival, position);
+      meet(known, word, arrival, regions_.carried_set(from.set, place, element));
       return;
     }
     if (static_cast<int>(orbit_.points.size()) >= options_.most_points) {
@@ -213,23 +213,28 @@ class Closure {
     add({position, word, set}, regions_.with(0, arrival));
   }
 
-  void meet(int known, int word, int arrival, const Eigen::Vector3d& position) {
+  // Where parts touch, points of different places meet.
+  void meet(int known, int word, int arrival, int carried) {
     OrbitPoint& point = orbit_.points[static_cast<std::size_t>(known)];
-    if (!words_.same(point.word, word)) orbit_.constraints.push_back({known, word});
-    if (!regions_.holds(point.set, arrival)) {
-      point.set = regions_.joined(point.set, set_at(position, arrival));
-      queue_.push_back(known);
-    }
     int& closed = closed_[static_cast<std::size_t>(known)];
-    closed = regions_.with(closed, arrival);
+    if (!words_.same(point.word, word)) orbit_.constraints.push_back({known, word});
+    if (regions_.contains(point.set, carried)) {
+      closed = regions_.with(closed, arrival);
+      return;
+    }
+    point.set = regions_.joined(point.set, carried);
+    closed = 0;
+    queue_.push_back(known);
   }
 
   int set_of(int point) const { return orbit_.points[static_cast<std::size_t>(point)].set; }
 
-  // By definition p in S puts g p in S, whatever the nearest face says.
-  int set_at(const Eigen::Vector3d& position, int arrival) const {
+  // The motion carries the point's places along; what else is there, the surface tells.
+  int set_at(const Eigen::Vector3d& position, int from, int place, int element, int word) const {
     const int known = options_.set_at ? options_.set_at(position) : -1;
-    return regions_.with(known >= 0 ? known : regions_.set_near(position, arrival), arrival);
+    if (known >= 0) return regions_.joined(known, regions_.carried_set(from, place, element));
+    const Eigen::Vector3d normal = words_.motion(word).linear * (orbit_.turn.linear.transpose() * options_.normal);
+    return regions_.set_of_image(from, place, element, position, normal);
   }
 
   const RegionMap& regions_;

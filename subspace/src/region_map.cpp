@@ -7,8 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "lattice.h"
 #include "orbifit/model/point_group.h"
+
+#include "lattice.h"
 
 namespace orbifit {
 
@@ -18,8 +19,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kSameLine = 1e-7;   // of the diagonal, and radians
-constexpr double kOnAxis = 1e-12;    // of a point's offset
+constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
+constexpr double kOnAxis = 1e-12;   // of a point's offset
 constexpr int kMostFold = 120;
 
 // One element of each component of a continuous group; mirrors contain the reference direction.
@@ -122,7 +123,22 @@ RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, con
     }
   }
   if (surfaces_needed) mesh_ = mesh;
+  size_ = diagonal(mesh.vertices);
   surfaces_.resize(places_.size());
+  images_.resize(places_.size());
+  origin_ = bounding_box_centre(mesh.vertices);
+  moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
+  meeting_.resize(places_.size());
+  for (int set = 0; set < set_count(); ++set) {
+    for (const int place : set_places(set)) {
+      auto& met = meeting_[static_cast<std::size_t>(place)];
+      met.insert(met.end(), set_places(set).begin(), set_places(set).end());
+    }
+  }
+  for (std::vector<int>& met : meeting_) {
+    std::ranges::sort(met);
+    met.erase(std::unique(met.begin(), met.end()), met.end());
+  }
 }
 
 void RegionMap::add_region(const Mesh&, const Region& region) {
@@ -281,8 +297,15 @@ void RegionMap::prepare() const {
   }
 }
 
-int RegionMap::set_near(const Vector3d& point, int place) const {
+int RegionMap::set_near(const Vector3d& point, int place, const Vector3d& normal) const {
+  constexpr double kSameSide = 0.2;  // cosine: a corner's normal is within it of its faces', the back of a part is not
+  constexpr double kSlack = 1e-5;    // of the diagonal: how much farther the right side may be
   if (at(place).common_set >= 0) return at(place).common_set;
+  if (!normal.isZero(0)) {
+    const double nearest = surface(place).nearest(point).distance;
+    const auto facing = surface(place).nearest_facing(point, normal, kSameSide, nearest + kSlack * size_);
+    if (facing.face >= 0) return set_of_face(facing.face);
+  }
   return set_of_face(surface(place).nearest(point).face);
 }
 

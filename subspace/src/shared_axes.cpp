@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "orbifit/subspace/orbit.h"
@@ -57,63 +59,70 @@ std::optional<Placement> placement_of(const Mesh& mesh, const Region& region) {
   return placement;
 }
 
-std::vector<Vector3d> directions(const std::vector<Motion>& elements) {
-  std::vector<Vector3d> result;
+struct Direction {
+  Vector3d axis;  // unit, of either sign
+  AxisAngle turn;
+};
+
+std::vector<Direction> directions(const std::vector<Motion>& elements) {
+  std::vector<Direction> result;
   for (const Motion& element : elements) {
-    const Vector3d axis = axis_angle(element.linear).axis;
-    if (axis.norm() > 0.5) result.push_back(axis);
+    const AxisAngle turn = axis_angle(element.linear);
+    if (turn.axis.norm() > 0.5) result.push_back({turn.axis, turn});
   }
   return result;
 }
 
-// The smallest rotation that takes a direction of `own` onto one of `others`, up to sign, if below `most` radians.
-Matrix3d smallest_turn(const std::vector<Vector3d>& own, const std::vector<Vector3d>& others, double most) {
-  double best = most;
-  Matrix3d turn = Matrix3d::Identity();
-  for (const Vector3d& from : own) {
-    for (Vector3d to : others) {
-      if (to.dot(from) < 0) to = -to;
-      const Vector3d cross = from.cross(to);
-      const double angle = std::atan2(cross.norm(), from.dot(to));
-      if (angle >= best) continue;
-      best = angle;
-      turn = angle > 1e-15 ? axis_rotation(cross.normalized(), angle) : Matrix3d(Matrix3d::Identity());
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d result;
+  result << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return result;
+}
+
+// The smallest rotation w after which every motion of the stabiliser maps the group's axes onto its axes, so that the
+// two close together: Gauss-Newton on O_h exp[w] d = +-exp[w] d', d' being the axis of the same kind nearest to O_h d.
+Matrix3d settling_turn(const std::vector<Direction>& own, const std::vector<Motion>& stabiliser, double most) {
+  constexpr int kRounds = 6;
+  constexpr double kRank = 1e-6;
+  Matrix3d total = Matrix3d::Identity();
+  for (int round = 0; round < kRounds; ++round) {
+    Matrix3d normal = Matrix3d::Zero();
+    Vector3d side = Vector3d::Zero();
+    for (const Motion& motion : stabiliser) {
+      for (const Direction& from : own) {
+        const Vector3d axis = total * from.axis;
+        const Vector3d image = motion.linear * axis;
+        Vector3d nearest = Vector3d::Zero();
+        double best = std::cos(most);
+        for (const Direction& to : own) {
+          if (to.turn.determinant != from.turn.determinant || std::abs(to.turn.angle - from.turn.angle) > 1e-6)
+            continue;
+          const Vector3d other = total * to.axis;
+          const double cosine = image.dot(other);
+          if (std::abs(cosine) <= best) continue;
+          best = std::abs(cosine);
+          nearest = cosine > 0 ? other : Vector3d(-other);
+        }
+        if (nearest.isZero(0)) continue;
+        const Matrix3d slope = cross_matrix(nearest) - motion.linear * cross_matrix(axis);
+        normal += slope.transpose() * slope;
+        side -= slope.transpose() * (image - nearest);
+      }
     }
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(normal);
+    Vector3d w = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      if (solver.eigenvalues()[k] < kRank * std::max(1.0, solver.eigenvalues()[2])) continue;
+      w += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).dot(side) / solver.eigenvalues()[k];
+    }
+    if (w.norm() > 0) total = axis_rotation(w.normalized(), w.norm()) * total;
+    if (w.norm() < 1e-15) break;
   }
-  return turn;
+  return total;
 }
 
 double angle_of(const Matrix3d& turn) {
   return axis_angle(turn).angle;
-}
-
-// Turns `placement` so that its main axis, then a direction across it, are among those of `around`.
-void share_directions(Placement& placement, const std::vector<Vector3d>& around, bool has_axis, double most) {
-  std::vector<Vector3d> own = directions(placement.elements);
-  std::vector<Vector3d> main = has_axis ? std::vector<Vector3d>{placement.frame.col(2)} : own;
-  const Matrix3d first = smallest_turn(main, around, most);
-  placement.frame = first * placement.frame;
-  if (!has_axis) return;
-  const auto across = [&](const std::vector<Vector3d>& all, const Matrix3d& turn) {
-    std::vector<Vector3d> result;
-    for (const Vector3d& direction : all) {
-      const Vector3d flat = turn * direction - placement.frame.col(2) * placement.frame.col(2).dot(turn * direction);
-      if (flat.norm() > std::cos(most)) result.push_back(flat.normalized());
-    }
-    return result;
-  };
-  placement.frame = smallest_turn(across(own, first), across(around, Matrix3d::Identity()), most) * placement.frame;
-}
-
-// Moves a placement onto the elements of `around` that nearly fix its centre.
-void share_with(const Placement& around, bool has_axis, double tolerance, Placement& placement) {
-  std::vector<Motion> stabiliser;
-  for (const Motion& element : around.elements) {
-    if ((element(placement.centre) - placement.centre).norm() <= 2 * tolerance) stabiliser.push_back(element);
-  }
-  if (stabiliser.size() < 2) return;
-  placement.centre = fixed_point(placement.centre, stabiliser);
-  share_directions(placement, directions(stabiliser), has_axis, tolerance / std::max(placement.reach, tolerance));
 }
 
 bool overlap(const std::vector<int>& a, const std::vector<int>& b) {
@@ -177,25 +186,43 @@ std::optional<Region> image_of_earlier(const std::vector<Region>& regions,
 }  // namespace
 
 SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance) {
+  constexpr double kMostTurn = 0.2;
   const double size = diagonal(mesh.vertices);
   const double reach = tolerance * size;
-  SymmetryAnnotation result = annotation;
+  // Larger regions first: what is around a region stands before the region itself.
+  std::vector<std::size_t> order(annotation.regions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    return annotation.regions[a].faces.size() > annotation.regions[b].faces.size();
+  });
+  std::vector<Region> regions;
+  for (const std::size_t number : order) regions.push_back(annotation.regions[number]);
   std::vector<std::optional<Placement>> placements;
-  for (std::size_t b = 0; b < result.regions.size(); ++b) {
-    Region& region = result.regions[b];
+  for (std::size_t b = 0; b < regions.size(); ++b) {
+    Region& region = regions[b];
     const std::optional<Placement> before = placement_of(mesh, region);
     placements.push_back(before);
     if (!before) continue;
-    Placement after = *before;
-    for (std::size_t a = 0; a < b; ++a) {
-      if (placements[a] && overlap(result.regions[a].faces, region.faces)) {
-        share_with(*placements[a], region.group.has_axis(), reach, after);
+    if (const auto image = image_of_earlier(regions, placements, b, *before, reach)) {
+      region = *image;
+    } else {
+      Placement after = *before;
+      std::vector<Motion> stabiliser;
+      for (std::size_t a = 0; a < b; ++a) {
+        if (!placements[a] || !overlap(regions[a].faces, region.faces)) continue;
+        for (const Motion& element : placements[a]->elements) {
+          if ((element(before->centre) - before->centre).norm() <= 2 * reach) stabiliser.push_back(element);
+        }
       }
+      after.centre = fixed_point(before->centre, stabiliser);
+      const double most = std::min(kMostTurn, 2 * reach / std::max(before->reach, reach));
+      after.frame = settling_turn(directions(before->elements), stabiliser, most) * before->frame;
+      region = moved(region, *before, after, reach, size);
     }
-    region = moved(region, *before, after, reach, size);
-    if (const auto image = image_of_earlier(result.regions, placements, b, *before, reach)) region = *image;
     placements[b] = placement_of(mesh, region);
   }
+  SymmetryAnnotation result = annotation;
+  for (std::size_t i = 0; i < order.size(); ++i) result.regions[order[i]] = regions[i];
   return result;
 }
 

@@ -20,8 +20,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDoublet = 1e-4;  // of the diagonal (paper, section 5)
-constexpr double kCrowded = 0.4;   // of r
+constexpr double kDoublet = 1e-4;     // of the diagonal (paper, section 5)
+constexpr double kCrowded = 0.4;      // of r
 constexpr double kRingSpacing = 0.9;  // of r
 constexpr int kFewestCopies = 6;
 constexpr int kCandidatesPerDisc = 30;
@@ -123,9 +123,15 @@ std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& region
   return candidates;
 }
 
+Vector3d face_normal(const Mesh& mesh, int face) {
+  const Vector3d a = mesh.vertices.row(mesh.faces(face, 0)).transpose();
+  const Vector3d b = mesh.vertices.row(mesh.faces(face, 1)).transpose();
+  const Vector3d c = mesh.vertices.row(mesh.faces(face, 2)).transpose();
+  return (b - a).cross(c - a).normalized();
+}
+
 // Turns from a canonical place to its copies, the identity first, and how many the radius asks for.
-std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& position, double radius,
-                               double& needed) {
+std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& position, double radius, double& needed) {
   const double distance = continuum.distance(position);
   std::vector<Motion> turns{Motion{}};
   needed = 1;
@@ -172,9 +178,8 @@ void append(SymmetricSampling& sampling, const Orbit& orbit, const RegionMap& re
   for (const OrbitPoint& point : orbit.points) {
     const int place = continuous_place(regions, point.set);
     double needed = 1;
-    const std::vector<Motion> turns = place < 0
-                                          ? std::vector<Motion>{Motion{}}
-                                          : copy_turns(*regions.continuum(place), point.position, radius, needed);
+    const std::vector<Motion> turns = place < 0 ? std::vector<Motion>{Motion{}}
+                                                : copy_turns(*regions.continuum(place), point.position, radius, needed);
     const int first = static_cast<int>(points.size());
     for (std::size_t k = 0; k < turns.size(); ++k) {
       points.push_back(turns[k](point.position));
@@ -219,6 +224,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
     if (field) radius = options.radius_field(mesh.faces.row(candidate.face).transpose()).mean();
     if (grid.covered(candidate.position, set, radius)) continue;
     closure.snap = kCrowded * radius;
+    closure.normal = face_normal(mesh, candidate.face);
     Orbit orbit = orbit_of(candidate.position, set, regions, words, closure);
     if (!orbit.stabilisers.empty()) {
       const Vector3d start = orbit.points.front().position;
@@ -227,6 +233,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
       if ((fixed - start).norm() < radius) {
         ClosureOptions exact = closure;
         exact.snap = 0;
+        exact.normal.setZero();  // between faces, off the surface
         orbit = orbit_of(fixed, orbit.points.front().set, regions, words, exact);
       }
     }

@@ -10,6 +10,8 @@ namespace orbifit {
 
 namespace {
 
+constexpr double kDoublet = 1e-6;  // of the diagonal
+
 // The places of all faces around each vertex's position.
 std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid) {
   std::vector<int> own(static_cast<std::size_t>(mesh.vertices.rows()), 0);
@@ -53,6 +55,7 @@ VertexOrbits in_space_order(VertexOrbits orbits) {
   }
   std::ranges::sort(order);
   VertexOrbits result;
+  result.tolerance = orbits.tolerance;
   result.turns = std::move(orbits.turns);
   result.bindings = std::move(orbits.bindings);
   result.images_are_vertices = orbits.images_are_vertices;
@@ -87,7 +90,9 @@ class OrbitBuilder {
         words_(words),
         grid_(mesh.vertices, tolerance),
         sets_(sets_of_vertices(mesh, regions, grid_)) {
-    closure_.doublet = tolerance;
+    if (regions.places() > 1) normals_ = corner_normals(mesh);
+    closure_.doublet = std::min(tolerance, kDoublet * diagonal(mesh.vertices));
+    result_.tolerance = tolerance;
     closure_.set_at = [this](const Eigen::Vector3d& place) {
       int set = -1;
       grid_.visit(place, [&](int vertex) {
@@ -111,7 +116,8 @@ class OrbitBuilder {
     }
     result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
     result_.positions.resize(static_cast<Eigen::Index>(positions_.size()), 3);
-    for (std::size_t i = 0; i < positions_.size(); ++i) result_.positions.row(static_cast<Eigen::Index>(i)) = positions_[i];
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+      result_.positions.row(static_cast<Eigen::Index>(i)) = positions_[i];
     return in_space_order(std::move(result_));
   }
 
@@ -141,14 +147,14 @@ class OrbitBuilder {
       turn_of_vertex_[v] = static_cast<int>(result_.turns.size());
       result_.turns.push_back({place, turn});
     }
-    canonical_grid_.emplace(canonical_.vertices, closure_.doublet);
+    canonical_grid_.emplace(canonical_.vertices, result_.tolerance);
   }
 
   void add_orbit(int vertex) {
     const auto v = static_cast<std::size_t>(vertex);
     const int number = static_cast<int>(positions_.size());
-    const Orbit orbit =
-        orbit_of(mesh_.vertices.row(vertex).transpose(), sets_[v], regions_, words_, closure_);
+    if (regions_.places() > 1) closure_.normal = normals_.row(vertex).transpose();
+    const Orbit orbit = orbit_of(mesh_.vertices.row(vertex).transpose(), sets_[v], regions_, words_, closure_);
     result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
     positions_.push_back(orbit.points.front().position);
     for (const OrbitPoint& point : orbit.points) {
@@ -194,6 +200,7 @@ class OrbitBuilder {
   GroupWords& words_;
   VertexGrid grid_;
   std::vector<int> sets_;
+  Points normals_;
   ClosureOptions closure_;
   VertexOrbits result_;
   bool continuous_ = false;
@@ -206,6 +213,16 @@ class OrbitBuilder {
 
 }  // namespace
 
+Points corner_normals(const Mesh& mesh) {
+  Points result = Points::Zero(mesh.vertices.rows(), 3);
+  const Points normals = face_normals(mesh);
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (const int vertex : mesh.faces.row(face)) result.row(vertex) += normals.row(face);
+  }
+  result.rowwise().normalize();
+  return result;
+}
+
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
                            const RunContext& context) {
   return OrbitBuilder(mesh, regions, words, tolerance).run(context);
@@ -214,6 +231,7 @@ VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWord
 VertexOrbits lone_vertices(const Mesh& mesh) {
   VertexOrbits result;
   const auto count = static_cast<std::size_t>(mesh.vertices.rows());
+  result.tolerance = 1e-6 * diagonal(mesh.vertices);
   result.positions = mesh.vertices;
   result.bound.assign(count, -1);
   result.point_words.assign(count, 0);

@@ -141,7 +141,7 @@ TEST_P(MovingModel, RigidMotionOfAllHandlesMovesEverythingRigidly) {
   deformer.set_handles(handles(), 100);
   Motion motion = Motion::rotation(Eigen::Vector3d(1, 2, 3).normalized(), 0.8, {0.1, 0.2, 0.3});
   motion.translation += subspace_.diagonal * Eigen::Vector3d(0.4, -0.3, 0.2);
-  const Deformation result = deformer.solve(std::vector<Motion>(3, motion), 60);
+  const Deformation result = deformer.solve(std::vector<Motion>(3, motion), 150);
   const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, result.state);
   double worst = 0;
   for (Eigen::Index v = 0; v < moved.rows(); ++v) {

@@ -131,11 +131,14 @@ TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
   deformer.set_handles({handle_at(mesh, mesh.vertices.row(low).transpose(), 0.1 * size),
                         handle_at(mesh, mesh.vertices.row(high).transpose(), 0.1 * size)},
                        100);
-  const Motion drag = Motion{Eigen::Matrix3d::Identity(), size * Eigen::Vector3d(0.25, 0.15, 0.2)} *
+  // Neither the same for both nor each other's mirror images, which would leave nothing where a group links them.
+  const Eigen::Vector3d shift = size * Eigen::Vector3d(0.25, 0.15, 0.2);
+  const Motion drag = Motion{Eigen::Matrix3d::Identity(), shift} *
                       Motion::rotation(Eigen::Vector3d::UnitZ(), 0.6, mesh.vertices.row(high).transpose());
-  const Deformation deformation = deformer.solve({Motion{}, drag}, 6);
+  const Motion pull{Eigen::Matrix3d::Identity(), -0.4 * shift};
+  const Deformation deformation = deformer.solve({pull, drag}, 6);
   const Points displacements = vertex_displacements(subspace_, deformation.state);
-  EXPECT_GT(displacements.rowwise().norm().maxCoeff(), 0.02 * size);
+  EXPECT_GT(displacements.rowwise().norm().maxCoeff(), 0.005 * size);  // groups that stay where they are allow little
   Mesh deformed = mesh;
   deformed.vertices += displacements;
   const TemporaryFolder folder;

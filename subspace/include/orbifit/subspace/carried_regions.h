@@ -18,7 +18,8 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector);
 /// How the regions' groups may turn in mode `moving` (method notes 2.2) without contradicting one another. Regions that
 /// elements of larger ones take to one another form a family: when g takes region i to j, their rotations relative to
 /// the regions around them obey Q_j = g Q_i g^-1. What takes a region to itself leaves it only the rotations that
-/// commute with it. Regions that overlap without nesting turn together.
+/// commute with it. Regions that overlap without nesting turn together. Ways of turning that contradict one another all
+/// the same are found by trying them and given up, those of smaller regions first.
 class CarriedRegions {
  public:
   explicit CarriedRegions(const Subspace& subspace);
@@ -35,6 +36,9 @@ class CarriedRegions {
 
   /// The turns behind rotations().
   Turns turns_of(const std::vector<Eigen::Matrix3d>& rotations) const;
+
+  /// All turned as one body, as far as the outermost regions may turn at all.
+  Turns as_one(const Eigen::Matrix3d& rotation) const;
 
   /// Turned on by small rotations in the free ways, radians.
   Turns turned(const Turns& turns, const Eigen::VectorXd& angles) const;
@@ -53,6 +57,7 @@ class CarriedRegions {
     std::vector<Member> members;
     Eigen::MatrixXd free;  ///< 3 by 0..3, orthonormal: the first member's rotation vectors
   };
+  void keep_agreeing();
   void gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
               std::vector<char>& taken);
   bool nested(int inner, int outer) const;

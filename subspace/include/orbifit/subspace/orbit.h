@@ -40,6 +40,8 @@ struct ClosureOptions {
   int most_points = 20000;  ///< an orbit with more never closes
   /// Places to follow, by number; null: all. Not owned.
   const std::vector<char>* followed = nullptr;
+  /// The surface's normal at the seed: tells apart parts that touch, back to back. Zero: unknown.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   /// The set of places of a known point at (nearly) this position; -1: not known, the nearest surface decides.
   std::function<int(const Eigen::Vector3d&)> set_at;
 };

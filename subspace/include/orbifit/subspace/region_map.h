@@ -16,6 +16,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/surface_moments.h"
 
 namespace orbifit {
 
@@ -53,12 +54,12 @@ class RegionMap {
   /// \param context hears of patterns whose instances follow no lattice and are kept as congruent copies
   RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
 
-  int count() const { return regions_; }                            ///< regions
-  int places() const { return static_cast<int>(places_.size()); }   ///< regions, then pattern instances
-  int carriers() const { return carriers_; }                        ///< translations that carry regions, then patterns
+  int count() const { return regions_; }                           ///< regions
+  int places() const { return static_cast<int>(places_.size()); }  ///< regions, then pattern instances
+  int carriers() const { return carriers_; }                       ///< translations that carry regions, then patterns
 
-  /// The motions that act at a place, the identity among them: all elements of a finite group; of a continuous group one
-  /// of each component (the identity; a mirror, ...), the rotations being continuum(); from a pattern's instance to
+  /// The motions that act at a place, the identity among them: all elements of a finite group; of a continuous group
+  /// one of each component (the identity; a mirror, ...), the rotations being continuum(); from a pattern's instance to
   /// every instance.
   const std::vector<Motion>& elements(int place) const { return at(place).motions; }
 
@@ -97,8 +98,17 @@ class RegionMap {
   bool holds(int set, int place) const;
   bool contains(int set, int subset) const;
 
-  /// The set at the point of the place's surface nearest to `point`; `place` is among it.
-  int set_near(const Eigen::Vector3d& point, int place) const;
+  /// The set at the point of the place's surface nearest to `point`, on the side of `normal` unless that is zero;
+  /// `place` is among it.
+  int set_near(const Eigen::Vector3d& point, int place, const Eigen::Vector3d& normal = Eigen::Vector3d::Zero()) const;
+
+  /// The places that hold the image, by element number `element` of `place`, of a point that `set` holds: those that
+  /// the motion takes places of the set to, and the arrival. Not for use by several threads.
+  int carried_set(int set, int place, int element) const;
+
+  /// The same, and of places to which the motion takes no place as a whole those near `image`, as by set_near().
+  int set_of_image(int set, int place, int element, const Eigen::Vector3d& image,
+                   const Eigen::Vector3d& normal = Eigen::Vector3d::Zero()) const;
 
   /// Distance to the place's surface, at most `most` (infinity beyond). For use by several threads after prepare().
   double distance(const Eigen::Vector3d& point, int place, double most) const;
@@ -124,9 +134,20 @@ class RegionMap {
     int pattern_first = -1;  // place of the pattern's first instance; -1: a region
     Carried shift;
   };
+  /// What one motion of a place does to all places that have surface in common with it.
+  struct Images {
+    std::vector<std::pair<int, int>> pairs;  // a place and where it goes, ascending
+    std::vector<int> reached;                // ascending
+    bool all = false;                        // whether all places at the arrival are among them
+    std::unordered_map<int, int> sets;       // carried sets known so far
+  };
   const Place& at(int place) const { return places_[static_cast<std::size_t>(place)]; }
   const SurfaceIndex& surface(int place) const;
   int intern(const std::vector<int>& places) const;
+  SurfaceMoments common_moments(int a, int b) const;
+  bool around(int outer, int inner) const;  // whether outer holds all faces of inner
+  Images images_of(int place, int element) const;
+  Images& images(int place, int element) const;
   void add_region(const Mesh& mesh, const Region& region);
   void add_pattern(const Mesh& mesh, const Pattern& pattern, const RunContext& context);
   void share_references(double size);
@@ -135,6 +156,7 @@ class RegionMap {
   std::vector<Place> places_;
   std::vector<int> first_place_;
   std::vector<int> first_step_;  // carrier of each pattern's first generator; -1: no lattice
+  double size_ = 0;              // the mesh's diagonal
   int regions_ = 0;
   int carriers_ = 0;
   std::vector<int> set_of_face_;
@@ -142,6 +164,10 @@ class RegionMap {
   mutable std::vector<const std::vector<int>*> sets_;
   mutable std::unordered_map<std::uint64_t, int> with_;
   mutable std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;
+  std::vector<std::vector<int>> meeting_;             // of each place, the places that share faces with it
+  std::vector<SurfaceMoments> moments_;               // of the faces of each set
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the moments
+  mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };
 
 /// The region with fewest faces among a set's places; -1: none.

@@ -81,6 +81,10 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
 /// The basis when region i's group is turned by rotations[i] about its carried centre (mode moving).
 CarriedBasis carried_basis(const Subspace& subspace, const std::vector<Eigen::Matrix3d>& rotations);
 
+/// Whether groups turned so agree with one another to `tolerance`, mesh units, and leave the samples and the vertices
+/// as free as they are at rest.
+bool keeps_freedom(const Subspace& subspace, const std::vector<Eigen::Matrix3d>& rotations, double tolerance);
+
 /// A state of the deformation: coordinates in a basis.
 struct SubspaceState {
   Eigen::VectorXd q;

@@ -11,10 +11,10 @@
 namespace orbifit {
 
 /// The vertices of a mesh in orbits: one representative each, whose displacement decides those of the others. A vertex
-/// is in all places of all faces around its position, so that borders have the symmetries of both sides. Vertices within
-/// a tolerance of an image of a representative follow it exactly, coincident ones too: a mesh read from a file of few
-/// digits stays as symmetric as the file was. Images that meet no vertex are kept as points of the orbit, so that the
-/// displacement is symmetric in space.
+/// is in all places of all faces around its position, so that borders have the symmetries of both sides. Vertices
+/// within a tolerance of an image of a representative follow it exactly, coincident ones too: a mesh read from a file
+/// of few digits stays as symmetric as the file was. Images that meet no vertex are kept as points of the orbit, so
+/// that the displacement is symmetric in space.
 struct VertexOrbits {
   double tolerance = 0;  ///< vertices nearer than this are one place, mesh units
   struct Follower {
@@ -29,8 +29,8 @@ struct VertexOrbits {
   };
   std::vector<Turn> turns;  ///< of vertices on circles or spheres, from their canonical places
 
-  Points positions;            ///< #R by 3, canonical places of the representatives
-  std::vector<int> bound;      ///< #R: number of the representative's binding, -1: free
+  Points positions;        ///< #R by 3, canonical places of the representatives
+  std::vector<int> bound;  ///< #R: number of the representative's binding, -1: free
   std::vector<BoundPoint> bindings;
   std::vector<std::int64_t> first_point;  ///< of each orbit in the lists below, and their length at the end
   std::vector<int> point_words;           ///< from the canonical place; the first of each orbit is the identity
@@ -45,6 +45,9 @@ struct VertexOrbits {
 /// \throw InputError when an orbit does not close
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
                            const RunContext& context);
+
+/// Unit sums of the unit normals around each vertex, #V by 3: a corner's looks away from all its faces.
+Points corner_normals(const Mesh& mesh);
 
 /// Every vertex its own representative, without symmetry.
 VertexOrbits lone_vertices(const Mesh& mesh);

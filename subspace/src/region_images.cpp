@@ -1,0 +1,121 @@
+// Where the motions of places take other places.
+
+#include <algorithm>
+#include <limits>
+
+#include "orbifit/subspace/region_map.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kSamePlace = 1e-3;  // of the diagonal
+constexpr double kTie = 1e-6;        // of the diagonal: places of the same faces
+
+bool is_identity(const Motion& motion) {
+  return motion.linear.isIdentity(0) && motion.translation.isZero(0);
+}
+
+}  // namespace
+
+// Of the faces that both places hold.
+SurfaceMoments RegionMap::common_moments(int a, int b) const {
+  SurfaceMoments result;
+  for (std::size_t set = 0; set < moments_.size(); ++set) {
+    if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
+  }
+  return result;
+}
+
+bool RegionMap::around(int outer, int inner) const {
+  for (std::size_t set = 0; set < moments_.size(); ++set) {
+    if (holds(static_cast<int>(set), inner) && !holds(static_cast<int>(set), outer)) return false;
+  }
+  return true;
+}
+
+RegionMap::Images RegionMap::images_of(int place, int element) const {
+  Images result;
+  const int arrival = this->arrival(place, element);
+  const Motion& motion = at(place).motions[static_cast<std::size_t>(element)];
+  const std::vector<int>& here = meeting_[static_cast<std::size_t>(place)];
+  const std::vector<int>& there = meeting_[static_cast<std::size_t>(arrival)];
+  if (is_identity(motion)) {
+    for (const int p : here) result.pairs.emplace_back(p, p);
+    result.reached = here;
+    result.all = true;
+    return result;
+  }
+  // Told from the moments' origin.
+  const Motion told =
+      Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
+  std::vector<SurfaceMoments> common;
+  common.reserve(there.size());
+  for (const int q : there) common.push_back(common_moments(arrival, q));
+  const auto alike = [&](int p, int q) {
+    return (p < count()) == (q < count()) && at(p).motions.size() == at(q).motions.size() &&
+           at(p).continuum.has_value() == at(q).continuum.has_value();
+  };
+  for (const int p : here) {
+    // A place all around, or the place itself, stays.
+    if (p == place || (std::ranges::binary_search(there, p) && around(p, place) && around(p, arrival))) {
+      result.pairs.emplace_back(p, p == place ? arrival : p);
+      continue;
+    }
+    const SurfaceMoments piece = common_moments(place, p);
+    double best = kSamePlace;
+    std::vector<std::pair<double, int>> found;
+    for (std::size_t k = 0; k < there.size(); ++k) {
+      if (!alike(p, there[k])) continue;
+      const double miss = mismatch(piece, told, common[k], size_);
+      if (miss <= kSamePlace) found.emplace_back(miss, there[k]);
+      best = std::min(best, miss);
+    }
+    for (const auto& [miss, q] : found) {
+      if (miss <= best + kTie) result.pairs.emplace_back(p, q);
+    }
+  }
+  for (const auto& [p, q] : result.pairs) result.reached.push_back(q);
+  std::ranges::sort(result.reached);
+  result.reached.erase(std::unique(result.reached.begin(), result.reached.end()), result.reached.end());
+  result.all = result.reached.size() == there.size();
+  return result;
+}
+
+RegionMap::Images& RegionMap::images(int place, int element) const {
+  auto& images = images_[static_cast<std::size_t>(place)];
+  if (images.empty()) images.resize(elements(place).size());
+  auto& entry = images[static_cast<std::size_t>(element)];
+  if (!entry) entry = std::make_unique<Images>(images_of(place, element));
+  return *entry;
+}
+
+int RegionMap::carried_set(int set, int place, int element) const {
+  Images& known = images(place, element);
+  const auto [entry, added] = known.sets.try_emplace(set, -1);
+  if (added) {
+    std::vector<int> members{arrival(place, element)};
+    for (const auto& [from, to] : known.pairs) {
+      if (holds(set, from)) members.push_back(to);
+    }
+    std::ranges::sort(members);
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    entry->second = intern(members);
+  }
+  return entry->second;
+}
+
+int RegionMap::set_of_image(int set, int place, int element, const Eigen::Vector3d& image,
+                            const Eigen::Vector3d& normal) const {
+  int result = carried_set(set, place, element);
+  const Images& known = images(place, element);
+  if (known.all) return result;
+  const int near = set_near(image, arrival(place, element), normal);
+  if (contains(result, near)) return result;
+  for (const int other : std::vector<int>(set_places(near))) {
+    if (!std::ranges::binary_search(known.reached, other)) result = with(result, other);
+  }
+  return result;
+}
+
+}  // namespace orbifit
