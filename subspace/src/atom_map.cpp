@@ -29,8 +29,7 @@ Transport place_of(const LiftAtom& atom, const RegionMap& regions, const std::ve
   Transport relative;
   relative.frame = pulled * result.frame;
   relative.shift = pulled * (result.shift - centre.shift);
-  relative.carried =
-      carried_sum({}, pulled, carried_sum(result.carried, -Matrix3d::Identity(), centre.carried));
+  relative.carried = carried_sum({}, pulled, carried_sum(result.carried, -Matrix3d::Identity(), centre.carried));
   return relative;
 }
 

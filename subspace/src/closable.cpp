@@ -9,6 +9,8 @@
 #include "orbifit/subspace/region_map.h"
 #include "orbifit/subspace/shared_axes.h"
 
+#include "vertex_places.h"
+
 namespace orbifit {
 
 namespace {
@@ -29,7 +31,8 @@ int most_points(const RegionMap& regions, const std::vector<char>& followed, con
   return static_cast<int>(std::max(kLeast, product));
 }
 
-bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& regions,
+// \param sets places of the vertices
+bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& regions, const std::vector<int>& sets,
             const std::vector<char>& followed) {
   GroupWords words(regions, false);
   ClosureOptions options;
@@ -39,9 +42,13 @@ bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& re
   for (std::size_t i = 0; i < faces.size(); i += step) {
     const int face = faces[i];
     const Eigen::Vector3d centroid = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
-    options.most_points = most_points(regions, followed, regions.regions_of_face(face));
+    const int vertex = mesh.faces(face, 0);
+    const int set = sets[static_cast<std::size_t>(vertex)];
     try {
+      options.most_points = most_points(regions, followed, regions.regions_of_face(face));
       orbit_of(centroid, regions.set_of_face(face), regions, words, options);
+      options.most_points = most_points(regions, followed, regions.set_places(set));
+      orbit_of(mesh.vertices.row(vertex).transpose(), set, regions, words, options);
     } catch (const InputError&) {  // the orbit has more points than it may
       return false;
     }
@@ -49,26 +56,62 @@ bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& re
   return true;
 }
 
+// A followed region with an element that takes the continuous region `number`, or what they have in common, to no
+// followed region; -1: none. Its circles would become circles about an axis that nothing names.
+int without_image(const RegionMap& regions, int number, const std::vector<char>& followed) {
+  const auto is_followed = [&](int place) { return followed[static_cast<std::size_t>(place)] != 0; };
+  for (const int other : regions.meeting(number)) {
+    if (other >= regions.count() || !is_followed(other)) continue;
+    for (std::size_t e = 0; e < regions.elements(other).size(); ++e) {
+      if (std::ranges::none_of(regions.images_of(number, other, static_cast<int>(e)), is_followed)) return other;
+    }
+  }
+  return -1;
+}
+
+// Until none is left without image.
+void drop_without_image(const RegionMap& regions, std::vector<char>& followed, const RunContext& context) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int i = 0; i < regions.count(); ++i) {
+      if (followed[static_cast<std::size_t>(i)] == 0 || regions.continuum(i) == nullptr) continue;
+      const int other = without_image(regions, i, followed);
+      if (other < 0) continue;
+      followed[static_cast<std::size_t>(i)] = 0;
+      changed = true;
+      context.message("left out region \"" + regions.name(i) + "\": the group of \"" + regions.name(other) +
+                      "\" takes it where there is no region of its kind");
+    }
+  }
+}
+
 }  // namespace
 
 SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
   const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance);
   const RegionMap regions(mesh, annotation, context);
+  const std::vector<int> sets = sets_of_vertices(mesh, regions);
   std::vector<char> followed(static_cast<std::size_t>(regions.places()), 0);
   SymmetryAnnotation result = annotation;
   result.regions.clear();
   result.patterns.clear();
+  std::vector<char> wanted = followed;
+  std::fill_n(wanted.begin(), annotation.regions.size(), 1);
+  drop_without_image(regions, wanted, context);
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
+    if (wanted[i] == 0) continue;
     context.progress("closure", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
     followed[i] = 1;
-    if (!closes(mesh, annotation.regions[i].faces, regions, followed)) {
+    if (!closes(mesh, annotation.regions[i].faces, regions, sets, followed)) {
       followed[i] = 0;
       context.message("left out region \"" + regions.name(static_cast<int>(i)) + "\" (" +
                       annotation.regions[i].group.symbol() +
                       "): its group does not close with those of larger regions");
-      continue;
     }
-    result.regions.push_back(annotation.regions[i]);
+  }
+  drop_without_image(regions, followed, context);
+  for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
+    if (followed[i] != 0) result.regions.push_back(annotation.regions[i]);
   }
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) {
     const Pattern& pattern = annotation.patterns[i];
@@ -76,7 +119,7 @@ SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected
     const auto mark = [&](char value) { std::fill_n(first, pattern.instances.size(), value); };
     mark(1);
     const bool fits = std::ranges::all_of(pattern.instances, [&](const PatternInstance& instance) {
-      return closes(mesh, instance.faces, regions, followed);
+      return closes(mesh, instance.faces, regions, sets, followed);
     });
     if (!fits) {
       mark(0);

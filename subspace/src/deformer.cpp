@@ -6,12 +6,13 @@
 
 #include <Eigen/Cholesky>
 
-#include "handle_rows.h"
-#include "kernels.h"
-#include "moving_solve.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/mesh_laplacian.h"
 #include "orbifit/subspace/point_laplacian.h"
+
+#include "handle_rows.h"
+#include "kernels.h"
+#include "moving_solve.h"
 #include "quotient.h"
 
 namespace orbifit {

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "orbifit/subspace/carried_regions.h"
 
 #include "plain_lift.h"
 #include "vertex_grid.h"
+#include "vertex_places.h"
 
 namespace orbifit {
 
@@ -19,6 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kDoublet = 1e-6;  // of the diagonal, as for vertices
+constexpr double kMet = 1e-9;      // of the diagonal: a vertex this near an image is the image
 
 // The places that hold a vertex, as its orbit has them.
 int set_of_vertex(const VertexOrbits& orbits, int vertex) {
@@ -45,14 +48,10 @@ class FieldEvaluator {
     if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
     closure_.doublet = kDoublet * subspace.diagonal;
     if (grid != nullptr && subspace.lift_kind == LiftKind::orbit) {
-      closure_.set_at = [this, grid](const Vector3d& place) {
-        int set = -1;
-        grid->visit(place, [&](int vertex) {
-          const int here = set_of_vertex(subspace_.orbits, vertex);
-          set = set < 0 ? here : subspace_.regions->joined(set, here);
-        });
-        return set;
-      };
+      const auto count = static_cast<int>(subspace.orbits.followers.size());
+      for (int v = 0; v < count; ++v) sets_.push_back(set_of_vertex(subspace.orbits, v));
+      near_.emplace(*subspace.regions, *grid, sets_);
+      closure_.set_at = [this](const Vector3d& place, int carried) { return near_->set_at(place, carried); };
     }
     transports_ = basis_.transports;
   }
@@ -161,6 +160,8 @@ class FieldEvaluator {
   Eigen::VectorXd carriers_;
   CarriedTransports transports_;
   ClosureOptions closure_;
+  std::vector<int> sets_;  // of the vertices
+  std::optional<PlacesOfVertices> near_;
   PlainLift::Scratch scratch_;
   std::map<std::array<int, 4>, Seen> seen_;
 };
@@ -172,7 +173,7 @@ class PairResidual {
       : subspace_(subspace),
         mesh_(mesh),
         baked_(vertex_displacements(subspace, state)),
-        images_(mesh.vertices, kDoublet * subspace.diagonal),
+        images_(mesh.vertices, kMet * subspace.diagonal),
         grid_(mesh.vertices, subspace.orbits.tolerance),
         normals_(corner_normals(mesh)),
         field_(subspace, state, &grid_) {}
@@ -183,7 +184,11 @@ class PairResidual {
     const Vector3d place = mesh_.vertices.row(vertex).transpose();
     const Vector3d image = motion(place);
     int met = -1;
-    images_.visit(image, [&](int other) { met = met < 0 ? other : met; });
+    const auto& followers = subspace_.orbits.followers;
+    const int own = followers[static_cast<std::size_t>(vertex)].representative;
+    images_.visit(image, [&](int other) {
+      if (met < 0 && followers[static_cast<std::size_t>(other)].representative == own) met = other;
+    });
     Vector3d here = baked_.row(vertex).transpose();
     Vector3d there;
     if (met >= 0) {
@@ -213,7 +218,7 @@ class PairResidual {
   const Subspace& subspace_;
   const Mesh& mesh_;
   Points baked_;
-  VertexGrid images_;  // vertices that are images
+  VertexGrid images_;  // vertices that may be images
   VertexGrid grid_;    // vertices whose places are those of what is near
   Points normals_;
   FieldEvaluator field_;

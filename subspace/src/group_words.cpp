@@ -97,8 +97,7 @@ std::vector<Transport> GroupWords::transports(const std::vector<Eigen::Matrix3d>
   return result;
 }
 
-void GroupWords::append_transports(const std::vector<Eigen::Matrix3d>& rotations,
-                                   std::vector<Transport>& known) const {
+void GroupWords::append_transports(const std::vector<Eigen::Matrix3d>& rotations, std::vector<Transport>& known) const {
   if (rotations.empty()) {
     known.insert(known.end(), transports_.begin() + static_cast<std::ptrdiff_t>(known.size()), transports_.end());
     return;

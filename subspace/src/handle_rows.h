@@ -39,10 +39,10 @@ class HandleRows {
 
  private:
   struct Part {
-    std::size_t first = 0, count = 0;      // points
-    std::vector<Eigen::Index> columns;     // touched
-    Eigen::MatrixXd rows;                  // 3 count by touched
-    double weight = 0;                     // of each point
+    std::size_t first = 0, count = 0;   // points
+    std::vector<Eigen::Index> columns;  // touched
+    Eigen::MatrixXd rows;               // 3 count by touched
+    double weight = 0;                  // of each point
   };
   std::vector<Part> parts_;
   std::vector<int> vertices_;

@@ -5,8 +5,8 @@
 
 namespace orbifit {
 
-/// The innermost loops of the lift and of the solver, on plain arrays. They are compiled twice, for any processor of the
-/// architecture and for those with registers of four doubles; kernels() chooses once, when the program starts.
+/// The innermost loops of the lift and of the solver, on plain arrays. They are compiled twice, for any processor of
+/// the architecture and for those with registers of four doubles; kernels() chooses once, when the program starts.
 struct Kernels {
   /// For blocks begin ... end - 1 of eight rows each: the rows' sums over the block's entries e of
   /// weight[8 e + lane] * atoms[4 atom[e] ...], written to result[4 (8 block + lane) ...], the fourth left alone.

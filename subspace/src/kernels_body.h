@@ -40,8 +40,7 @@ void carried_copies(const int* follower, const double* sources, const double* co
   const auto copy = [&](std::size_t i, double* to) {
     const double* source = sources + 4 * static_cast<std::size_t>(follower[3 * i]);
     const auto* copier = reinterpret_cast<const Four*>(copiers + 16 * static_cast<std::size_t>(follower[3 * i + 1]));
-    *reinterpret_cast<Four*>(to) =
-        source[0] * copier[0] + source[1] * copier[1] + (source[2] * copier[2] + copier[3]);
+    *reinterpret_cast<Four*>(to) = source[0] * copier[0] + source[1] * copier[1] + (source[2] * copier[2] + copier[3]);
   };
   // A vector of four spills into the next row, which is written after; not so the last.
   for (std::size_t i = begin; i + 1 < end; ++i) copy(i, result + 3 * i);

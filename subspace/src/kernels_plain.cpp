@@ -1,5 +1,4 @@
 #include "kernels.h"
-
 #include "kernels_body.h"
 
 namespace orbifit {

@@ -39,8 +39,8 @@ std::optional<Powers> power(const Motion& generator, const Motion& instance, con
   return std::nullopt;
 }
 
-std::optional<Powers> combination(const std::vector<Motion>& generators, const Motion& instance,
-                                  const Vector3d& centre, double reach, double tolerance) {
+std::optional<Powers> combination(const std::vector<Motion>& generators, const Motion& instance, const Vector3d& centre,
+                                  double reach, double tolerance) {
   Eigen::MatrixXd steps(3, static_cast<Eigen::Index>(generators.size()));
   for (std::size_t g = 0; g < generators.size(); ++g) {
     if ((generators[g].linear - Matrix3d::Identity()).norm() > 1e-6) return std::nullopt;
@@ -74,9 +74,8 @@ Lattice lattice_of(const Mesh& mesh, const Pattern& pattern) {
   for (const PatternInstance& instance : pattern.instances) {
     if (!lattice.regular) break;
     const bool translations = pattern.generators.size() > 1;
-    const auto found = translations
-                           ? combination(pattern.generators, instance.motion, centre, reach, tolerance)
-                           : power(pattern.generators[0], instance.motion, centre, reach, tolerance, most);
+    const auto found = translations ? combination(pattern.generators, instance.motion, centre, reach, tolerance)
+                                    : power(pattern.generators[0], instance.motion, centre, reach, tolerance, most);
     lattice.regular = found.has_value();
     if (!found) break;
     lattice.motions.push_back(found->motion);

@@ -17,20 +17,29 @@ constexpr std::size_t kFewPoints = 48;
 constexpr double kTurnOfOneRadian = 1;
 
 // Finds points closer than the doublet distance: few are searched one by one; many by cells as wide as that distance,
-// so that neighbours lie in 27 cells.
+// so that neighbours lie in 27 cells. Of points of other places, as where parts touch, none is meant: those of the very
+// same places come first, then those that lack some or have others besides.
 class Doublets {
  public:
-  Doublets(double distance, const std::vector<OrbitPoint>& points) : distance_(distance), points_(points) {}
+  Doublets(double distance, const std::vector<OrbitPoint>& points, const RegionMap& regions)
+      : distance_(distance), points_(points), regions_(regions) {}
 
-  int find(const Eigen::Vector3d& position) {
+  int find(const Eigen::Vector3d& position, int set) {
     double best_distance = distance_;
+    bool best_same = false;
     int best = -1;
     const auto consider = [&](int index) {
-      const double d = (points_[static_cast<std::size_t>(index)].position - position).norm();
-      if (d < best_distance || (d == best_distance && index < best)) {
-        best = index;
-        best_distance = d;
-      }
+      const OrbitPoint& point = points_[static_cast<std::size_t>(index)];
+      const double d = (point.position - position).norm();
+      if (d > distance_) return;
+      const bool same = point.set == set;
+      if (best_same && !same) return;
+      const bool nearer = d < best_distance || (d == best_distance && index < best);
+      if (!nearer && same == best_same) return;
+      if (!same && !regions_.comparable(point.set, set)) return;
+      best = index;
+      best_distance = d;
+      best_same = same;
     };
     if (points_.size() <= kFewPoints) {
       for (std::size_t k = 0; k < points_.size(); ++k) consider(static_cast<int>(k));
@@ -59,6 +68,7 @@ class Doublets {
 
   double distance_;
   const std::vector<OrbitPoint>& points_;
+  const RegionMap& regions_;
   std::size_t filed_ = 0;
   std::unordered_multimap<std::size_t, int> cells_;
 };
@@ -66,7 +76,7 @@ class Doublets {
 class Closure {
  public:
   Closure(const RegionMap& regions, GroupWords& words, const ClosureOptions& options)
-      : regions_(regions), words_(words), options_(options), doublets_(options.doublet, orbit_.points) {}
+      : regions_(regions), words_(words), options_(options), doublets_(options.doublet, orbit_.points, regions) {}
 
   Orbit run(const Eigen::Vector3d& seed, int set) {
     seed_ = seed;
@@ -184,8 +194,9 @@ class Closure {
     const int arrival = regions_.arrival(place, element);
     Eigen::Vector3d position = motion(from.position);
     int word = words_.extended(from.word, place, element, motion);
-    int set = -1;
-    int known = doublets_.find(position);
+    const int carried = regions_.carried_set(from.set, place, element);
+    int set = carried;
+    int known = doublets_.find(position, carried);
     if (known < 0) {
       set = set_at(position, from.set, place, element, word);
       const int turning = continuous_place(set);
@@ -194,7 +205,7 @@ class Closure {
         const Motion back = inverse(continuum.turn_to(position));
         position = settled(back(position), continuum);
         word = words_.extended(word, turning, -1, back);
-        known = doublets_.find(position);
+        known = doublets_.find(position, set);
       }
     }
     const Motion& whole = words_.motion(word);
@@ -204,16 +215,49 @@ class Closure {
       orbit_.stabilisers.push_back(whole);
     }
     if (known >= 0) {
-      meet(known, word, arrival, regions_.carried_set(from.set, place, element));
-      return;
+      meet(known, word, arrival, carried);
+    } else {
+      if (static_cast<int>(orbit_.points.size()) >= options_.most_points) {
+        refuse(place, last_place_ < 0 ? place : last_place_);
+      }
+      known = static_cast<int>(orbit_.points.size());
+      add({position, word, set}, regions_.with(0, arrival));
     }
-    if (static_cast<int>(orbit_.points.size()) >= options_.most_points) {
-      refuse(place, last_place_ < 0 ? place : last_place_);
-    }
-    add({position, word, set}, regions_.with(0, arrival));
+    turn_alike(from, place, element, motion, known);
   }
 
-  // Where parts touch, points of different places meet.
+  // A motion that takes one continuous group to another: to turn by the one, go, and turn back by the other must be to
+  // go. Finite groups have all their elements tried, so that they need no such thing said.
+  void turn_alike(const OrbitPoint& from, int place, int element, const Motion& motion, int there) {
+    const int here_turning = continuous_place(from.set);
+    const int there_turning = continuous_place(orbit_.points[static_cast<std::size_t>(there)].set);
+    if (here_turning < 0 || there_turning < 0 || (place == here_turning && place == there_turning)) return;
+    const Continuum& here = *regions_.continuum(here_turning);
+    const Continuum& other = *regions_.continuum(there_turning);
+    if (here.spherical != other.spherical) return;
+    const auto demand = [&](const Eigen::Vector3d& axis, const Eigen::Vector3d& other_axis) {
+      const Eigen::Vector3d taken = motion.linear.determinant() * motion.linear * axis;
+      const double angle = taken.dot(other_axis) < 0 ? -kTurnOfOneRadian : kTurnOfOneRadian;
+      int word = words_.extended(from.word, here_turning, -1, Motion::rotation(axis, kTurnOfOneRadian, here.centre));
+      word = words_.extended(word, place, element, motion);
+      word = words_.extended(word, there_turning, -1, Motion::rotation(other_axis, -angle, other.centre));
+      const Eigen::Vector3d image = motion(from.position);
+      const Motion back = inverse(other.turn_to(image));
+      word = words_.extended(word, there_turning, -1, back);
+      if (!words_.same(orbit_.points[static_cast<std::size_t>(there)].word, word)) {
+        orbit_.constraints.push_back({there, word});
+      }
+    };
+    if (!here.spherical) {
+      demand(here.axis, other.axis);
+      return;
+    }
+    for (const Eigen::Vector3d& axis : {here.axis, here.reference}) {
+      demand(axis, motion.linear.determinant() * motion.linear * axis);
+    }
+  }
+
+  // A point that turns out to lie in more places than known has more images.
   void meet(int known, int word, int arrival, int carried) {
     OrbitPoint& point = orbit_.points[static_cast<std::size_t>(known)];
     int& closed = closed_[static_cast<std::size_t>(known)];
@@ -231,8 +275,8 @@ class Closure {
 
   // The motion carries the point's places along; what else is there, the surface tells.
   int set_at(const Eigen::Vector3d& position, int from, int place, int element, int word) const {
-    const int known = options_.set_at ? options_.set_at(position) : -1;
-    if (known >= 0) return regions_.joined(known, regions_.carried_set(from, place, element));
+    const int known = options_.set_at ? options_.set_at(position, regions_.carried_set(from, place, element)) : -1;
+    if (known >= 0) return known;
     const Eigen::Vector3d normal = words_.motion(word).linear * (orbit_.turn.linear.transpose() * options_.normal);
     return regions_.set_of_image(from, place, element, position, normal);
   }

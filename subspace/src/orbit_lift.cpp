@@ -10,6 +10,7 @@
 
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
+
 #include "plain_lift.h"
 
 namespace orbifit {
@@ -25,7 +26,7 @@ using Row = std::vector<std::pair<int, double>>;
 
 // A random displacement of the basis, by which atoms are told apart.
 struct Fingerprint {
-  Points seeds;     // by orbit
+  Points seeds;  // by orbit
   Eigen::VectorXd carriers;
 };
 
@@ -87,7 +88,8 @@ class AtomTable {
   // Where the number of an atom is kept: by word and sample for the many, by all of it for the few.
   int& place_for(const LiftAtom& atom) {
     if (atom.kind != LiftAtom::Kind::full) {
-      return pulled_parts_.try_emplace({atom.word, atom.sample, static_cast<int>(atom.kind), atom.place}, -1).first->second;
+      return pulled_parts_.try_emplace({atom.word, atom.sample, static_cast<int>(atom.kind), atom.place}, -1)
+          .first->second;
     }
     const auto word = static_cast<std::size_t>(atom.word);
     if (pulled_.size() <= word) pulled_.resize(word + 1);
@@ -109,9 +111,7 @@ class AtomTable {
     return add(atom);
   }
 
-  static bool relative(LiftAtom::Kind kind) {
-    return kind == LiftAtom::Kind::axial || kind == LiftAtom::Kind::across;
-  }
+  static bool relative(LiftAtom::Kind kind) { return kind == LiftAtom::Kind::axial || kind == LiftAtom::Kind::across; }
 
   int add(const LiftAtom& atom) {
     const Look seen = look(atom);

@@ -10,10 +10,10 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kCutOff = 0.001;      // of a Gaussian (paper, section 5)
-constexpr double kOutside = 1e-6;      // what a place leaves of samples outside, where nothing else is at hand
-constexpr double kNegligible = 1e-5;   // of the largest weight
-constexpr double kBand = 1;            // width of the fading band, in radii
+constexpr double kCutOff = 0.001;     // of a Gaussian (paper, section 5)
+constexpr double kOutside = 1e-6;     // what a place leaves of samples outside, where nothing else is at hand
+constexpr double kNegligible = 1e-5;  // of the largest weight
+constexpr double kBand = 1;           // width of the fading band, in radii
 constexpr int kMostCells = 1 << 22;
 
 const double kReach = std::sqrt(-2 * std::log(kCutOff));  // in standard deviations
@@ -190,8 +190,8 @@ void PlainLift::ring_terms(const Eigen::Vector3d& point, int place, Scratch& scr
     squared /= sigma * sigma;
     const double kappa = distance * other_distance / (sigma * sigma);
     const GaussianAverage average = continuum.spherical ? sphere_average(kappa) : circle_average(kappa);
-    const double copies = sampling_.copy_counts[static_cast<std::size_t>(sample)] *
-                          sampling_.shares[static_cast<std::size_t>(sample)];
+    const double copies =
+        sampling_.copy_counts[static_cast<std::size_t>(sample)] * sampling_.shares[static_cast<std::size_t>(sample)];
     const double weight = (std::exp(-0.5 * squared) - kCutOff) * average.weight * copies * factor(sample, scratch);
     nearest = std::min(nearest, squared);
     rings.push_back({sample, weight, average.ratio, squared});

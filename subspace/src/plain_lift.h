@@ -22,10 +22,10 @@ struct LiftTerm {
 };
 
 /// Gaussians about the samples as in the paper (section 5, "Lifting the displacements"), but a sample that lies outside
-/// a place fades out as the point comes near that place: its part is multiplied by a smooth step of the point's distance
-/// from the place, over one radius, and is next to nothing inside. So what happens in a place depends on the samples of
-/// that place alone, and goes over continuously into its surroundings. Under a continuous group the Gaussians are
-/// averaged over the circle or sphere in closed form (method notes 2.3).
+/// a place fades out as the point comes near that place: its part is multiplied by a smooth step of the point's
+/// distance from the place, over one radius, and is next to nothing inside. So what happens in a place depends on the
+/// samples of that place alone, and goes over continuously into its surroundings. Under a continuous group the
+/// Gaussians are averaged over the circle or sphere in closed form (method notes 2.3).
 class PlainLift {
  public:
   /// \param faded false: the paper's lift, blind for the places
@@ -33,8 +33,8 @@ class PlainLift {
 
   /// Room for one caller at a time.
   struct Scratch {
-    std::vector<double> factors;           // by set
-    std::vector<int> stamps;               // by set
+    std::vector<double> factors;               // by set
+    std::vector<int> stamps;                   // by set
     std::vector<std::pair<int, double>> near;  // places at hand and what they leave of samples outside
     std::vector<LiftTerm> terms;
     int stamp = 0;
@@ -57,9 +57,9 @@ class PlainLift {
   const SymmetricSampling& sampling_;
   const RegionMap& regions_;
   bool faded_;
-  std::vector<int> partial_places_;             // those that do not hold the whole mesh
-  std::vector<std::vector<int>> rings_;         // canonical samples, by place
-  double width_;                                // of the grid's cells
+  std::vector<int> partial_places_;      // those that do not hold the whole mesh
+  std::vector<std::vector<int>> rings_;  // canonical samples, by place
+  double width_;                         // of the grid's cells
   Eigen::Vector3d origin_;
   std::array<int, 3> cells_{};
   std::vector<int> first_in_cell_, samples_by_cell_;

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels.h"
 #include "orbifit/model/random.h"
 #include "orbifit/subspace/carried_regions.h"
+
+#include "kernels.h"
 
 namespace orbifit {
 
@@ -210,10 +211,9 @@ void Quotient::rotate(const Eigen::VectorXd& q, std::vector<Matrix3d>& rotations
   for (std::size_t k = 0; k < counts_.size(); ++k) {
     if (!(sizes_[k] > 0)) continue;
     double sum[12];
-    kernels().gather_blocks(covariance_.data() + 12 * static_cast<std::ptrdiff_t>(first_[k]), column_.data() + first_[k],
-                  first_[k + 1] - first_[k], q.data(), sum);
-    const Matrix3d covariance =
-        rest_[k] + Eigen::Map<const Matrix3d>(sum) + kAnchor * sizes_[k] * rotations[k];
+    kernels().gather_blocks(covariance_.data() + 12 * static_cast<std::ptrdiff_t>(first_[k]),
+                            column_.data() + first_[k], first_[k + 1] - first_[k], q.data(), sum);
+    const Matrix3d covariance = rest_[k] + Eigen::Map<const Matrix3d>(sum) + kAnchor * sizes_[k] * rotations[k];
     rotations[k] = nearest_rotation(covariance, rotations[k]);
   }
 }

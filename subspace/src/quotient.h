@@ -10,10 +10,10 @@
 
 namespace orbifit {
 
-/// The Laplace energy and its co-rotation in coordinates q, once for samples that behave alike (method notes, section 3).
-/// Samples of one orbit whose neighbourhoods are images of one another have rotations that are conjugates and Laplace
-/// rows that are images, so one of them stands for all, weighted by their number. Which do is found by comparing them
-/// under random displacements, so where a border makes neighbourhoods differ they are kept apart.
+/// The Laplace energy and its co-rotation in coordinates q, once for samples that behave alike (method notes, section
+/// 3). Samples of one orbit whose neighbourhoods are images of one another have rotations that are conjugates and
+/// Laplace rows that are images, so one of them stands for all, weighted by their number. Which do is found by
+/// comparing them under random displacements, so where a border makes neighbourhoods differ they are kept apart.
 class Quotient {
  public:
   Quotient(const Subspace& subspace, const Corotation& corotation);
@@ -34,19 +34,19 @@ class Quotient {
   double energy(const Eigen::VectorXd& q, const std::vector<Eigen::Matrix3d>& rotations) const;
 
  private:
-  std::vector<double> counts_;             // samples in each class
-  std::vector<double> sizes_;              // sum of squared lengths of the neighbourhood's edges
-  std::vector<Eigen::Matrix3d> rest_;      // covariance at rest
-  std::vector<Eigen::Vector3d> delta_;     // Laplace coordinates at rest
-  std::vector<int> first_;                 // of each class's columns, and their number at the end
+  std::vector<double> counts_;          // samples in each class
+  std::vector<double> sizes_;           // sum of squared lengths of the neighbourhood's edges
+  std::vector<Eigen::Matrix3d> rest_;   // covariance at rest
+  std::vector<Eigen::Vector3d> delta_;  // Laplace coordinates at rest
+  std::vector<int> first_;              // of each class's columns, and their number at the end
   std::vector<int> column_;
-  std::vector<double> covariance_;         // 12 a column: what a unit of the coordinate adds, 9 column-major and padding
-  std::vector<double> laplace_;            // 4 a column: Laplace coordinates of a unit of the coordinate, and padding
+  std::vector<double> covariance_;  // 12 a column: what a unit of the coordinate adds, 9 column-major and padding
+  std::vector<double> laplace_;     // 4 a column: Laplace coordinates of a unit of the coordinate, and padding
   Eigen::Index freedom_ = 0;
 };
 
-/// The rotation R in SO(3) nearest to a matrix, that is the largest trace of R^T C, by Newton's method on the group from
-/// a rotation nearby; where that does not find the maximum, by singular values.
+/// The rotation R in SO(3) nearest to a matrix, that is the largest trace of R^T C, by Newton's method on the group
+/// from a rotation nearby; where that does not find the maximum, by singular values.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& start);
 
 }  // namespace orbifit

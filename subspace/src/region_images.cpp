@@ -9,8 +9,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kSamePlace = 1e-3;  // of the diagonal
-constexpr double kTie = 1e-6;        // of the diagonal: places of the same faces
+constexpr double kTie = 1e-6;  // of the diagonal: places of the same faces
 
 bool is_identity(const Motion& motion) {
   return motion.linear.isIdentity(0) && motion.translation.isZero(0);
@@ -34,7 +33,7 @@ bool RegionMap::around(int outer, int inner) const {
   return true;
 }
 
-RegionMap::Images RegionMap::images_of(int place, int element) const {
+RegionMap::Images RegionMap::find_images(int place, int element) const {
   Images result;
   const int arrival = this->arrival(place, element);
   const Motion& motion = at(place).motions[static_cast<std::size_t>(element)];
@@ -63,12 +62,12 @@ RegionMap::Images RegionMap::images_of(int place, int element) const {
       continue;
     }
     const SurfaceMoments piece = common_moments(place, p);
-    double best = kSamePlace;
+    double best = same_place_;
     std::vector<std::pair<double, int>> found;
     for (std::size_t k = 0; k < there.size(); ++k) {
       if (!alike(p, there[k])) continue;
       const double miss = mismatch(piece, told, common[k], size_);
-      if (miss <= kSamePlace) found.emplace_back(miss, there[k]);
+      if (miss <= same_place_) found.emplace_back(miss, there[k]);
       best = std::min(best, miss);
     }
     for (const auto& [miss, q] : found) {
@@ -86,8 +85,16 @@ RegionMap::Images& RegionMap::images(int place, int element) const {
   auto& images = images_[static_cast<std::size_t>(place)];
   if (images.empty()) images.resize(elements(place).size());
   auto& entry = images[static_cast<std::size_t>(element)];
-  if (!entry) entry = std::make_unique<Images>(images_of(place, element));
+  if (!entry) entry = std::make_unique<Images>(find_images(place, element));
   return *entry;
+}
+
+std::vector<int> RegionMap::images_of(int other, int place, int element) const {
+  std::vector<int> result;
+  for (const auto& [from, to] : images(place, element).pairs) {
+    if (from == other) result.push_back(to);
+  }
+  return result;
 }
 
 int RegionMap::carried_set(int set, int place, int element) const {

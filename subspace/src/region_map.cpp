@@ -19,8 +19,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
-constexpr double kOnAxis = 1e-12;   // of a point's offset
+constexpr double kSameLine = 1e-7;   // of the diagonal, and radians
+constexpr double kOnAxis = 1e-12;    // of a point's offset
+constexpr double kSamePlace = 1e-3;  // of the diagonal, at least
 constexpr int kMostFold = 120;
 
 // One element of each component of a continuous group; mirrors contain the reference direction.
@@ -126,6 +127,7 @@ RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, con
   size_ = diagonal(mesh.vertices);
   surfaces_.resize(places_.size());
   images_.resize(places_.size());
+  same_place_ = std::max(kSamePlace, 2 * annotation.tolerance);  // the region and the place are both that far off
   origin_ = bounding_box_centre(mesh.vertices);
   moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
   meeting_.resize(places_.size());

@@ -135,15 +135,40 @@ bool overlap(const std::vector<int>& a, const std::vector<int>& b) {
   return false;
 }
 
-// The region rebuilt at the new place, or as it was if that is farther than allowed.
-Region moved(const Region& region, const Placement& before, const Placement& after, double tolerance, double size) {
-  const double distance =
-      (after.centre - before.centre).norm() + before.reach * angle_of(after.frame * before.frame.transpose());
-  if (distance > 2 * tolerance) return region;
-  Region result = make_region(region.group, after.centre, after.frame, region.faces, region.name);
+// Projects onto the directions in which the group's centre is determined: a mirror's plane and a polar axis leave it
+// free along them.
+Matrix3d pinned(const Region& region) {
+  using Family = PointGroup::Family;
+  const Vector3d axis = region.axis.normalized();
+  switch (region.group.family) {
+    case Family::Cs:
+      return axis * axis.transpose();
+    case Family::Cn:
+    case Family::Cnv:
+    case Family::Cinf:
+    case Family::Cinfv:
+      return Matrix3d::Identity() - axis * axis.transpose();
+    default:
+      return Matrix3d::Identity();
+  }
+}
+
+// Whether the motion takes the group's fixed points to themselves, to `tolerance` at the centre and `most` radians.
+bool keeps_fixed_points(const Motion& motion, const Region& region, double tolerance, double most) {
+  const Matrix3d across = pinned(region);
+  const Vector3d moved = motion(region.centre) - region.centre;
+  if ((across * moved).norm() > tolerance) return false;
+  if (across.isIdentity(0)) return true;
+  const Vector3d axis = region.axis.normalized();
+  return std::abs(axis.dot(motion.linear * axis)) > std::cos(most);
+}
+
+// The region rebuilt at the new place, `distance` away as a fraction of the diagonal.
+Region moved(const Region& region, const Placement& now, double distance) {
+  Region result = make_region(region.group, now.centre, now.frame, region.faces, region.name);
   result.id = region.id;
   result.parent = region.parent;
-  result.residual = {region.residual.rms + distance / size, region.residual.max + distance / size};
+  result.residual = {region.residual.rms + distance, region.residual.max + distance};
   return result;
 }
 
@@ -208,16 +233,24 @@ SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annota
     } else {
       Placement after = *before;
       std::vector<Motion> stabiliser;
+      const double most = std::min(kMostTurn, 2 * reach / std::max(before->reach, reach));
       for (std::size_t a = 0; a < b; ++a) {
         if (!placements[a] || !overlap(regions[a].faces, region.faces)) continue;
         for (const Motion& element : placements[a]->elements) {
-          if ((element(before->centre) - before->centre).norm() <= 2 * reach) stabiliser.push_back(element);
+          if (keeps_fixed_points(element, region, 2 * reach, most)) stabiliser.push_back(element);
         }
       }
-      after.centre = fixed_point(before->centre, stabiliser);
-      const double most = std::min(kMostTurn, 2 * reach / std::max(before->reach, reach));
-      after.frame = settling_turn(directions(before->elements), stabiliser, most) * before->frame;
-      region = moved(region, *before, after, reach, size);
+      const Matrix3d turn = settling_turn(directions(before->elements), stabiliser, most);
+      after.frame = turn * before->frame;
+      // Turned about the point of its axis or plane that comes nearest to being fixed; then moved across them.
+      const Matrix3d across = pinned(region);
+      const Matrix3d across_now = turn * across * turn.transpose();
+      const Vector3d fixed = fixed_point(before->centre, stabiliser);
+      const Vector3d pivot = fixed - across * (fixed - before->centre);
+      const Vector3d centre = pivot + across_now * (fixed - pivot);
+      after.centre = before->centre + across_now * (centre - before->centre);
+      const double distance = (centre - pivot).norm() + before->reach * angle_of(turn);
+      if (distance <= 2 * reach) region = moved(region, after, distance / size);
     }
     placements[b] = placement_of(mesh, region);
   }

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "kernels.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/carried_regions.h"
+
+#include "kernels.h"
 
 namespace orbifit {
 
@@ -53,9 +54,9 @@ void add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, int re
 
 // Everything that one lift needs of the state.
 struct LiftState {
-  std::vector<double> atoms;     // four doubles each
+  std::vector<double> atoms;  // four doubles each
   Eigen::VectorXd carriers;
-  std::vector<double> copiers;   // sixteen doubles a word: frame's columns and shift
+  std::vector<double> copiers;  // sixteen doubles a word: frame's columns and shift
 };
 
 LiftState lift_state(const CarriedBasis& basis, const SubspaceState& state) {
@@ -93,10 +94,9 @@ Vector3d finished(const Subspace& subspace, const CarriedBasis& basis, const Ver
   const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
   const bool floating = subspace.mode != GroupMode::fixed;
   const Transport rest = step_transport(*subspace.regions, place, -1, motion, floating);
-  const Transport now =
-      turned ? step_transport(*subspace.regions, place, -1, motion, floating,
-                              basis.rotations[static_cast<std::size_t>(place)])
-             : rest;
+  const Transport now = turned ? step_transport(*subspace.regions, place, -1, motion, floating,
+                                                basis.rotations[static_cast<std::size_t>(place)])
+                               : rest;
   return carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers);
 }
 
@@ -133,8 +133,7 @@ Motion carried_motion(const Subspace& subspace, const SubspaceState& state, int 
   if (!basis.rotations.empty()) {
     motion = Motion::about(basis.rotations[static_cast<std::size_t>(region)], centre);
   }
-  motion.translation +=
-      basis.carried.middleRows<3>(3 * region) * state.q + basis.carried_offset.segment<3>(3 * region);
+  motion.translation += basis.carried.middleRows<3>(3 * region) * state.q + basis.carried_offset.segment<3>(3 * region);
   return motion;
 }
 
@@ -205,8 +204,7 @@ void add_vertex_row(const Subspace& subspace, int vertex, const Vector3d& direct
   };
   if (follower.turn >= 0) {
     const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
-    const Transport step =
-        step_transport(*subspace.regions, place, -1, motion, subspace.mode != GroupMode::fixed);
+    const Transport step = step_transport(*subspace.regions, place, -1, motion, subspace.mode != GroupMode::fixed);
     add_carried(step.carried);
     along = step.frame.transpose() * along;
   }
@@ -260,7 +258,8 @@ SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, cons
       pattern.instances[a].motion.translation += moved(subspace.regions->instance_shift(first + static_cast<int>(a)));
     }
     for (std::size_t g = 0; g < pattern.generators.size(); ++g) {
-      pattern.generators[g].translation += moved(subspace.regions->generator_shift(static_cast<int>(i), static_cast<int>(g)));
+      pattern.generators[g].translation +=
+          moved(subspace.regions->generator_shift(static_cast<int>(i), static_cast<int>(g)));
     }
   }
   return result;

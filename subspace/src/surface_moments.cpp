@@ -32,7 +32,8 @@ std::vector<SurfaceMoments> moments_of_sets(const Mesh& mesh, const std::vector<
 }
 
 double mismatch(const SurfaceMoments& piece, const Motion& motion, const SurfaceMoments& other, double size) {
-  constexpr double kSameArea = 0.01;
+  constexpr double kSameArea = 0.03;
+  constexpr double kNear = 0.5;  // of its width: closer than neighbours of its kind
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (!(piece.area > 0 && other.area > 0)) return kFar;
   if (std::abs(piece.area - other.area) > kSameArea * std::max(piece.area, other.area)) return kFar;
@@ -46,6 +47,7 @@ double mismatch(const SurfaceMoments& piece, const Motion& motion, const Surface
   // A difference of squares, as a length.
   const double width = std::sqrt(std::max(turned.trace(), spread(other).trace()));
   const double difference = width > 0 ? (turned - spread(other)).norm() / width : 0;
+  if (distance > kNear * width) return kFar;
   return (distance + difference) / size;
 }
 

@@ -104,7 +104,8 @@ class CarrierSystem {
     const VectorXd constant = constraints.constant + constraints.seeds * space.offset;
     const MatrixXd gram = pure.transpose() * pure;
     const VectorXd side = pure.transpose() * constant;
-    if (constant.size() > 0 && constant.cwiseAbs().maxCoeff() > 0) rows_.push_back({constraints.carriers, pure, constant});
+    if (constant.size() > 0 && constant.cwiseAbs().maxCoeff() > 0)
+      rows_.push_back({constraints.carriers, pure, constant});
     if (gram.size() == 0 || gram.cwiseAbs().maxCoeff() < 1e-20) return;
     for (std::size_t i = 0; i < constraints.carriers.size(); ++i) {
       side_.segment<3>(3 * constraints.carriers[i]) += side.segment<3>(3 * static_cast<Eigen::Index>(i));
@@ -186,8 +187,7 @@ Binding binding_of(const std::vector<WordPair>& pairs, const CarriedTransports& 
   binding.kept = space.kept;
   binding.offset = space.offset;
   for (int k = 0; k < 3 && transports.turned(); ++k) {
-    binding.slope.col(k) =
-        solve_seed(constraints_of(pairs, transports, Vector3d::Unit(k))).offset - space.offset;
+    binding.slope.col(k) = solve_seed(constraints_of(pairs, transports, Vector3d::Unit(k))).offset - space.offset;
   }
   for (std::size_t i = 0; i < space.carriers.size(); ++i) {
     binding.bound.emplace_back(space.carriers[i], space.bound.middleCols<3>(3 * static_cast<Eigen::Index>(i)));

@@ -5,32 +5,13 @@
 #include <optional>
 
 #include "vertex_grid.h"
+#include "vertex_places.h"
 
 namespace orbifit {
 
 namespace {
 
 constexpr double kDoublet = 1e-6;  // of the diagonal
-
-// The places of all faces around each vertex's position.
-std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid) {
-  std::vector<int> own(static_cast<std::size_t>(mesh.vertices.rows()), 0);
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    const int set = regions.set_of_face(static_cast<int>(face));
-    for (const int vertex : mesh.faces.row(face)) {
-      int& here = own[static_cast<std::size_t>(vertex)];
-      if (here != set) here = regions.joined(here, set);
-    }
-  }
-  std::vector<int> result = own;
-  for (std::size_t v = 0; v < own.size(); ++v) {
-    grid.visit(mesh.vertices.row(static_cast<Eigen::Index>(v)).transpose(), [&](int other) {
-      const int set = own[static_cast<std::size_t>(other)];
-      if (set != result[v]) result[v] = regions.joined(result[v], set);
-    });
-  }
-  return result;
-}
 
 // Position along a curve that fills the box (Morton 1966): neighbours in space come to lie next to one another.
 std::uint64_t curve_position(const Eigen::Vector3d& unit) {
@@ -89,18 +70,12 @@ class OrbitBuilder {
         regions_(regions),
         words_(words),
         grid_(mesh.vertices, tolerance),
-        sets_(sets_of_vertices(mesh, regions, grid_)) {
+        sets_(sets_of_vertices(mesh, regions)),
+        near_(regions, grid_, sets_) {
     if (regions.places() > 1) normals_ = corner_normals(mesh);
     closure_.doublet = std::min(tolerance, kDoublet * diagonal(mesh.vertices));
     result_.tolerance = tolerance;
-    closure_.set_at = [this](const Eigen::Vector3d& place) {
-      int set = -1;
-      grid_.visit(place, [&](int vertex) {
-        const int here = sets_[static_cast<std::size_t>(vertex)];
-        set = set < 0 ? here : regions_.joined(set, here);
-      });
-      return set;
-    };
+    closure_.set_at = [this](const Eigen::Vector3d& place, int carried) { return near_.set_at(place, carried); };
     result_.followers.assign(sets_.size(), {-1, 0, -1});
     for (std::size_t v = 0; v < sets_.size(); ++v) {
       continuous_ = continuous_ || continuum_of(sets_[v]) >= 0;
@@ -162,18 +137,17 @@ class OrbitBuilder {
       result_.point_sets.push_back(point.set);
       const bool turned = continuum_of(point.set) >= 0;
       bool met = false;
+      const VertexGrid& grid = turned ? *canonical_grid_ : grid_;
+      const bool same_only = PlacesOfVertices(regions_, grid, sets_).has_same(point.position, point.set);
       const auto follow = [&](int other) {
         const auto w = static_cast<std::size_t>(other);
         if (continuous_ && (turn_of_vertex_[w] >= 0) != turned) return;
+        if (sets_[w] != point.set && (same_only || !regions_.comparable(sets_[w], point.set))) return;
         met = true;
         if (result_.followers[w].representative >= 0) return;
         result_.followers[w] = {number, point.word, continuous_ ? turn_of_vertex_[w] : -1};
       };
-      if (turned) {
-        canonical_grid_->visit(point.position, follow);
-      } else {
-        grid_.visit(point.position, follow);
-      }
+      grid.visit(point.position, follow);
       result_.images_are_vertices = result_.images_are_vertices && met;
     }
     if (result_.followers[v].representative < 0) {  // a rounding's width off its own canonical place
@@ -200,6 +174,7 @@ class OrbitBuilder {
   GroupWords& words_;
   VertexGrid grid_;
   std::vector<int> sets_;
+  PlacesOfVertices near_;
   Points normals_;
   ClosureOptions closure_;
   VertexOrbits result_;

@@ -42,8 +42,9 @@ struct ClosureOptions {
   const std::vector<char>* followed = nullptr;
   /// The surface's normal at the seed: tells apart parts that touch, back to back. Zero: unknown.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  /// The set of places of a known point at (nearly) this position; -1: not known, the nearest surface decides.
-  std::function<int(const Eigen::Vector3d&)> set_at;
+  /// The set of places of a known point at (nearly) this position, which the second set is to be part of; -1: not
+  /// known, the nearest surface decides.
+  std::function<int(const Eigen::Vector3d&, int)> set_at;
 };
 
 /// \param set the places that hold the seed

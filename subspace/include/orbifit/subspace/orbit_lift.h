@@ -29,16 +29,16 @@ struct LiftAtom {
 /// so exact in every region, partial, nested and overlapping ones too. Baked for one vertex an orbit, as scalar weights
 /// on the atoms' displacements; its images are carried copies.
 ///
-/// Eight representatives next to one another share one list of atoms, so that the weights stream through memory and eight
-/// sums go on at once.
+/// Eight representatives next to one another share one list of atoms, so that the weights stream through memory and
+/// eight sums go on at once.
 struct OrbitLift {
   static constexpr int kLanes = 8;
   std::vector<LiftAtom> atoms;
   std::vector<std::int64_t> first;  ///< of each block's entries, and their number at the end
   std::vector<std::uint16_t> atom;  ///< of each entry
-  std::vector<float> weight;        ///< kLanes of each entry: multiples of 2^-24, on full atoms and centres summing to 1
-  std::int64_t used = 0;            ///< weights that are not zero
-  Points rest;                      ///< #R by 3 when groups may be turned: position less the weighted atoms' positions
+  std::vector<float> weight;  ///< kLanes of each entry: multiples of 2^-24, on full atoms and centres summing to 1
+  std::int64_t used = 0;      ///< weights that are not zero
+  Points rest;                ///< #R by 3 when groups may be turned: position less the weighted atoms' positions
 
   std::size_t bytes() const { return weight.size() * sizeof(float) + atom.size() * sizeof(std::uint16_t); }
 
@@ -56,8 +56,8 @@ struct OrbitLift {
 };
 
 struct OrbitLiftOptions {
-  bool averaged = true;   ///< false: the paper's plain lift
-  bool moving = false;    ///< keep what turned groups need (`rest`)
+  bool averaged = true;  ///< false: the paper's plain lift
+  bool moving = false;   ///< keep what turned groups need (`rest`)
 };
 
 /// O(vertices * samples within reach).
@@ -68,7 +68,7 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
 
 /// An atom's displacement as a function of its orbit's seed and the carriers. `frame` need not be orthogonal.
 struct AtomMap {
-  int orbit = -1;                      ///< -1: carriers alone
+  int orbit = -1;  ///< -1: carriers alone
   Eigen::Matrix3d frame = Eigen::Matrix3d::Zero();
   Carried carried;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< at rest; relative to the axis for axial and across

@@ -97,6 +97,8 @@ class RegionMap {
   int joined(int a, int b) const;
   bool holds(int set, int place) const;
   bool contains(int set, int subset) const;
+  /// Whether one of both sets contains the other.
+  bool comparable(int a, int b) const { return contains(a, b) || contains(b, a); }
 
   /// The set at the point of the place's surface nearest to `point`, on the side of `normal` unless that is zero;
   /// `place` is among it.
@@ -106,9 +108,17 @@ class RegionMap {
   /// the motion takes places of the set to, and the arrival. Not for use by several threads.
   int carried_set(int set, int place, int element) const;
 
-  /// The same, and of places to which the motion takes no place as a whole those near `image`, as by set_near().
+  /// The places to which that motion takes `other`, which has surface in common with `place`; none where the annotation
+  /// has no such place.
+  std::vector<int> images_of(int other, int place, int element) const;
+
+  /// As carried_set(), and of places to which the motion takes no place as a whole those near `image`, as by
+  /// set_near().
   int set_of_image(int set, int place, int element, const Eigen::Vector3d& image,
                    const Eigen::Vector3d& normal = Eigen::Vector3d::Zero()) const;
+
+  /// Places that share faces with a place, itself among them, ascending.
+  const std::vector<int>& meeting(int place) const { return meeting_[static_cast<std::size_t>(place)]; }
 
   /// Distance to the place's surface, at most `most` (infinity beyond). For use by several threads after prepare().
   double distance(const Eigen::Vector3d& point, int place, double most) const;
@@ -146,7 +156,7 @@ class RegionMap {
   int intern(const std::vector<int>& places) const;
   SurfaceMoments common_moments(int a, int b) const;
   bool around(int outer, int inner) const;  // whether outer holds all faces of inner
-  Images images_of(int place, int element) const;
+  Images find_images(int place, int element) const;
   Images& images(int place, int element) const;
   void add_region(const Mesh& mesh, const Region& region);
   void add_pattern(const Mesh& mesh, const Pattern& pattern, const RunContext& context);
@@ -157,6 +167,7 @@ class RegionMap {
   std::vector<int> first_place_;
   std::vector<int> first_step_;  // carrier of each pattern's first generator; -1: no lattice
   double size_ = 0;              // the mesh's diagonal
+  double same_place_ = 0;        // of the diagonal: how far from a place its image may be
   int regions_ = 0;
   int carriers_ = 0;
   std::vector<int> set_of_face_;

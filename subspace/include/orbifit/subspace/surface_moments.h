@@ -22,8 +22,8 @@ struct SurfaceMoments {
 std::vector<SurfaceMoments> moments_of_sets(const Mesh& mesh, const std::vector<int>& set_of_face, int sets,
                                             const Eigen::Vector3d& origin);
 
-/// How far apart `motion` of the one piece and the other are, as a fraction of `size`; infinite unless both have area
-/// and the same area to a per cent. Costs no more the more triangles they have.
+/// How far apart `motion` of the one piece and the other are, as a fraction of `size`; infinite where their areas
+/// differ by more than 3 % or they lie apart by half their width. Costs no more the more triangles they have.
 double mismatch(const SurfaceMoments& piece, const Motion& motion, const SurfaceMoments& other, double size);
 
 }  // namespace orbifit

@@ -16,8 +16,8 @@ struct WordPair {
   auto operator<=>(const WordPair&) const = default;
 };
 
-/// Transports of the words and of the samples as the groups stand now, and as they stand at rest. What is no symmetry at
-/// rest (doublets merged, points snapped) is left out by taking differences.
+/// Transports of the words and of the samples as the groups stand now, and as they stand at rest. What is no symmetry
+/// at rest (doublets merged, points snapped) is left out by taking differences.
 struct CarriedTransports {
   std::vector<Transport> words, samples;
   std::vector<Transport> rest_words, rest_samples;  ///< empty: as now, groups not turned
@@ -43,7 +43,7 @@ struct SymmetricBasis {
   /// T, 3#carriers by DoF; no rows when groups are fixed.
   Eigen::MatrixXd carried;
   Eigen::VectorXd carried_offset;  ///< 3#carriers
-  double conflict = 0;  ///< how far turned groups are from agreeing with one another, mesh units
+  double conflict = 0;             ///< how far turned groups are from agreeing with one another, mesh units
 
   int degrees_of_freedom() const { return static_cast<int>(columns.cols()); }
 };

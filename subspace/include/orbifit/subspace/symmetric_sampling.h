@@ -12,11 +12,11 @@
 namespace orbifit {
 
 /// A sampling of the surface whose symmetries are those of the regions (paper, section 5, "Symmetric sampling").
-/// Samples are listed orbit by orbit, each orbit's seed first. Where a continuous group acts, copies of one sample stand
-/// around its circle (or over its sphere); the first of them, in the canonical place, is the one that counts.
+/// Samples are listed orbit by orbit, each orbit's seed first. Where a continuous group acts, copies of one sample
+/// stand around its circle (or over its sphere); the first of them, in the canonical place, is the one that counts.
 struct SymmetricSampling {
-  double radius = 0;  ///< r, mesh units: every point of a place has a sample of that place within r
-  Points points;      ///< #S by 3; near the surface, on it where nothing snapped them
+  double radius = 0;                 ///< r, mesh units: every point of a place has a sample of that place within r
+  Points points;                     ///< #S by 3; near the surface, on it where nothing snapped them
   Eigen::VectorXd radii;             ///< #S, r at each sample: `radius` but for a radius field
   std::vector<int> orbit_of_sample;  ///< #S
   std::vector<int> first_sample;     ///< of each orbit, and #S at the end
@@ -27,7 +27,7 @@ struct SymmetricSampling {
     int first = -1;  ///< the canonical sample
     Motion turn;
   };
-  std::vector<Copy> copies;       ///< #S
+  std::vector<Copy> copies;  ///< #S
   /// #S: for how many samples at distance r each stands; less than 1 where a finite group about the same axis asks for
   /// more copies on a circle than the radius does.
   std::vector<double> shares;
@@ -51,9 +51,9 @@ struct SamplingOptions {
 };
 
 /// Symmetric Poisson-disc sampling: seeds are drawn at random from a dense uniform sampling of the surface, each brings
-/// its whole orbit, and what lies within r of a sample *of the same places* is not drawn again, so that every region has
-/// samples of its own. A seed that its own images crowd (closer than 0.4 r) moves onto the fixed set of the motions that
-/// do so, where they coincide. Costs O(candidates + sum over orbits of their size), candidates about 30 a disc.
+/// its whole orbit, and what lies within r of a sample *of the same places* is not drawn again, so that every region
+/// has samples of its own. A seed that its own images crowd (closer than 0.4 r) moves onto the fixed set of the motions
+/// that do so, where they coincide. Costs O(candidates + sum over orbits of their size), candidates about 30 a disc.
 /// \throw InputError when the mesh has no area, an orbit does not close, or more than most_samples are needed
 SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& regions, GroupWords& words,
                                        const SamplingOptions& options, const RunContext& context);
