@@ -115,7 +115,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
     kernels().cholesky_solve(factor.data(), freedom, side.data());
     previous.swap(q);
     q.swap(side);
-    quotient.rotate(q, rotations);
+    if (iteration + 1 < iterations) quotient.rotate(q, rotations);
   }
   if (iterations > 0 && freedom > 0) {
     result.last_change = sample_displacements(subspace, Eigen::VectorXd(q - previous)).rowwise().norm().maxCoeff();

@@ -178,6 +178,7 @@ class PairResidual {
         normals_(corner_normals(mesh)),
         field_(subspace, state, &grid_) {}
 
+  /// Images at vertices are measured at once, others by finish().
   /// \param motion that of element number `element` of the place, or with a rotation of its continuum after it
   /// \param carried where the motion has gone
   void add(int vertex, const Motion& motion, const Motion& carried, int from_place, int element) {
@@ -189,23 +190,29 @@ class PairResidual {
     images_.visit(image, [&](int other) {
       if (met < 0 && followers[static_cast<std::size_t>(other)].representative == own) met = other;
     });
-    Vector3d here = baked_.row(vertex).transpose();
-    Vector3d there;
-    if (met >= 0) {
-      there = baked_.row(met).transpose();
-    } else {
-      const int set = subspace_.lift_kind == LiftKind::orbit ? set_of_vertex(subspace_.orbits, vertex) : 0;
-      const Vector3d normal = normals_.row(vertex).transpose();
-      const Vector3d turned = motion.linear * normal;
-      here = field_(place, set, normal);
-      there = field_(image, subspace_.regions->set_of_image(set, from_place, element, image, turned), turned);
+    if (met < 0) {
+      off_vertices_.push_back({vertex, motion, carried, from_place, element});
+      return;
     }
-    // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
-    const Vector3d due = carried(place + here) - motion(place);
-    const double error = (there - due).norm() / subspace_.diagonal;
-    residual_.max = std::max(residual_.max, error);
-    squares_ += error * error;
-    count_ += 1;
+    measure(baked_.row(vertex).transpose(), baked_.row(met).transpose(), place, motion, carried);
+  }
+
+  /// Measures images off the vertices, about `most` of them evenly spread: each is worth thousands at vertices.
+  void finish(std::size_t most, const RunContext& context) {
+    const std::size_t step = 1 + off_vertices_.size() / std::max<std::size_t>(1, most);
+    for (std::size_t k = 0; k < off_vertices_.size(); k += step) {
+      context.check();
+      const Pair& pair = off_vertices_[k];
+      const Vector3d place = mesh_.vertices.row(pair.vertex).transpose();
+      const Vector3d image = pair.motion(place);
+      const bool orbits = subspace_.lift_kind == LiftKind::orbit;
+      const int set = orbits ? set_of_vertex(subspace_.orbits, pair.vertex) : 0;
+      const Vector3d normal = normals_.row(pair.vertex).transpose();
+      const Vector3d turned = pair.motion.linear * normal;
+      const int image_set = subspace_.regions->set_of_image(set, pair.from_place, pair.element, image, turned);
+      measure(field_(place, set, normal), field_(image, image_set, turned), place, pair.motion, pair.carried);
+    }
+    off_vertices_.clear();
   }
 
   Residual residual() const {
@@ -215,8 +222,24 @@ class PairResidual {
   }
 
  private:
+  struct Pair {
+    int vertex;
+    Motion motion, carried;
+    int from_place, element;
+  };
+
+  // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
+  void measure(const Vector3d& here, const Vector3d& there, const Vector3d& place, const Motion& motion,
+               const Motion& carried) {
+    const double error = (there - (carried(place + here) - motion(place))).norm() / subspace_.diagonal;
+    residual_.max = std::max(residual_.max, error);
+    squares_ += error * error;
+    count_ += 1;
+  }
+
   const Subspace& subspace_;
   const Mesh& mesh_;
+  std::vector<Pair> off_vertices_;
   Points baked_;
   VertexGrid images_;  // vertices that may be images
   VertexGrid grid_;    // vertices whose places are those of what is near
@@ -234,6 +257,13 @@ std::vector<int> vertices_of(const Mesh& mesh, const std::vector<int>& faces) {
   std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
+}
+
+constexpr int kPatternPairs = 20000;
+
+// Of images off the vertices, which cost more, fewer are measured.
+std::size_t most_off_vertices(int pairs) {
+  return static_cast<std::size_t>(std::max(pairs / 20, std::min(pairs, 200)));
 }
 
 }  // namespace
@@ -264,6 +294,7 @@ Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region
                    static_cast<int>(e % components));
     }
   }
+  residual.finish(most_off_vertices(pairs), context);
   return residual.residual();
 }
 
@@ -290,6 +321,7 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
       residual.add(vertex, regions.elements(first)[a], carried, first, static_cast<int>(a));
     }
   }
+  residual.finish(most_off_vertices(kPatternPairs), context);
   return residual.residual();
 }
 

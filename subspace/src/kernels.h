@@ -24,6 +24,11 @@ struct Kernels {
   /// sum[0 ... 11] = sum over e < count of q[column[e]] * blocks[12 e ...].
   void (*gather_blocks)(const double* blocks, const int* column, int count, const double* q, double* sum);
 
+  /// Newton's method for the rotations nearest to four matrices, as nearest_rotation() takes it: entry k of the
+  /// column-major matrix of lane l is at [4 k + l]. `rotations` holds where to start and then the results.
+  /// \return bit l set: lane l has got no maximum that way; its rotation is to be found by other means
+  unsigned (*nearest_rotations)(const double* matrices, double* rotations);
+
   /// Solves L L^T x = b in place; L lower triangular, column-major.
   void (*cholesky_solve)(const double* lower, std::ptrdiff_t size, double* x);
 };

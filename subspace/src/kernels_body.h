@@ -64,6 +64,75 @@ void gather_blocks(const double* blocks, const int* column, int count, const dou
   *reinterpret_cast<Four*>(sum + 8) = c;
 }
 
+using FourMasks = long long __attribute__((vector_size(32)));  // what comparing Fours gives
+
+unsigned nearest_rotations(const double* matrices, double* rotations) {
+  constexpr int kMostSteps = 12;
+  constexpr double kDone = 1e-16;  // squared half angle after which the next step would be below rounding
+  const Four one = {1, 1, 1, 1};
+  const Four zero{};
+  Four c[9];
+  Four r[9];
+  for (int k = 0; k < 9; ++k) {
+    c[k] = *reinterpret_cast<const Four*>(matrices + 4 * k);
+    r[k] = *reinterpret_cast<const Four*>(rotations + 4 * k);
+  }
+  FourMasks failed{};
+  FourMasks done{};
+  for (int step = 0; step < kMostSteps; ++step) {
+    // With R exp[w]: tr = const + w . a - w^T H w / 2; H positive definite at a critical point makes it the maximum.
+    Four m[9];
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        m[3 * j + i] = r[3 * i] * c[3 * j] + r[3 * i + 1] * c[3 * j + 1] + r[3 * i + 2] * c[3 * j + 2];
+      }
+    }
+    const Four a0 = m[5] - m[7];
+    const Four a1 = m[6] - m[2];
+    const Four a2 = m[1] - m[3];
+    const Four h00 = m[4] + m[8];
+    const Four h11 = m[0] + m[8];
+    const Four h22 = m[0] + m[4];
+    const Four h01 = -0.5 * (m[3] + m[1]);
+    const Four h02 = -0.5 * (m[6] + m[2]);
+    const Four h12 = -0.5 * (m[7] + m[5]);
+    const Four c00 = h11 * h22 - h12 * h12;
+    const Four c01 = h02 * h12 - h01 * h22;
+    const Four c02 = h01 * h12 - h02 * h11;
+    const Four c11 = h00 * h22 - h02 * h02;
+    const Four c12 = h01 * h02 - h00 * h12;
+    const Four c22 = h00 * h11 - h01 * h01;
+    const Four determinant = h00 * c00 + h01 * c01 + h02 * c02;
+    const FourMasks fine = (h00 > zero) & (c22 > zero) & (determinant > zero);
+    failed |= ~fine & ~done;
+    const FourMasks moving = ~failed & ~done;
+    // Half the step, for Cayley's form of a rotation.
+    const Four scale = moving ? 0.5 / (fine ? determinant : one) : zero;
+    const Four w0 = (c00 * a0 + c01 * a1 + c02 * a2) * scale;
+    const Four w1 = (c01 * a0 + c11 * a1 + c12 * a2) * scale;
+    const Four w2 = (c02 * a0 + c12 * a1 + c22 * a2) * scale;
+    const Four squared = w0 * w0 + w1 * w1 + w2 * w2;
+    const Four f = 2 / (1 + squared);
+    const Four t[9] = {1 - f * (w1 * w1 + w2 * w2), f * (w0 * w1 + w2),          f * (w0 * w2 - w1),
+                       f * (w0 * w1 - w2),          1 - f * (w0 * w0 + w2 * w2), f * (w1 * w2 + w0),
+                       f * (w0 * w2 + w1),          f * (w1 * w2 - w0),          1 - f * (w0 * w0 + w1 * w1)};
+    for (int i = 0; i < 3; ++i) {
+      const Four row[3] = {r[i], r[3 + i], r[6 + i]};
+      for (int j = 0; j < 3; ++j) {
+        const Four turned = row[0] * t[3 * j] + row[1] * t[3 * j + 1] + row[2] * t[3 * j + 2];
+        r[3 * j + i] = moving ? turned : row[j];
+      }
+    }
+    done |= moving & (squared < kDone);
+    const FourMasks over = done | failed;
+    if (over[0] && over[1] && over[2] && over[3]) break;
+  }
+  for (int k = 0; k < 9; ++k) *reinterpret_cast<Four*>(rotations + 4 * k) = r[k];
+  unsigned result = 0;
+  for (int lane = 0; lane < 4; ++lane) result |= done[lane] ? 0U : 1U << static_cast<unsigned>(lane);
+  return result;
+}
+
 void cholesky_solve(const double* lower, std::ptrdiff_t size, double* x) {
   // Forwards two columns at a time, backwards by dots.
   std::ptrdiff_t j = 0;

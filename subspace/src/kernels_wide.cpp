@@ -3,6 +3,6 @@
 
 namespace orbifit {
 
-const Kernels kWideKernels{blocked_sums, carried_copies, gather_blocks, cholesky_solve};
+const Kernels kWideKernels{blocked_sums, carried_copies, gather_blocks, nearest_rotations, cholesky_solve};
 
 }  // namespace orbifit

@@ -185,6 +185,7 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
       touched[static_cast<std::size_t>(column)] = 0;
     }
     first_.push_back(static_cast<int>(column_.size()));
+    if (size > 0) held_.push_back(sizes_.size());
     sizes_.push_back(size);
     rest_.push_back(covariance_of(corotation, corotation.rest, sample));
     delta_.emplace_back(corotation.delta.row(sample).transpose());
@@ -208,20 +209,46 @@ Eigen::MatrixXd Quotient::stiffness() const {
 }
 
 void Quotient::rotate(const Eigen::VectorXd& q, std::vector<Matrix3d>& rotations) const {
-  for (std::size_t k = 0; k < counts_.size(); ++k) {
-    if (!(sizes_[k] > 0)) continue;
-    double sum[12];
-    kernels().gather_blocks(covariance_.data() + 12 * static_cast<std::ptrdiff_t>(first_[k]),
-                            column_.data() + first_[k], first_[k + 1] - first_[k], q.data(), sum);
-    const Matrix3d covariance = rest_[k] + Eigen::Map<const Matrix3d>(sum) + kAnchor * sizes_[k] * rotations[k];
-    rotations[k] = nearest_rotation(covariance, rotations[k]);
+  // Four at a time; the last few fill up with repetitions.
+  constexpr std::size_t kLanes = 4;
+  for (std::size_t begin = 0; begin < held_.size(); begin += kLanes) {
+    double matrices[9 * kLanes];
+    double found[9 * kLanes];
+    Matrix3d covariances[kLanes];
+    std::size_t number[kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t k = number[lane] = held_[std::min(begin + lane, held_.size() - 1)];
+      double sum[12];
+      kernels().gather_blocks(covariance_.data() + 12 * static_cast<std::ptrdiff_t>(first_[k]),
+                              column_.data() + first_[k], first_[k + 1] - first_[k], q.data(), sum);
+      const double anchor = kAnchor * sizes_[k];
+      for (std::size_t e = 0; e < 9; ++e) {
+        const double before = rotations[k].data()[e];
+        covariances[lane].data()[e] = matrices[kLanes * e + lane] = rest_[k].data()[e] + sum[e] + anchor * before;
+        found[kLanes * e + lane] = before;
+      }
+    }
+    const unsigned missed = kernels().nearest_rotations(matrices, found);
+    for (std::size_t lane = 0; lane < kLanes && begin + lane < held_.size(); ++lane) {
+      Matrix3d& rotation = rotations[number[lane]];
+      if ((missed >> lane & 1U) != 0) {
+        rotation = nearest_rotation(covariances[lane], rotation);
+        continue;
+      }
+      for (std::size_t e = 0; e < 9; ++e) rotation.data()[e] = found[kLanes * e + lane];
+    }
   }
 }
 
 void Quotient::pull(const std::vector<Matrix3d>& rotations, Eigen::VectorXd& result) const {
   result.setZero(freedom_);
   for (std::size_t k = 0; k < counts_.size(); ++k) {
-    const Vector3d turned = counts_[k] * (rotations[k] * delta_[k] - delta_[k]);
+    const Matrix3d& r = rotations[k];
+    const Vector3d& delta = delta_[k];
+    double turned[3];  // written out: a product of this size is called, not inlined
+    for (int c = 0; c < 3; ++c) {
+      turned[c] = counts_[k] * (r(c, 0) * delta[0] + r(c, 1) * delta[1] + r(c, 2) * delta[2] - delta[c]);
+    }
     const double* row = laplace_.data() + 4 * static_cast<std::ptrdiff_t>(first_[k]);
     for (int e = first_[k]; e < first_[k + 1]; ++e, row += 4) {
       result[column_[static_cast<std::size_t>(e)]] += row[0] * turned[0] + row[1] * turned[1] + row[2] * turned[2];

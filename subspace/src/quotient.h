@@ -36,6 +36,7 @@ class Quotient {
  private:
   std::vector<double> counts_;          // samples in each class
   std::vector<double> sizes_;           // sum of squared lengths of the neighbourhood's edges
+  std::vector<std::size_t> held_;       // classes with neighbours
   std::vector<Eigen::Matrix3d> rest_;   // covariance at rest
   std::vector<Eigen::Vector3d> delta_;  // Laplace coordinates at rest
   std::vector<int> first_;              // of each class's columns, and their number at the end

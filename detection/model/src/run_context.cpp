@@ -24,11 +24,13 @@ void RunContext::message(std::string_view text) const {
 }
 
 void parallel_for(const RunContext& context, std::size_t count,
-                  const std::function<void(std::size_t begin, std::size_t end)>& body) {
+                  const std::function<void(std::size_t begin, std::size_t end)>& body, std::size_t least_share) {
   constexpr std::size_t kChunks = 64;
   const std::size_t chunks = std::min(count, kChunks);
   const auto bound = [&](std::size_t chunk) { return count * chunk / chunks; };
-  const std::size_t threads = std::min<std::size_t>(static_cast<std::size_t>(std::max(context.threads, 1)), chunks);
+  const std::size_t worthwhile =
+      std::min(chunks, std::max<std::size_t>(1, count / std::max<std::size_t>(1, least_share)));
+  const std::size_t threads = std::min(static_cast<std::size_t>(std::max(context.threads, 1)), worthwhile);
   if (threads <= 1) {
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
       context.check();

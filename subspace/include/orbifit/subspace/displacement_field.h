@@ -18,7 +18,7 @@ Points displacement_field(const Subspace& subspace, const SubspaceState& state, 
 /// How well the displacement is symmetric: |y(g p) - g' y(p)| over vertices p of a region and elements g, g' being g
 /// carried along, as a fraction of the diagonal. Where g p is a vertex its displacement as baked is taken; elsewhere
 /// both come from the field, in space at g p, which has no floor from the tessellation. Of a large region every k-th
-/// vertex is taken, so that about `pairs` pairs (p, g) are.
+/// vertex is taken, so that about `pairs` pairs (p, g) are, and of those where g p is no vertex a twentieth.
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const SubspaceState& state, const RunContext& context, int pairs = 20000);
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,

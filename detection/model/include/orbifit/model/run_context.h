@@ -33,7 +33,8 @@ struct RunContext {
 /// Calls body(begin, end) on contiguous chunks of [0, count), on context.threads threads. Chunks depend on count
 /// alone, so a body that writes only to its own indices gives the same result with any number of threads.
 /// An exception of a body is rethrown here, the one of the lowest chunk first.
+/// \param least_share  the fewest items worth a thread of their own, which takes tens of microseconds to start
 void parallel_for(const RunContext& context, std::size_t count,
-                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+                  const std::function<void(std::size_t begin, std::size_t end)>& body, std::size_t least_share = 1);
 
 }  // namespace orbifit
