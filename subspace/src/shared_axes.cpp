@@ -64,11 +64,13 @@ struct Direction {
   AxisAngle turn;
 };
 
+constexpr double kNoTurn = 1e-6;
+
 std::vector<Direction> directions(const std::vector<Motion>& elements) {
   std::vector<Direction> result;
   for (const Motion& element : elements) {
     const AxisAngle turn = axis_angle(element.linear);
-    if (turn.axis.norm() > 0.5) result.push_back({turn.axis, turn});
+    if (turn.angle > kNoTurn) result.push_back({turn.axis, turn});  // else its axis is rounding's
   }
   return result;
 }
