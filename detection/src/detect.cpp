@@ -266,7 +266,7 @@ class Detector {
     if (inner.area > 1.02 * outer.area) return false;
     std::vector<int> common;
     std::ranges::set_intersection(outer.components, inner.components, std::back_inserter(common));
-    return area_of(common) >= 0.95 * inner.area;
+    return inner.area - area_of(common) <= std::min(0.05 * inner.area, kLeastShare * prepared_.area);
   }
 
   // A region inside another one whose group holds all its elements says nothing new, whichever was found first.

@@ -58,6 +58,42 @@ bool near_crease(const PreparedMesh& prepared, const Vector3d& point, int face, 
   return false;
 }
 
+std::vector<char> at_creases(const PreparedMesh& prepared, const SurfaceSamples& samples, double reach,
+                             const RunContext& context) {
+  std::vector<char> result(static_cast<std::size_t>(samples.points.rows()));
+  parallel_for(context, result.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Vector3d point = samples.points.row(static_cast<Eigen::Index>(s));
+      result[s] = near_crease(prepared, point, samples.faces[s], reach) ? 1 : 0;
+    }
+  });
+  return result;
+}
+
+// Samples of each component that matters, so that none is too small to be seen.
+SurfaceSamples samples_of_parts(const PreparedMesh& prepared, const std::vector<int>& visible, double area,
+                                Random& random) {
+  constexpr double kMatters = 0.002;  // of the patch's area
+  std::map<int, std::vector<int>> parts;
+  for (const int f : visible) parts[prepared.components.component_of_face[static_cast<std::size_t>(f)]].push_back(f);
+  SurfaceSamples result;
+  if (parts.size() < 2) return result;
+  const auto append = [](Points& to, const Points& more) {
+    to.conservativeResize(to.rows() + more.rows(), 3);
+    to.bottomRows(more.rows()) = more;
+  };
+  for (const auto& [number, faces] : parts) {
+    double part_area = 0;
+    for (const int f : faces) part_area += prepared.areas[f];
+    if (part_area < kMatters * area) continue;
+    const SurfaceSamples part = sample_surface(prepared.mesh, SurfacePatch::kPartSamples, random, faces);
+    append(result.points, part.points);
+    append(result.normals, part.normals);
+    result.faces.insert(result.faces.end(), part.faces.begin(), part.faces.end());
+  }
+  return result;
+}
+
 }  // namespace
 
 PreparedMesh prepare(const Mesh& mesh) {
@@ -138,15 +174,10 @@ SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, in
   Random random(context.seed, stream);
   patch.samples = sample_surface(prepared.mesh, samples, random, visible);
   patch.index = std::make_shared<const SurfaceIndex>(prepared.mesh, visible);
-  patch.at_crease.resize(static_cast<std::size_t>(patch.samples.points.rows()));
-  parallel_for(context, patch.at_crease.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      patch.at_crease[s] = near_crease(prepared, patch.samples.points.row(static_cast<Eigen::Index>(s)),
-                                       patch.samples.faces[s], 3 * patch.tolerance)
-                               ? 1
-                               : 0;
-    }
-  });
+  const double reach = 3 * patch.tolerance;
+  patch.at_crease = at_creases(prepared, patch.samples, reach, context);
+  patch.part_samples = samples_of_parts(prepared, visible, patch.moments.area, random);
+  patch.part_at_crease = at_creases(prepared, patch.part_samples, reach, context);
   patch.faces = std::move(faces);
   return patch;
 }

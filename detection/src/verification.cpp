@@ -19,11 +19,32 @@ Vector3d row(const Points& points, std::size_t i) {
   return points.row(static_cast<Eigen::Index>(i));
 }
 
-bool keeps(const SurfacePatch& patch, const Motion& motion, std::size_t sample, double tolerance) {
-  const Vector3d image = motion(row(patch.samples.points, sample));
-  if (patch.at_crease[sample] != 0) return patch.index->nearest(image, tolerance).face >= 0;
-  const Vector3d normal = motion.linear * row(patch.samples.normals, sample);
+bool on_surface(const SurfacePatch& patch, const Motion& motion, const SurfaceSamples& samples, bool at_crease,
+                std::size_t sample, double tolerance) {
+  const Vector3d image = motion(row(samples.points, sample));
+  if (at_crease) return patch.index->nearest(image, tolerance).face >= 0;
+  const Vector3d normal = motion.linear * row(samples.normals, sample);
   return patch.index->nearest_facing(image, normal, kNormalCosine, tolerance, true).face >= 0;
+}
+
+bool keeps(const SurfacePatch& patch, const Motion& motion, std::size_t sample, double tolerance) {
+  return on_surface(patch, motion, patch.samples, patch.at_crease[sample] != 0, sample, tolerance);
+}
+
+// Of the part that fares worst under one of the motions, the share that it keeps near the surface.
+double worst_part(const SurfacePatch& patch, const std::vector<Motion>& motions, double tolerance) {
+  constexpr std::size_t kSamples = SurfacePatch::kPartSamples;
+  std::size_t least = kSamples;
+  for (std::size_t first = 0; first + kSamples <= patch.part_at_crease.size(); first += kSamples) {
+    for (const Motion& motion : motions) {
+      std::size_t kept = 0;
+      for (std::size_t s = first; s < first + kSamples; ++s) {
+        if (on_surface(patch, motion, patch.part_samples, patch.part_at_crease[s] != 0, s, tolerance)) ++kept;
+      }
+      least = std::min(least, kept);
+    }
+  }
+  return static_cast<double>(least) / static_cast<double>(kSamples);
 }
 
 // Numbers of `count` samples spread evenly; an odd stride through the strata keeps every prefix spread as well.
@@ -159,6 +180,10 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
     result.worst = std::min(result.worst, static_cast<double>(count) / static_cast<double>(done));
   }
   result.cluster = far_off.size() * 4 > done ? 1 : largest_blot(patch, far_off, done);
+  const VerificationLimits limits;
+  if (result.complete && result.joint >= limits.joint) {
+    result.part = worst_part(patch, motions, kFarOff * tolerance);
+  }
   result.kept.assign(patch.at_crease.size(), 0);
   for (std::size_t i = 0; i < done; ++i) result.kept[chosen[i]] = kept[i];
   return result;
@@ -166,7 +191,7 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
 
 bool passes(const Verification& verification, const VerificationLimits& limits) {
   return verification.complete && verification.joint >= limits.joint && verification.worst >= limits.worst &&
-         verification.cluster <= limits.cluster;
+         verification.cluster <= limits.cluster && verification.part >= limits.part;
 }
 
 double kept_share(const SurfacePatch& patch, const Motion& motion, double tolerance, int samples,

@@ -1,6 +1,8 @@
 #include "orbifit/subspace/closable.h"
 
 #include <algorithm>
+#include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -70,48 +72,58 @@ int without_image(const RegionMap& regions, int number, const std::vector<char>&
 }
 
 // Until none is left without image.
-void drop_without_image(const RegionMap& regions, std::vector<char>& followed, const RunContext& context) {
+void drop_without_image(const RegionMap& regions, std::vector<char>& followed,
+                        const std::function<void(std::size_t, const std::string&)>& drop) {
   for (bool changed = true; changed;) {
     changed = false;
     for (int i = 0; i < regions.count(); ++i) {
-      if (followed[static_cast<std::size_t>(i)] == 0 || regions.continuum(i) == nullptr) continue;
+      const auto region = static_cast<std::size_t>(i);
+      if (followed[region] == 0 || regions.continuum(i) == nullptr) continue;
       const int other = without_image(regions, i, followed);
       if (other < 0) continue;
-      followed[static_cast<std::size_t>(i)] = 0;
+      followed[region] = 0;
       changed = true;
-      context.message("left out region \"" + regions.name(i) + "\": the group of \"" + regions.name(other) +
-                      "\" takes it where there is no region of its kind");
+      drop(region, "the group of \"" + regions.name(other) + "\" takes it where there is no region of its kind");
     }
   }
 }
 
-}  // namespace
+struct Attempt {
+  SymmetryAnnotation kept;
+  std::vector<std::string> messages;
+  int first_dropped = -1;  // a region
+};
 
-SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
+// Shares axes and keeps what closes, region after region.
+Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
   const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance);
   const RegionMap regions(mesh, annotation, context);
   const std::vector<int> sets = sets_of_vertices(mesh, regions);
+  Attempt result;
+  const auto drop = [&](std::size_t region, const std::string& why) {
+    const int number = static_cast<int>(region);
+    if (result.first_dropped < 0 || number < result.first_dropped) result.first_dropped = number;
+    result.messages.push_back("left out region \"" + regions.name(number) + "\" (" +
+                              annotation.regions[region].group.symbol() + "): " + why);
+  };
   std::vector<char> followed(static_cast<std::size_t>(regions.places()), 0);
-  SymmetryAnnotation result = annotation;
-  result.regions.clear();
-  result.patterns.clear();
   std::vector<char> wanted = followed;
   std::fill_n(wanted.begin(), annotation.regions.size(), 1);
-  drop_without_image(regions, wanted, context);
+  drop_without_image(regions, wanted, drop);
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     if (wanted[i] == 0) continue;
     context.progress("closure", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
     followed[i] = 1;
-    if (!closes(mesh, annotation.regions[i].faces, regions, sets, followed)) {
-      followed[i] = 0;
-      context.message("left out region \"" + regions.name(static_cast<int>(i)) + "\" (" +
-                      annotation.regions[i].group.symbol() +
-                      "): its group does not close with those of larger regions");
-    }
+    if (closes(mesh, annotation.regions[i].faces, regions, sets, followed)) continue;
+    followed[i] = 0;
+    drop(i, "its group does not close with those of larger regions");
   }
-  drop_without_image(regions, followed, context);
+  drop_without_image(regions, followed, drop);
+  result.kept = annotation;
+  result.kept.regions.clear();
+  result.kept.patterns.clear();
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
-    if (followed[i] != 0) result.regions.push_back(annotation.regions[i]);
+    if (followed[i] != 0) result.kept.regions.push_back(annotation.regions[i]);
   }
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) {
     const Pattern& pattern = annotation.patterns[i];
@@ -123,14 +135,44 @@ SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected
     });
     if (!fits) {
       mark(0);
-      context.message("left out pattern \"" + pattern.name + "\" (" + to_string(pattern.kind) +
-                      "): its steps do not close with the groups of the regions");
+      result.messages.push_back("left out pattern \"" + pattern.name + "\" (" + to_string(pattern.kind) +
+                                "): its steps do not close with the groups of the regions");
       continue;
     }
-    result.patterns.push_back(pattern);
+    result.kept.patterns.push_back(pattern);
   }
-  set_parents(result.regions);
+  set_parents(result.kept.regions);
   return result;
+}
+
+}  // namespace
+
+// A region that does not fit pulls at the axes of others before it is found out: they are shared anew without it.
+SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
+  constexpr int kMostAttempts = 6;
+  SymmetryAnnotation rest = detected;
+  std::vector<std::string> given_up;
+  Attempt best;
+  std::vector<std::string> best_messages;
+  for (int round = 0; round < kMostAttempts; ++round) {
+    Attempt now = attempt(mesh, rest, context);
+    const int dropped = now.first_dropped;
+    std::vector<std::string> messages = given_up;
+    messages.insert(messages.end(), now.messages.begin(), now.messages.end());
+    if (dropped >= 0) {
+      const Region& region = rest.regions[static_cast<std::size_t>(dropped)];
+      given_up.push_back("left out region \"" + region.name + "\" (" + region.group.symbol() +
+                         "): its group does not close with those of larger regions");
+    }
+    if (round == 0 || now.kept.regions.size() > best.kept.regions.size()) {
+      best = std::move(now);
+      best_messages = std::move(messages);
+    }
+    if (dropped < 0) break;
+    rest.regions.erase(rest.regions.begin() + dropped);
+  }
+  for (const std::string& message : best_messages) context.message(message);
+  return best.kept;
 }
 
 }  // namespace orbifit

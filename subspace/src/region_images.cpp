@@ -18,8 +18,8 @@ bool is_identity(const Motion& motion) {
 }  // namespace
 
 // Of the faces that both places hold.
-SurfaceMoments RegionMap::common_moments(int a, int b) const {
-  SurfaceMoments result;
+PieceMoments RegionMap::common_moments(int a, int b) const {
+  PieceMoments result;
   for (std::size_t set = 0; set < moments_.size(); ++set) {
     if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
   }
@@ -48,7 +48,7 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
   // Told from the moments' origin.
   const Motion told =
       Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
-  std::vector<SurfaceMoments> common;
+  std::vector<PieceMoments> common;
   common.reserve(there.size());
   for (const int q : there) common.push_back(common_moments(arrival, q));
   const auto alike = [&](int p, int q) {
@@ -61,7 +61,7 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
       result.pairs.emplace_back(p, p == place ? arrival : p);
       continue;
     }
-    const SurfaceMoments piece = common_moments(place, p);
+    const PieceMoments piece = common_moments(place, p);
     double best = same_place_;
     std::vector<std::pair<double, int>> found;
     for (std::size_t k = 0; k < there.size(); ++k) {

@@ -43,11 +43,14 @@ SurfaceMoments surface_moments(const PreparedMesh& prepared, const std::vector<i
 /// A set of faces with what is needed to ask whether motions map it to itself. Lengths are those of the normalised
 /// mesh.
 struct SurfacePatch {
+  static constexpr int kPartSamples = 20;
   const PreparedMesh* prepared = nullptr;  ///< not owned
   std::vector<int> faces;                  ///< ascending
   SurfaceMoments moments;
   SurfaceSamples samples;
-  std::vector<char> at_crease;    ///< per sample: a face at more than 25 degrees is within three tolerances
+  std::vector<char> at_crease;  ///< per sample: a face at more than 25 degrees is within three tolerances
+  SurfaceSamples part_samples;  ///< of the components, where there are several: kPartSamples of each in turn
+  std::vector<char> part_at_crease;
   double tolerance = 0;           ///< min(t, 4 t d): t the mesh's, d the patch's diagonal
   double relative_tolerance = 0;  ///< t, a fraction of a diagonal
   std::shared_ptr<const SurfaceIndex> index;

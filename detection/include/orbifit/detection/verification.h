@@ -18,9 +18,10 @@ std::vector<Motion> judged_motions(const PointGroup& group, const GroupFrame& fr
 
 /// How much of a patch a set of motions maps onto the patch.
 struct Verification {
-  double joint = 0;        ///< share of the samples that every motion keeps on the surface
-  double worst = 1;        ///< smallest share over the motions
-  double cluster = 0;      ///< share of the largest connected blot of samples that some motion throws far off
+  double joint = 0;    ///< share of the samples that every motion keeps on the surface
+  double worst = 1;    ///< smallest share over the motions
+  double cluster = 0;  ///< share of the largest connected blot of samples that some motion throws far off
+  double part = 1;     ///< least share of a part (component of at least 0.2 % of the area) kept by one of the motions
   bool complete = false;   ///< false: given up early, the figures are of the samples seen until then
   std::vector<char> kept;  ///< per sample seen: kept by every motion
 };
@@ -29,6 +30,7 @@ struct VerificationLimits {
   double joint = 0.96;     ///< least share kept by all motions together
   double worst = 0.97;     ///< least share kept by each
   double cluster = 0.005;  ///< largest blot, so that one missing bolt is not averaged away
+  double part = 0.6;       ///< of each part, so that large flats do not swamp small parts
 };
 
 /// Images are on the surface when a face whose normal is within 25 degrees (any face for samples next to a crease) lies

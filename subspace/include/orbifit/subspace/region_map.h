@@ -16,7 +16,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/surface_index.h"
-#include "orbifit/subspace/surface_moments.h"
+#include "orbifit/subspace/piece_moments.h"
 
 namespace orbifit {
 
@@ -154,7 +154,7 @@ class RegionMap {
   const Place& at(int place) const { return places_[static_cast<std::size_t>(place)]; }
   const SurfaceIndex& surface(int place) const;
   int intern(const std::vector<int>& places) const;
-  SurfaceMoments common_moments(int a, int b) const;
+  PieceMoments common_moments(int a, int b) const;
   bool around(int outer, int inner) const;  // whether outer holds all faces of inner
   Images find_images(int place, int element) const;
   Images& images(int place, int element) const;
@@ -176,7 +176,7 @@ class RegionMap {
   mutable std::unordered_map<std::uint64_t, int> with_;
   mutable std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;
   std::vector<std::vector<int>> meeting_;             // of each place, the places that share faces with it
-  std::vector<SurfaceMoments> moments_;               // of the faces of each set
+  std::vector<PieceMoments> moments_;               // of the faces of each set
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };

@@ -10,20 +10,20 @@
 namespace orbifit {
 
 /// Area, mean and second moments of a piece of surface: two pieces with the same ones are taken to be the same.
-struct SurfaceMoments {
+struct PieceMoments {
   double area = 0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();   ///< integral of x
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  ///< integral of x x^T
 
-  SurfaceMoments& operator+=(const SurfaceMoments& other);
+  PieceMoments& operator+=(const PieceMoments& other);
 };
 
 /// Of each set of faces: entry s sums up the faces whose set is s. Positions are told from `origin`.
-std::vector<SurfaceMoments> moments_of_sets(const Mesh& mesh, const std::vector<int>& set_of_face, int sets,
+std::vector<PieceMoments> moments_of_sets(const Mesh& mesh, const std::vector<int>& set_of_face, int sets,
                                             const Eigen::Vector3d& origin);
 
 /// How far apart `motion` of the one piece and the other are, as a fraction of `size`; infinite where their areas
 /// differ by more than 3 % or they lie apart by half their width. Costs no more the more triangles they have.
-double mismatch(const SurfaceMoments& piece, const Motion& motion, const SurfaceMoments& other, double size);
+double mismatch(const PieceMoments& piece, const Motion& motion, const PieceMoments& other, double size);
 
 }  // namespace orbifit
