@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kTrialPoints = 128;  // of each region
 constexpr double kDoublet = 1e-6;          // of the diagonal, as for the vertices
+constexpr double kSameDirection = 1e-6;    // radians
 
 // Orbits of groups that fit together have no more points than the product of the orders of the places on the way, and
 // a few times that where mirrors meet at an angle.
@@ -58,28 +59,41 @@ bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& re
   return true;
 }
 
+// Whether the motion takes the axis or centre of one continuous group to that of the other.
+bool takes_to(const Motion& motion, const Continuum& from, const Continuum& to, double tolerance) {
+  if (from.spherical != to.spherical || to.distance(motion(from.centre)) > tolerance) return false;
+  return from.spherical || to.axis.cross(motion.linear * from.axis).norm() < kSameDirection;
+}
+
 // A followed region with an element that takes the continuous region `number`, or what they have in common, to no
 // followed region; -1: none. Its circles would become circles about an axis that nothing names.
-int without_image(const RegionMap& regions, int number, const std::vector<char>& followed) {
+int without_image(const RegionMap& regions, int number, const std::vector<char>& followed, double tolerance) {
   const auto is_followed = [&](int place) { return followed[static_cast<std::size_t>(place)] != 0; };
   for (const int other : regions.meeting(number)) {
     if (other >= regions.count() || !is_followed(other)) continue;
     for (std::size_t e = 0; e < regions.elements(other).size(); ++e) {
-      if (std::ranges::none_of(regions.images_of(number, other, static_cast<int>(e)), is_followed)) return other;
+      if (std::ranges::any_of(regions.images_of(number, other, static_cast<int>(e)), is_followed)) continue;
+      // Else one that turns alike, of whatever faces.
+      const bool alike = std::ranges::any_of(regions.meeting(other), [&](int place) {
+        const Continuum* continuum = regions.continuum(place);
+        return continuum != nullptr && is_followed(place) &&
+               takes_to(regions.elements(other)[e], *regions.continuum(number), *continuum, tolerance);
+      });
+      if (!alike) return other;
     }
   }
   return -1;
 }
 
 // Until none is left without image.
-void drop_without_image(const RegionMap& regions, std::vector<char>& followed,
+void drop_without_image(const RegionMap& regions, std::vector<char>& followed, double tolerance,
                         const std::function<void(std::size_t, const std::string&)>& drop) {
   for (bool changed = true; changed;) {
     changed = false;
     for (int i = 0; i < regions.count(); ++i) {
       const auto region = static_cast<std::size_t>(i);
       if (followed[region] == 0 || regions.continuum(i) == nullptr) continue;
-      const int other = without_image(regions, i, followed);
+      const int other = without_image(regions, i, followed, tolerance);
       if (other < 0) continue;
       followed[region] = 0;
       changed = true;
@@ -99,6 +113,7 @@ Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, const RunC
   const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance);
   const RegionMap regions(mesh, annotation, context);
   const std::vector<int> sets = sets_of_vertices(mesh, regions);
+  const double tolerance = kDoublet * diagonal(mesh.vertices);
   Attempt result;
   const auto drop = [&](std::size_t region, const std::string& why) {
     const int number = static_cast<int>(region);
@@ -109,7 +124,7 @@ Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, const RunC
   std::vector<char> followed(static_cast<std::size_t>(regions.places()), 0);
   std::vector<char> wanted = followed;
   std::fill_n(wanted.begin(), annotation.regions.size(), 1);
-  drop_without_image(regions, wanted, drop);
+  drop_without_image(regions, wanted, tolerance, drop);
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     if (wanted[i] == 0) continue;
     context.progress("closure", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
@@ -118,7 +133,7 @@ Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, const RunC
     followed[i] = 0;
     drop(i, "its group does not close with those of larger regions");
   }
-  drop_without_image(regions, followed, drop);
+  drop_without_image(regions, followed, tolerance, drop);
   result.kept = annotation;
   result.kept.regions.clear();
   result.kept.patterns.clear();
