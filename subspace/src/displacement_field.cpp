@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 #include "orbifit/subspace/carried_regions.h"
@@ -56,11 +57,15 @@ class FieldEvaluator {
     transports_ = basis_.transports;
   }
 
+  /// Points of all orbits evaluated so far.
+  std::size_t points_seen() const { return points_seen_; }
+
   /// \param normal of the surface there; zero: unknown
   Vector3d operator()(const Vector3d& point, int set, const Vector3d& normal = Vector3d::Zero()) {
     closure_.normal = normal;
     if (subspace_.lift_kind == LiftKind::paper) return paper(point);
     const Orbit orbit = orbit_of(point, set, *subspace_.regions, words_, closure_);
+    points_seen_ += orbit.points.size();
     if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) add_new_words();
     const Vector3d start = orbit.points.front().position;
     Vector3d u = Vector3d::Zero();
@@ -160,6 +165,7 @@ class FieldEvaluator {
   Eigen::VectorXd carriers_;
   CarriedTransports transports_;
   ClosureOptions closure_;
+  std::size_t points_seen_ = 0;
   std::vector<int> sets_;  // of the vertices
   std::optional<PlacesOfVertices> near_;
   PlainLift::Scratch scratch_;
@@ -197,10 +203,18 @@ class PairResidual {
     measure(baked_.row(vertex).transpose(), baked_.row(met).transpose(), place, motion, carried);
   }
 
-  /// Measures images off the vertices, about `most` of them evenly spread: each is worth thousands at vertices.
+  /// Measures images off the vertices, at most `most` of them, evenly spread: each is worth thousands at vertices.
+  /// Where orbits are large it measures fewer.
   void finish(std::size_t most, const RunContext& context) {
-    const std::size_t step = 1 + off_vertices_.size() / std::max<std::size_t>(1, most);
-    for (std::size_t k = 0; k < off_vertices_.size(); k += step) {
+    constexpr std::size_t kFewest = 2;
+    constexpr std::size_t kMostPoints = 30000;  // of their orbits
+    const std::size_t count = off_vertices_.size();
+    // An odd stride near the golden section spreads every beginning of the sequence.
+    auto stride = static_cast<std::size_t>(0.618 * static_cast<double>(count));
+    while (std::gcd(++stride, count) > 1) continue;
+    for (std::size_t i = 0; i < std::min(most, count); ++i) {
+      if (i >= kFewest && field_.points_seen() > kMostPoints) break;
+      const std::size_t k = i * stride % count;
       context.check();
       const Pair& pair = off_vertices_[k];
       const Vector3d place = mesh_.vertices.row(pair.vertex).transpose();
