@@ -16,7 +16,7 @@ PieceMoments& PieceMoments::operator+=(const PieceMoments& other) {
 }
 
 std::vector<PieceMoments> moments_of_sets(const Mesh& mesh, const std::vector<int>& set_of_face, int sets,
-                                            const Eigen::Vector3d& origin) {
+                                          const Eigen::Vector3d& origin) {
   std::vector<PieceMoments> result(static_cast<std::size_t>(sets));
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
     Eigen::Matrix3d corners;  // columns
