@@ -263,16 +263,6 @@ class PairResidual {
   double squares_ = 0, count_ = 0;
 };
 
-std::vector<int> vertices_of(const Mesh& mesh, const std::vector<int>& faces) {
-  std::vector<int> result;
-  for (const int face : faces) {
-    for (const int vertex : mesh.faces.row(face)) result.push_back(vertex);
-  }
-  std::ranges::sort(result);
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
-
 constexpr int kPatternPairs = 20000;
 
 // Of images off the vertices, which cost more, fewer are measured.
@@ -295,7 +285,7 @@ Points displacement_field(const Subspace& subspace, const SubspaceState& state, 
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const SubspaceState& state, const RunContext& context, int pairs) {
-  const std::vector<int> vertices = vertices_of(mesh, region.faces);
+  const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
   const std::vector<Motion> elements = subspace.regions->test_elements(region_number);
   const std::size_t components = subspace.regions->elements(region_number).size();
   const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
@@ -325,7 +315,7 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
   Eigen::VectorXd carriers = basis.carried * state.q;
   if (carriers.size() > 0) carriers += basis.carried_offset;
   PairResidual residual(subspace, mesh, state);
-  for (const int vertex : vertices_of(mesh, pattern.instances.front().faces)) {
+  for (const int vertex : vertices_of_faces(mesh, pattern.instances.front().faces)) {
     context.check();
     for (std::size_t a = 1; a < pattern.instances.size(); ++a) {
       Motion carried = regions.elements(first)[a];

@@ -10,17 +10,10 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
 
+#include "subspaces.h"
+
 namespace orbifit {
 namespace {
-
-Handle handle_at(const Mesh& mesh, const Eigen::Vector3d& centre, double radius) {
-  Handle handle;
-  handle.name = "handle";
-  for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
-    if ((mesh.vertices.row(v).transpose() - centre).norm() <= radius) handle.vertices.push_back(static_cast<int>(v));
-  }
-  return handle;
-}
 
 struct Edit {
   explicit Edit(const std::string& name, GroupMode mode = GroupMode::floating, bool symmetric = true)

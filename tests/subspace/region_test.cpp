@@ -157,62 +157,6 @@ TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
   }
 }
 
-// Two faces at an edge where places begin or end.
-struct Border {
-  int inside, outside;
-  Eigen::Vector3d middle;
-};
-
-std::vector<Border> borders_of(const Mesh& mesh, const RegionMap& regions) {
-  std::map<std::pair<int, int>, int> first;
-  std::vector<Border> result;
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const auto edge = std::minmax(mesh.faces(f, k), mesh.faces(f, (k + 1) % 3));
-      const auto [known, added] = first.try_emplace(edge, static_cast<int>(f));
-      if (added || regions.set_of_face(known->second) == regions.set_of_face(static_cast<int>(f))) continue;
-      result.push_back({known->second, static_cast<int>(f),
-                        0.5 * (mesh.vertices.row(edge.first) + mesh.vertices.row(edge.second)).transpose()});
-    }
-  }
-  return result;
-}
-
-// Along a path over the surface and across a border the field changes by no more than in proportion to the step.
-TEST_P(EveryRegion, IsContinuousAcrossItsBorder) {
-  const std::vector<Border> borders = borders_of(model_.mesh, *subspace_.regions);
-  if (borders.empty()) GTEST_SKIP() << "the regions are separate parts";
-  Random random(5, "borders");
-  const auto centroid = [&](int face) {
-    const Eigen::RowVector3i corners = model_.mesh.faces.row(face);
-    return Eigen::Vector3d((model_.mesh.vertices.row(corners[0]) + model_.mesh.vertices.row(corners[1]) +
-                            model_.mesh.vertices.row(corners[2]))
-                               .transpose() /
-                           3);
-  };
-  for (int trial = 0; trial < 3; ++trial) {
-    const Border& border = borders[random.below(borders.size())];
-    const auto largest_step = [&](int steps) {  // over the last fiftieth of the way on either side
-      Points path(2 * steps, 3);
-      std::vector<int> sets;
-      for (int k = 0; k < 2 * steps; ++k) {
-        const bool before = k < steps;
-        const double share = 0.02 * (before ? steps - 0.5 - k : k - steps + 0.5) / steps;
-        const int face = before ? border.inside : border.outside;
-        path.row(k) = (border.middle + share * (centroid(face) - border.middle)).transpose();
-        sets.push_back(subspace_.regions->set_of_face(face));
-      }
-      const Points field = displacement_field(subspace_, state_, path, sets, RunContext{});
-      return (field.bottomRows(2 * steps - 1) - field.topRows(2 * steps - 1)).rowwise().norm().maxCoeff();
-    };
-    const double coarse = largest_step(8);
-    const double fine = largest_step(32);
-    // The weights below 1e-5 that are left out jump too, by less than a thousandth of what the field is.
-    EXPECT_LT(fine, 0.5 * coarse + 1e-5 * subspace_.diagonal)
-        << subspace_.regions->name(innermost_region(*subspace_.regions, subspace_.regions->set_of_face(border.inside)));
-  }
-}
-
 std::string case_name(const testing::TestParamInfo<Case>& info) {
   return kModels[static_cast<std::size_t>(std::get<0>(info.param))].name + "_" + to_string(std::get<1>(info.param));
 }

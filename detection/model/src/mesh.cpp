@@ -1,5 +1,7 @@
 #include "orbifit/model/mesh.h"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 
 namespace orbifit {
@@ -52,6 +54,17 @@ Points vertex_normals(const Mesh& mesh) {
     if (length > 0) normals.row(v) /= length;
   }
   return normals;
+}
+
+std::vector<int> vertices_of_faces(const Mesh& mesh, const std::vector<int>& faces) {
+  std::vector<int> result;
+  result.reserve(3 * faces.size());
+  for (const int face : faces) {
+    for (int k = 0; k < 3; ++k) result.push_back(mesh.faces(face, k));
+  }
+  std::ranges::sort(result);
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
 }
 
 Mesh submesh(const Mesh& mesh, const std::vector<int>& faces, std::vector<int>* vertex_of) {

@@ -107,14 +107,4 @@ Handle handle_at(const Mesh& mesh, const Eigen::Vector3d& centre, double radius)
   return handle;
 }
 
-std::vector<int> vertices_of_faces(const Mesh& mesh, const std::vector<int>& faces) {
-  std::vector<int> result;
-  for (const int face : faces) {
-    for (const int vertex : mesh.faces.row(face)) result.push_back(vertex);
-  }
-  std::ranges::sort(result);
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
-
 }  // namespace orbifit

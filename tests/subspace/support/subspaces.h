@@ -32,7 +32,4 @@ WorstResidual worst_residual(const GeneratedModel& model, const Subspace& subspa
 /// The vertices within `radius` of `centre`.
 Handle handle_at(const Mesh& mesh, const Eigen::Vector3d& centre, double radius);
 
-/// All vertices used by some faces, ascending.
-std::vector<int> vertices_of_faces(const Mesh& mesh, const std::vector<int>& faces);
-
 }  // namespace orbifit

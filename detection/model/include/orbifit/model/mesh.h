@@ -6,13 +6,13 @@
 
 namespace orbifit {
 
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;   ///< #P by 3, one point a row
-using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;   ///< #F by 3, vertex numbers from 0
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  ///< #P by 3, one point a row
+using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;  ///< #F by 3, vertex numbers from 0
 
 /// A triangle mesh as it stands in its file: order and duplicates kept, no assumption on manifoldness.
 struct Mesh {
-  Points vertices;   ///< #V by 3, finite, in the mesh's own units
-  Triangles faces;   ///< #F by 3
+  Points vertices;  ///< #V by 3, finite, in the mesh's own units
+  Triangles faces;  ///< #F by 3
   /// The file's polygon from which each triangle was cut, as a fan from the polygon's first corner, #F, ascending;
   /// empty when the file's faces are the triangles.
   std::vector<int> polygon_of_face;
@@ -43,5 +43,8 @@ Points vertex_normals(const Mesh& mesh);
 /// The mesh of some of the faces with the vertices they use; vertices keep their order.
 /// \param[out] vertex_of for each vertex of the result its number in `mesh`; may be null
 Mesh submesh(const Mesh& mesh, const std::vector<int>& faces, std::vector<int>* vertex_of = nullptr);
+
+/// All vertices that some faces use, ascending.
+std::vector<int> vertices_of_faces(const Mesh& mesh, const std::vector<int>& faces);
 
 }  // namespace orbifit
