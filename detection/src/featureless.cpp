@@ -76,9 +76,8 @@ Eigen::MatrixXd claimed_twists(const GroupPlacement& placement, const Vector3d& 
   return twists;
 }
 
-// A basis of the slippable twists that the group does not claim.
-Eigen::MatrixXd slippable_twists(const SurfacePatch& patch, const GroupPlacement& placement, const Vector3d& centre,
-                                 double size) {
+// Gelfand and Guibas 2004, section 3: twists that the samples resist little have small eigenvalues.
+Eigen::Matrix<double, 6, 6> slip_matrix(const SurfacePatch& patch, const Vector3d& centre, double size) {
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
   for (Eigen::Index i = 0; i < patch.samples.points.rows(); ++i) {
     const Vector3d point = (patch.samples.points.row(i).transpose() - centre) / size;
@@ -87,7 +86,17 @@ Eigen::MatrixXd slippable_twists(const SurfacePatch& patch, const GroupPlacement
     row << point.cross(normal), normal;
     matrix += row * row.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(matrix);
+  return matrix;
+}
+
+double spread_about(const SurfacePatch& patch, const Vector3d& centre) {
+  return std::sqrt((patch.samples.points.rowwise() - centre.transpose()).rowwise().squaredNorm().mean());
+}
+
+// A basis of the slippable twists that the group does not claim.
+Eigen::MatrixXd slippable_twists(const SurfacePatch& patch, const GroupPlacement& placement, const Vector3d& centre,
+                                 double size) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(slip_matrix(patch, centre, size));
   Eigen::Index count = 0;
   while (count < 6 && solver.eigenvalues()[count] < kSlippable * solver.eigenvalues()[5]) ++count;
   Eigen::MatrixXd slip = solver.eigenvectors().leftCols(count);
@@ -107,7 +116,7 @@ Eigen::MatrixXd slippable_twists(const SurfacePatch& patch, const GroupPlacement
 bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, const SurfaceIndex& whole,
                  double tolerance, const RunContext& context) {
   const Vector3d centre = patch.samples.points.colwise().mean();
-  const double size = std::sqrt((patch.samples.points.rowwise() - centre.transpose()).rowwise().squaredNorm().mean());
+  const double size = spread_about(patch, centre);
   if (!(size > 0)) return true;
   const Eigen::MatrixXd slip = slippable_twists(patch, placement, centre, size);
   if (slip.cols() == 0) return false;
@@ -134,6 +143,17 @@ bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, con
       return fits(patch, whole, reached(k * w, k * v, centre), tolerance);
     });
   });
+}
+
+int slippable_ways(const SurfacePatch& patch) {
+  const Vector3d centre = patch.samples.points.colwise().mean();
+  const double size = spread_about(patch, centre);
+  if (!(size > 0)) return 6;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(slip_matrix(patch, centre, size),
+                                                                          Eigen::EigenvaluesOnly);
+  int ways = 0;
+  while (ways < 6 && solver.eigenvalues()[ways] < kSlippable * solver.eigenvalues()[5]) ++ways;
+  return ways;
 }
 
 }  // namespace orbifit

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbifit/detection/refinement.h"
+#include "orbifit/detection/surface_patch.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// A region on the way to the annotation, in the normalised mesh's frame.
+struct FoundRegion {
+  GroupPlacement placement;
+  std::vector<int> faces;  ///< ascending
+  double area = 0;         ///< of the faces that count
+  std::string name;
+};
+
+/// Area of the faces of `inner` that are not in `outer`; both ascending.
+double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner, const std::vector<int>& outer);
+
+/// Whether `inner` lies in `outer` but for a sliver: a twentieth of it and 0.2 % of the mesh's area, whichever is less.
+bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner);
+
+/// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the
+/// same of one another the earlier stays. \param tolerance of the detector, a fraction of the diagonal
+void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions);
+
+/// Drops regions of at most half the surface to which only their border gives a group: pieces of a larger plane,
+/// cylinder or sphere. \param whole index of the whole mesh
+void drop_featureless(const PreparedMesh& prepared, const SurfaceIndex& whole, double tolerance,
+                      const RunContext& context, std::vector<FoundRegion>& regions);
+
+}  // namespace orbifit

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "orbifit/detection/candidates.h"
+#include "orbifit/detection/components.h"
+#include "orbifit/detection/found_region.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+struct PartRegionOptions {
+  double tolerance = 0.005;    ///< fraction of the mesh's diagonal
+  double least_share = 0.002;  ///< of the mesh's area: smaller regions say little
+  /// Whether the parts are pieces of larger surfaces: their borders alone then make no symmetry. Flat regions, and
+  /// finite groups of regions that slide in two ways or more, are left out.
+  bool pieces = false;
+  std::function<bool()> late;  ///< whether time is up; may be empty
+};
+
+struct PartRegions {
+  std::vector<FoundRegion> regions;
+  ComponentSurvey survey;
+  std::vector<std::optional<GroupPlacement>> own_groups;  ///< of the first member of each of the survey's classes
+};
+
+/// Regions made of whole parts (the prepared mesh's `components`): own groups of parts, of sets of congruent parts, and
+/// of what turns or mirrors into itself about the lines and planes that parts suggest; each grown to all parts that its
+/// group permutes; then the larger regions of their subgroups. Every group was verified.
+/// \param whole index of the whole mesh \param known regions found before; their groups are not reported again
+/// \param screen directions to search where moments leave all open
+PartRegions find_part_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                              const std::vector<FoundRegion>& known, const DirectionSet& screen,
+                              const PartRegionOptions& options, const RunContext& context);
+
+/// "part 3", "parts 1, 4-7": numbers of the mesh's parts, for a name.
+std::string name_of_parts(const std::vector<int>& parts);
+
+}  // namespace orbifit

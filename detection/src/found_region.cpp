@@ -1,0 +1,72 @@
+#include "orbifit/detection/found_region.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "orbifit/detection/featureless.h"
+#include "orbifit/detection/region_growth.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kSliver = 0.002;  // of the mesh's area
+
+// A few faces tell most pairs of regions apart.
+bool plainly_outside(const std::vector<int>& inner, const std::vector<int>& outer) {
+  constexpr std::size_t kLooks = 16;
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < kLooks; ++i) {
+    const int face = inner[i * inner.size() / kLooks];
+    if (!std::ranges::binary_search(outer, face)) ++outside;
+  }
+  return outside > kLooks / 2;
+}
+
+}  // namespace
+
+double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner, const std::vector<int>& outer) {
+  double area = 0;
+  auto at = outer.begin();
+  for (const int face : inner) {
+    at = std::lower_bound(at, outer.end(), face);
+    if (at == outer.end() || *at != face) area += prepared.areas[face];
+  }
+  return area;
+}
+
+bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
+  if (inner.area > 1.02 * outer.area || inner.faces.empty() || plainly_outside(inner.faces, outer.faces)) return false;
+  return area_outside(prepared, inner.faces, outer.faces) <= std::min(0.05 * inner.area, kSliver * prepared.area);
+}
+
+void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions) {
+  std::vector<FoundRegion> kept;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const FoundRegion& mine = regions[i];
+    const SurfaceMoments moments = surface_moments(prepared, mine.faces);
+    const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
+    bool repeats = false;
+    for (std::size_t j = 0; j < regions.size() && !repeats; ++j) {
+      if (i == j || !covers(prepared, regions[j], mine)) continue;
+      if (!contains_group(regions[j].placement, mine.placement, moments.centroid, moments.radius, reach)) continue;
+      const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
+      repeats = !mutual || j < i;
+    }
+    if (!repeats) kept.push_back(mine);
+  }
+  regions = std::move(kept);
+}
+
+void drop_featureless(const PreparedMesh& prepared, const SurfaceIndex& whole, double tolerance,
+                      const RunContext& context, std::vector<FoundRegion>& regions) {
+  constexpr int kSamples = 400;
+  std::erase_if(regions, [&](const FoundRegion& region) {
+    if (region.area > 0.5 * prepared.area) return false;  // the whole is no piece of anything
+    const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "slip");
+    return featureless(patch, region.placement, whole, tolerance, context);
+  });
+}
+
+}  // namespace orbifit

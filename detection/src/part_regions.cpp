@@ -1,0 +1,351 @@
+#include "orbifit/detection/part_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/featureless.h"
+#include "orbifit/detection/own_group.h"
+#include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/symmetry_lines.h"
+#include "orbifit/detection/verification.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+constexpr int kPartSamples = 700;
+constexpr std::size_t kMostPartRegions = 200;
+constexpr int kHighestOrder = 72;
+
+struct Found {
+  GroupPlacement placement;
+  std::vector<int> parts;  // ascending; what the region covers
+  double area = 0;
+  bool known = false;  // found before
+};
+
+GroupPlacement moved(const GroupPlacement& placement, const Motion& motion) {
+  GroupPlacement result = placement;
+  result.frame = motion.linear * placement.frame;
+  // A frame stays right-handed: turning its first column over changes no group written in it but by a mirror image
+  // of its twist, and the elements of a group come with their inverses.
+  if (result.frame.determinant() < 0) result.frame.col(1) = -result.frame.col(1);
+  result.centre = motion(placement.centre);
+  return result;
+}
+
+class Search {
+ public:
+  Search(const PreparedMesh& prepared, const SurfaceIndex& whole, const DirectionSet& screen,
+         const PartRegionOptions& options, const RunContext& context)
+      : prepared_(prepared), whole_(whole), screen_(screen), options_(options), context_(context) {}
+
+  PartRegions run(const std::vector<FoundRegion>& known) {
+    context_.progress("parts", 0);
+    result_.survey = survey_components(prepared_, options_.tolerance, options_.least_share, context_);
+    mover_.emplace(prepared_, survey(), whole_, options_.tolerance, context_);
+    for (const FoundRegion& region : known) take(region);
+    result_.own_groups.resize(classes().size());
+    for (std::size_t c = 0; c < classes().size() && !late(); ++c) {
+      context_.progress("parts", static_cast<double>(c) / static_cast<double>(classes().size()));
+      find_part_groups(c);
+    }
+    for (std::size_t c = 0; c < classes().size() && !late(); ++c) {
+      context_.progress("sets", static_cast<double>(c) / static_cast<double>(classes().size()));
+      const std::vector<int>& members = classes()[c].members;
+      if (members.size() > 1 && members.size() < survey().moments.size()) find_set_group(members, {});
+    }
+    find_line_regions();
+    context_.progress("subgroups", 0);
+    find_subgroup_regions();
+    for (const Found& found : found_) {
+      if (found.known) continue;
+      result_.regions.push_back({found.placement, faces_of(found.parts), found.area, name_of_parts(found.parts)});
+    }
+    return std::move(result_);
+  }
+
+ private:
+  const ComponentSurvey& survey() const { return result_.survey; }
+  const std::vector<CongruenceClass>& classes() const { return result_.survey.classes; }
+  const SurfaceMoments& moments(int part) const { return survey().moments[static_cast<std::size_t>(part)]; }
+  bool late() const { return options_.late && options_.late(); }
+  double least_area() const { return options_.least_share * prepared_.area; }
+
+  std::vector<int> faces_of(const std::vector<int>& parts) const {
+    std::vector<int> faces;
+    for (const int c : parts) {
+      const std::vector<int>& part = prepared_.components.faces[static_cast<std::size_t>(c)];
+      faces.insert(faces.end(), part.begin(), part.end());
+    }
+    std::ranges::sort(faces);
+    return faces;
+  }
+
+  double area_of(const std::vector<int>& parts) const {
+    double area = 0;
+    for (const int c : parts) area += moments(c).area;
+    return area;
+  }
+
+  SurfaceMoments moments_of(const std::vector<int>& parts) const {
+    return parts.size() == 1 ? moments(parts.front()) : surface_moments(prepared_, faces_of(parts));
+  }
+
+  SurfacePatch patch_of(const std::vector<int>& parts, std::string_view stream) const {
+    const int extra = parts.size() > 1 ? 40 * static_cast<int>(std::min<std::size_t>(parts.size(), 40)) : 0;
+    return make_patch(prepared_, faces_of(parts), kPartSamples + extra, options_.tolerance, context_, stream);
+  }
+
+  // A region found before counts for the parts that lie in it.
+  void take(const FoundRegion& region) {
+    Found found{region.placement, {}, region.area, true};
+    std::vector<double> inside(survey().moments.size(), 0);
+    for (const int face : region.faces) {
+      inside[static_cast<std::size_t>(prepared_.components.component_of_face[static_cast<std::size_t>(face)])] +=
+          prepared_.areas[face];
+    }
+    for (std::size_t c = 0; c < inside.size(); ++c) {
+      if (inside[c] > 0.98 * survey().moments[c].area) found.parts.push_back(static_cast<int>(c));
+    }
+    found_.push_back(std::move(found));
+  }
+
+  GroupHints hints(const std::vector<Vector3d>& more = {}) const {
+    GroupHints result{more};
+    if (!found_.empty()) {
+      const GroupPlacement& whole = found_.front().placement;
+      for (int k = 0; k < 3; ++k) result.axes.emplace_back(whole.frame.col(k));
+    }
+    return result;
+  }
+
+  // Principal axes suffice unless variances are close, or the part is a large share of the whole.
+  bool needs_screen(const SurfaceMoments& moments) const {
+    if (moments.area > 0.1 * prepared_.area) return true;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
+    const Vector3d d = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+    return d[2] - d[0] < 0.05 * d[2];
+  }
+
+  bool flat(const SurfaceMoments& moments) const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues()[0] < std::pow(0.25 * options_.tolerance * std::min(1.0, 4 * moments.diagonal), 2);
+  }
+
+  // Whether only the borders of pieces of larger surfaces give them the group.
+  bool mere_border(const GroupPlacement& placement, const std::vector<int>& parts) const {
+    if (!options_.pieces) return false;
+    if (flat(moments_of(parts))) return true;
+    if (placement.group.continuous()) return false;
+    constexpr int kSamples = 300;
+    const SurfacePatch patch = make_patch(prepared_, faces_of(parts), kSamples, options_.tolerance, context_, "slip");
+    const int ways = slippable_ways(patch);
+    return ways >= (parts.size() == 1 ? 1 : 2);
+  }
+
+  bool already_known(const GroupPlacement& placement, const std::vector<int>& parts) const {
+    const SurfaceMoments mine = moments_of(parts);
+    const double tolerance = options_.tolerance * std::min(1.0, 4 * mine.diagonal);
+    return std::ranges::any_of(found_, [&](const Found& other) {
+      return std::ranges::includes(other.parts, parts) &&
+             contains_group(other.placement, placement, mine.centroid, mine.radius, tolerance);
+    });
+  }
+
+  bool verified(const GroupPlacement& placement, const std::vector<int>& parts) const {
+    const SurfacePatch patch =
+        make_patch(prepared_, faces_of(parts), kPartSamples, options_.tolerance, context_, "grown");
+    const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    return passes(verify(patch, motions, tolerance, 0, VerificationLimits{}.joint, context_));
+  }
+
+  // Smaller groups on more of the surface: a subgroup may permute parts that the group itself does not.
+  void find_subgroup_regions() {
+    constexpr std::size_t kMostGroups = 30;
+    constexpr double kMaterial = 1.05;
+    std::ranges::stable_sort(found_, std::greater<>(), &Found::area);
+    const std::vector<Found> groups(found_.begin(),
+                                    found_.begin() + static_cast<std::ptrdiff_t>(std::min(found_.size(), kMostGroups)));
+    for (const Found& each : groups) {
+      if (late()) return;
+      for (SubgroupRegion& region : mover_->subgroup_regions(each.placement, each.parts)) {
+        if (each.parts.size() == 1) drop_siblings(region.components, each.parts.front());
+        const double area = area_of(region.components);
+        if (area < kMaterial * each.area || already_known(region.placement, region.components)) continue;
+        if (verified(region.placement, region.components)) {
+          found_.push_back({region.placement, region.components, area, false});
+        }
+      }
+    }
+  }
+
+  // Adds a region for a group known on `seed`, grown to all parts that the group permutes.
+  void add(const GroupPlacement& placement, const std::vector<int>& seed) {
+    if (already_known(placement, seed)) return;
+    std::vector<int> grown = mover_->permuted(placement, seed);
+    if (seed.size() == 1 && !options_.pieces) drop_siblings(grown, seed.front());
+    if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
+    const double area = area_of(grown);
+    if (area < least_area() || mere_border(placement, grown)) return;
+    found_.push_back({placement, grown, area, false});
+  }
+
+  // Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of
+  // symmetry.
+  void drop_siblings(std::vector<int>& grown, int part) const {
+    const auto kind = std::ranges::find_if(
+        classes(), [&](const CongruenceClass& each) { return std::ranges::binary_search(each.members, part); });
+    if (kind == classes().end()) return;
+    std::erase_if(grown, [&](int c) { return c != part && std::ranges::binary_search(kind->members, c); });
+  }
+
+  void find_part_groups(std::size_t number) {
+    const CongruenceClass& kind = classes()[number];
+    const int first = kind.members.front();
+    const SurfaceMoments& mine = moments(first);
+    if (mine.area * static_cast<double>(kind.members.size()) < least_area()) return;
+    const bool sheet = flat(mine);
+    const SurfacePatch patch = make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(first)],
+                                          kPartSamples, options_.tolerance, context_, "part");
+    const bool screen = needs_screen(mine) && !(options_.pieces && sheet);
+    const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(), context_);
+    if (!group) return;
+    result_.own_groups[number] = group->placement;
+    if (flat_mirror_only(mine, group->placement)) return;
+    if (options_.pieces && (sheet || mere_border(group->placement, {first}))) return;
+    for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
+      add(moved(group->placement, kind.motions[i]), {kind.members[i]});
+    }
+  }
+
+  // Every flat sheet has the mirror in its own plane.
+  bool flat_mirror_only(const SurfaceMoments& moments, const GroupPlacement& placement) const {
+    if (placement.group.family != Family::Cs) return false;
+    const Vector3d normal = placement.frame.col(2);
+    return normal.dot(moments.covariance * normal) < std::pow(0.5 * options_.tolerance * moments.diagonal, 2);
+  }
+
+  // The own group of several parts together. Whether there is one.
+  bool find_set_group(const std::vector<int>& members, const std::vector<Vector3d>& axes) {
+    if (area_of(members) < least_area() || !tried_.insert(members).second) return false;
+    const SurfacePatch patch = patch_of(members, "set");
+    const bool screen = axes.empty() && needs_screen(patch.moments);
+    const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
+    if (!group) return false;
+    add(group->placement, members);
+    return true;
+  }
+
+  // The parts of `of` that none of the others holds.
+  static std::vector<int> without(const std::vector<int>& of, const std::vector<std::vector<int>>& others) {
+    std::vector<int> result;
+    for (const int c : of) {
+      const bool held =
+          std::ranges::any_of(others, [&](const auto& each) { return std::ranges::binary_search(each, c); });
+      if (!held) result.push_back(c);
+    }
+    return result;
+  }
+
+  void find_line_regions() {
+    const SymmetryLines lines = find_symmetry_lines(prepared_, survey(), options_.tolerance);
+    std::size_t done = 0;
+    const auto total = static_cast<double>(lines.axes.size() + lines.planes.size());
+    for (const CandidateLine& axis : lines.axes) {
+      if (late()) return;
+      context_.progress("axes", static_cast<double>(done++) / total);
+      find_axis_regions(axis.line);
+    }
+    for (const CandidateLine& plane : lines.planes) {
+      if (late()) return;
+      context_.progress("axes", static_cast<double>(done++) / total);
+      find_mirror_region(plane.line);
+    }
+  }
+
+  // Everything that turns into itself about the line: by any angle first, then by 1/n of a turn, n descending, wherever
+  // that is materially more than for the multiples of n.
+  void find_axis_regions(const Line& line) {
+    const GroupFrame frame = frame_about(line.direction);
+    const std::vector<int> round = mover_->permuted({{Family::Cinf, 1}, frame, line.point}, {});
+    if (!round.empty()) find_set_group(round, {line.direction});
+    std::vector<std::pair<int, std::vector<int>>> found;
+    for (int n = kHighestOrder; n >= 2; --n) {
+      context_.check();
+      std::vector<int> turned = mover_->permuted({{Family::Cn, n}, frame, line.point}, round);
+      std::vector<std::vector<int>> larger{round};
+      for (const auto& [order, parts] : found) {
+        if (order % n == 0) larger.push_back(parts);
+      }
+      const std::vector<int> fresh = without(turned, larger);
+      if (area_of(fresh) < least_area()) continue;
+      for (const CongruenceClass& kind : classes()) {
+        std::vector<int> ring;
+        std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));
+        if (ring.size() > 1) find_set_group(ring, {line.direction});
+      }
+      if (!find_set_group(turned, {line.direction}) && !already_known({{Family::Cn, n}, frame, line.point}, turned)) {
+        const GroupPlacement placement = refine(patch_of(turned, "axis"), {{Family::Cn, n}, frame, line.point});
+        if (verified(placement, turned)) add(placement, turned);
+      }
+      found.emplace_back(n, std::move(turned));
+    }
+  }
+
+  void find_mirror_region(const Line& line) {
+    GroupPlacement placement{{Family::Cs, 1}, frame_about(line.direction), line.point};
+    const std::vector<int> parts = mover_->permuted(placement, {});
+    if (parts.size() < 2 || area_of(parts) < least_area() || already_known(placement, parts)) return;
+    if (!tried_.insert(parts).second) return;
+    const SurfacePatch patch = patch_of(parts, "mirror");
+    placement = refine(patch, placement);
+    if (verified(placement, parts)) add(placement, parts);
+  }
+
+  const PreparedMesh& prepared_;
+  const SurfaceIndex& whole_;
+  const DirectionSet& screen_;
+  const PartRegionOptions& options_;
+  const RunContext& context_;
+  PartRegions result_;
+  std::optional<ComponentMover> mover_;
+  std::vector<Found> found_;
+  std::set<std::vector<int>> tried_;
+};
+
+}  // namespace
+
+std::string name_of_parts(const std::vector<int>& parts) {
+  std::string text = parts.size() == 1 ? "part " : "parts ";
+  for (std::size_t i = 0; i < parts.size();) {
+    std::size_t j = i;
+    while (j + 1 < parts.size() && parts[j + 1] == parts[j] + 1) ++j;
+    if (i > 0) text += ", ";
+    text += std::to_string(parts[i]);
+    if (j > i) text += "-" + std::to_string(parts[j]);
+    i = j + 1;
+    if (text.size() > 60 && i < parts.size()) return text + ", ...";
+  }
+  return text;
+}
+
+PartRegions find_part_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                              const std::vector<FoundRegion>& known, const DirectionSet& screen,
+                              const PartRegionOptions& options, const RunContext& context) {
+  return Search(prepared, whole, screen, options, context).run(known);
+}
+
+}  // namespace orbifit
