@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "grid_flood.h"
+
 namespace orbifit {
 
 namespace {
@@ -14,6 +16,9 @@ using Eigen::Vector3d;
 
 // Gaps and walls thinner than this, in cells, are rounding between faces that touch.
 constexpr double kTouching = 1e-7;
+
+// Pieces of fewer nodes than this were torn off a thin part, or are parts that the grid does not resolve.
+constexpr std::size_t kCrumb = 8;
 
 // A face met by a line.
 struct Event {
@@ -167,6 +172,8 @@ UnionScan::UnionScan(const ClosedParts& parts, const Points& vertices, const std
       }
     }
   }
+  fill_voids(inside_, nodes_);
+  drop_crumbs(inside_, nodes_, kCrumb);
   // Faces too small to be met are turned as most of their part.
   std::vector<int> against_of_part(parts.parity_of_part.size(), 0);
   for (std::size_t f = 0; f < face_count; ++f) {

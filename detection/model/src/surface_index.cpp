@@ -60,6 +60,11 @@ struct Corners {
   Eigen::Vector3d at(const Eigen::Vector3d& weights) const { return from(Eigen::Vector3d::Zero(), weights); }
 };
 
+// Of a triangle's edges, within its plane; unit, or zero for a degenerate face.
+struct OutwardNormals {
+  Eigen::Vector3d ab, bc, ca;
+};
+
 // Parameter in [0, 1] of the point of segment a + t ab nearest to a + ap.
 double nearest_on_segment(const Eigen::Vector3d& ap, const Eigen::Vector3d& ab) {
   const double length = ab.squaredNorm();
@@ -167,8 +172,9 @@ struct SurfaceIndex::Implementation {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
   std::vector<Corners> corners;                      // scaled units
   std::vector<Eigen::Vector3d> normals;              // unit, zero for degenerate faces
-  std::vector<std::uint8_t> needles;                 // 1 where the normal is too uncertain to cull with
-  std::vector<int> face_numbers;                     // in the mesh
+  std::vector<OutwardNormals> outward;
+  std::vector<std::uint8_t> needles;  // 1 where the normal is too uncertain to cull with
+  std::vector<int> face_numbers;      // in the mesh
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
@@ -197,6 +203,7 @@ namespace {
 struct Search {
   const Corners* corners = nullptr;
   const Eigen::Vector3d* normals = nullptr;
+  const OutwardNormals* outward = nullptr;
   const std::uint8_t* needles = nullptr;
   const int* face_numbers = nullptr;
   Eigen::Vector3d point;  // scaled units
@@ -222,19 +229,27 @@ struct Search {
   }
 };
 
-// Whether the plane of the triangle alone is farther away than the best face so far. The normal of a triangle that is
-// not a needle is known to 1e-9, so nothing nearer is lost; far from the surface this spares most measurements.
-bool plane_is_beyond(const Search& search, unsigned triangle) {
-  if (search.face < 0 || search.needles[triangle]) return false;
-  const Eigen::Vector3d from_plane = search.point - search.corners[triangle].a;
-  const double height = std::abs(search.normals[triangle].dot(from_plane)) - 1e-8 * from_plane.lpNorm<1>();
-  return height > 0 && height * height > search.squared_distance;
+// Whether the triangle is farther away than the best face so far, by its plane and by the lines of its edges within
+// that plane. Its normals are known to 1e-9 unless it is a needle, so nothing nearer is lost; this spares most
+// measurements, far from the surface by the plane, near fans of long triangles by the edges.
+bool plainly_beyond(const Search& search, unsigned triangle) {
+  if (search.needles[triangle]) return false;
+  const double limit = search.face < 0 ? search.max_distance * search.max_distance : search.squared_distance;
+  const Corners& corners = search.corners[triangle];
+  const Eigen::Vector3d from_a = search.point - corners.a;
+  const double slack = 1e-8 * (from_a.lpNorm<1>() + (corners.b - corners.a).lpNorm<1>());
+  const double height = std::max(0.0, std::abs(search.normals[triangle].dot(from_a)) - slack);
+  const OutwardNormals& outward = search.outward[triangle];
+  const double outside =
+      std::max({outward.ab.dot(from_a), outward.ca.dot(from_a), outward.bc.dot(search.point - corners.b)}) - slack;
+  const double beside = std::max(0.0, outside);
+  return height * height + beside * beside > limit;
 }
 
 bool measure(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
   const unsigned triangle = arguments->primID;
-  if (!search.faces_the_right_way(triangle) || plane_is_beyond(search, triangle)) return false;
+  if (!search.faces_the_right_way(triangle) || plainly_beyond(search, triangle)) return false;
   const Corners& corners = search.corners[triangle];
   const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
   const double squared = corners.from(search.point, barycentric).squaredNorm();
@@ -263,12 +278,16 @@ void SurfaceIndex::Implementation::build() {
   scale = unit_scale(box.sizes().maxCoeff());
   centre = scale * (0.5 * box.min() + 0.5 * box.max());
   normals.reserve(corners.size());
+  outward.reserve(corners.size());
   for (Corners& face : corners) {
     face = {scale * face.a, scale * face.b, scale * face.c};
     const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
     const double length = vector.stableNorm();
     needles.push_back(length > 1e-6 * (face.b - face.a).norm() * (face.c - face.a).norm() ? 0 : 1);
-    normals.emplace_back(length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero());
+    const Eigen::Vector3d normal = length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
+    normals.push_back(normal);
+    outward.push_back({(face.b - face.a).cross(normal).normalized(), (face.c - face.b).cross(normal).normalized(),
+                       (face.a - face.c).cross(normal).normalized()});
   }
 
   device = shared_device();
@@ -304,6 +323,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   Search search;
   search.corners = corners.data();
   search.normals = normals.data();
+  search.outward = outward.data();
   search.needles = needles.data();
   search.face_numbers = face_numbers.data();
   search.point = scale * point;
