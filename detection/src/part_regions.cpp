@@ -192,10 +192,21 @@ class Search {
     }
   }
 
+  // How closely parts must fit a group that fits the seed as well as it does, in tolerances: parts that fit far worse
+  // are not of the same making.
+  double strictness(const GroupPlacement& placement, const std::vector<int>& seed) const {
+    if (placement.group.continuous()) return 1;
+    constexpr double kDeviations = 8;
+    constexpr double kStrictest = 0.15;
+    const SurfacePatch patch = make_patch(prepared_, faces_of(seed), 200, options_.tolerance, context_, "fit");
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    return std::clamp(kDeviations * measure_residual(patch, motions, context_).rms / patch.tolerance, kStrictest, 1.0);
+  }
+
   // Adds a region for a group known on `seed`, grown to all parts that the group permutes.
   void add(const GroupPlacement& placement, const std::vector<int>& seed) {
     if (already_known(placement, seed)) return;
-    std::vector<int> grown = mover_->permuted(placement, seed);
+    std::vector<int> grown = mover_->permuted(placement, seed, strictness(placement, seed));
     if (seed.size() == 1 && !options_.pieces) drop_siblings(grown, seed.front());
     if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
@@ -276,6 +287,10 @@ class Search {
     }
   }
 
+  static double distance_from(const Line& line, const Vector3d& point) {
+    return (point - line.point).cross(line.direction).norm();
+  }
+
   // Everything that turns into itself about the line: by any angle first, then by 1/n of a turn, n descending, wherever
   // that is materially more than for the multiples of n.
   void find_axis_regions(const Line& line) {
@@ -290,7 +305,9 @@ class Search {
       for (const auto& [order, parts] : found) {
         if (order % n == 0) larger.push_back(parts);
       }
-      const std::vector<int> fresh = without(turned, larger);
+      std::vector<int> fresh = without(turned, larger);
+      // What lies on the line speaks for itself.
+      std::erase_if(fresh, [&](int c) { return distance_from(line, moments(c).centroid) < 3 * options_.tolerance; });
       if (area_of(fresh) < least_area()) continue;
       for (const CongruenceClass& kind : classes()) {
         std::vector<int> ring;

@@ -177,7 +177,8 @@ double ComponentMover::reach_of(std::size_t component, const PointGroup& group) 
   return group.continuous() ? std::min(reach, 2 * tolerance_ * std::max(moments.radius, 1e-9)) : reach;
 }
 
-std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const std::vector<int>& seed) {
+std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const std::vector<int>& seed,
+                                          double strictness) {
   const std::size_t count = survey_.moments.size();
   std::vector<char> in(count, 0);
   for (const int c : seed) in[static_cast<std::size_t>(c)] = 1;
@@ -188,7 +189,7 @@ std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const
   for (std::size_t c = 0; c < count; ++c) {
     context_.check();
     if (in[c] != 0) continue;
-    const double reach = reach_of(c, placement.group);
+    const double reach = strictness * reach_of(c, placement.group);
     std::vector<int> targets;
     const bool kept = std::ranges::all_of(motions, [&](const Motion& motion) {
       targets.push_back(image(c, motion, reach));

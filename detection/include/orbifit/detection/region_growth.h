@@ -25,8 +25,8 @@ class ComponentMover {
                  double tolerance, const RunContext& context);
 
   /// The components that the group permutes, ascending.
-  /// \param seed components known to belong
-  std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed);
+  /// \param seed components known to belong \param strictness how far images may be off, in tolerances
+  std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed, double strictness = 1);
 
   /// For subgroups H of a finite group known on `seed`: the components that H permutes where they are more than the
   /// seed, largest subgroup first.
