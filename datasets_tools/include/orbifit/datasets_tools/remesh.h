@@ -28,12 +28,13 @@ struct Remeshed {
 ///
 /// A part is what is connected over edges of the mesh welded at 1e-9 of its diagonal. A point is inside the union when
 /// it is inside of any part: winding number other than 0, or odd parity where a part's faces are not consistently
-/// oriented. So parts turned inside out count as others. What is enclosed is filled, between parts too. Where every face of a part has a
-/// second one that looks the other way, one of the two is taken.
+/// oriented. So parts turned inside out count as others. What is enclosed is filled, between parts too. Where every
+/// face of a part has a second one that looks the other way, one of the two is taken.
 ///
 /// What is thinner than two cells keeps its place and its two sides, but not its sharp ends; what is thinner than
-/// one cell is torn into closed pieces or lost, and so are pieces of under 8 cells; gaps narrower than a cell may close. Grooves and edges narrower than a
-/// cell are rounded. Creases are followed to some hundredths of a cell away from their corners.
+/// one cell is torn into closed pieces or lost, and so are pieces of under 8 cells; gaps narrower than a cell may
+/// close. Grooves and edges narrower than a cell are rounded. Creases are followed to some hundredths of a cell away
+/// from their corners.
 ///
 /// \throw InputError for a mesh without faces, of no size, or with a part that is not closed; it names the part's
 /// first face
