@@ -46,12 +46,12 @@ class Detector {
     if (prepared_.components.faces.size() > 1) {
       const PartRegions parts = find_in_parts(prepared_, false);
       for (const FoundRegion& region : parts.regions) regions_.push_back(region);
-      drop_repeats(prepared_, options_.tolerance, regions_);
+      drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
       find_patterns(parts, annotation);
     }
     find_in_segments();
-    drop_repeats(prepared_, options_.tolerance, regions_);
-    drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_);
+    drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
+    drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
     write_regions(annotation);
     context_.progress("regions", 1);
     return annotation;
@@ -79,6 +79,7 @@ class Detector {
     part_options.tolerance = options_.tolerance;
     part_options.least_share = kLeastShare;
     part_options.pieces = pieces;
+    part_options.explanation = options_.explanation;
     part_options.late = [this] { return late(); };
     return find_part_regions(partition, *whole_index_, regions_, screen_, part_options, context_);
   }
@@ -188,11 +189,16 @@ class Detector {
     const double least = 0.01 * options_.tolerance;
     const std::vector<Region> all = regions;
     std::erase_if(regions, [&](const Region& region) {
-      return !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
+      const bool coincidence = !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
         return around.faces.size() > region.faces.size() &&
                region.residual.max > kFarLess * std::max(around.residual.max, least) &&
                std::ranges::includes(around.faces, region.faces);
       });
+      if (coincidence && options_.explanation != nullptr) {
+        options_.explanation->notes.push_back({"coincidences", region.group.symbol() + " on " + region.name, false,
+                                               "far less exact than a region around it"});
+      }
+      return coincidence;
     });
   }
 

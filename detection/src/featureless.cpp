@@ -145,15 +145,4 @@ bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, con
   });
 }
 
-int slippable_ways(const SurfacePatch& patch) {
-  const Vector3d centre = patch.samples.points.colwise().mean();
-  const double size = spread_about(patch, centre);
-  if (!(size > 0)) return 6;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(slip_matrix(patch, centre, size),
-                                                                          Eigen::EigenvaluesOnly);
-  int ways = 0;
-  while (ways < 6 && solver.eigenvalues()[ways] < kSlippable * solver.eigenvalues()[5]) ++ways;
-  return ways;
-}
-
 }  // namespace orbifit

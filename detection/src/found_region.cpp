@@ -24,6 +24,12 @@ bool plainly_outside(const std::vector<int>& inner, const std::vector<int>& oute
   return outside > kLooks / 2;
 }
 
+void note_drop(Explanation* explanation, const std::string& stage, const FoundRegion& region,
+               const std::string& reason) {
+  if (explanation == nullptr) return;
+  explanation->notes.push_back({stage, region.placement.group.symbol() + " on " + region.name, false, reason});
+}
+
 }  // namespace
 
 double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner, const std::vector<int>& outer) {
@@ -41,7 +47,8 @@ bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundR
   return area_outside(prepared, inner.faces, outer.faces) <= std::min(0.05 * inner.area, kSliver * prepared.area);
 }
 
-void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions) {
+void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
+                  Explanation* explanation) {
   std::vector<FoundRegion> kept;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const FoundRegion& mine = regions[i];
@@ -53,6 +60,8 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
       if (!contains_group(regions[j].placement, mine.placement, moments.centroid, moments.radius, reach)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
       repeats = !mutual || j < i;
+      if (repeats)
+        note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
     }
     if (!repeats) kept.push_back(mine);
   }
@@ -60,12 +69,14 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
 }
 
 void drop_featureless(const PreparedMesh& prepared, const SurfaceIndex& whole, double tolerance,
-                      const RunContext& context, std::vector<FoundRegion>& regions) {
+                      const RunContext& context, std::vector<FoundRegion>& regions, Explanation* explanation) {
   constexpr int kSamples = 400;
   std::erase_if(regions, [&](const FoundRegion& region) {
     if (region.area > 0.5 * prepared.area) return false;  // the whole is no piece of anything
     const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "slip");
-    return featureless(patch, region.placement, whole, tolerance, context);
+    const bool drop = featureless(patch, region.placement, whole, tolerance, context);
+    if (drop) note_drop(explanation, "featureless", region, "slides over the surface around it");
+    return drop;
   });
 }
 

@@ -11,9 +11,11 @@
 #include <Eigen/Eigenvalues>
 
 #include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/explanation.h"
 #include "orbifit/detection/featureless.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/revolution.h"
 #include "orbifit/detection/symmetry_lines.h"
 #include "orbifit/detection/verification.h"
 
@@ -150,9 +152,11 @@ class Search {
     if (flat(moments_of(parts))) return true;
     if (placement.group.continuous()) return false;
     constexpr int kSamples = 300;
+    constexpr double kAngle = 0.1;  // radians
     const SurfacePatch patch = make_patch(prepared_, faces_of(parts), kSamples, options_.tolerance, context_, "slip");
-    const int ways = slippable_ways(patch);
-    return ways >= (parts.size() == 1 ? 1 : 2);
+    const std::optional<RevolutionFit> fit =
+        fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
+    return fit && (fit->planar || fit->inliers > 0.95);
   }
 
   bool already_known(const GroupPlacement& placement, const std::vector<int>& parts) const {
@@ -185,7 +189,9 @@ class Search {
         if (each.parts.size() == 1) drop_siblings(region.components, each.parts.front());
         const double area = area_of(region.components);
         if (area < kMaterial * each.area || already_known(region.placement, region.components)) continue;
-        if (verified(region.placement, region.components)) {
+        const bool holds = verified(region.placement, region.components);
+        note("subgroups", region.placement, region.components, holds, holds ? "verified" : "not verified");
+        if (holds) {
           found_.push_back({region.placement, region.components, area, false});
         }
       }
@@ -203,14 +209,25 @@ class Search {
     return std::clamp(kDeviations * measure_residual(patch, motions, context_).rms / patch.tolerance, kStrictest, 1.0);
   }
 
+  void note(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& parts, bool kept,
+            std::string_view reason) const {
+    if (options_.explanation == nullptr) return;
+    options_.explanation->notes.push_back({std::string(options_.pieces ? "segments: " : "") + std::string(stage),
+                                           placement.group.symbol() + " on " + name_of_parts(parts), kept,
+                                           std::string(reason)});
+  }
+
   // Adds a region for a group known on `seed`, grown to all parts that the group permutes.
-  void add(const GroupPlacement& placement, const std::vector<int>& seed) {
-    if (already_known(placement, seed)) return;
+  void add(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& seed) {
+    if (already_known(placement, seed)) return note(stage, placement, seed, false, "known from a larger region");
     std::vector<int> grown = mover_->permuted(placement, seed, strictness(placement, seed));
     if (seed.size() == 1 && !options_.pieces) drop_siblings(grown, seed.front());
     if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
-    if (area < least_area() || mere_border(placement, grown)) return;
+    if (area < least_area()) return note(stage, placement, grown, false, "too small");
+    if (mere_border(placement, grown))
+      return note(stage, placement, grown, false, "only its border gives it the group");
+    note(stage, placement, grown, true, grown.size() > seed.size() ? "grown and verified" : "verified");
     found_.push_back({placement, grown, area, false});
   }
 
@@ -233,12 +250,14 @@ class Search {
                                           kPartSamples, options_.tolerance, context_, "part");
     const bool screen = needs_screen(mine) && !(options_.pieces && sheet);
     const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(), context_);
-    if (!group) return;
+    if (!group) return note("parts", {}, {first}, false, "no group of its own");
     result_.own_groups[number] = group->placement;
     if (flat_mirror_only(mine, group->placement)) return;
-    if (options_.pieces && (sheet || mere_border(group->placement, {first}))) return;
+    if (options_.pieces && (sheet || mere_border(group->placement, {first}))) {
+      return note("parts", group->placement, {first}, false, "only its border gives it the group");
+    }
     for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
-      add(moved(group->placement, kind.motions[i]), {kind.members[i]});
+      add("parts", moved(group->placement, kind.motions[i]), {kind.members[i]});
     }
   }
 
@@ -255,8 +274,11 @@ class Search {
     const SurfacePatch patch = patch_of(members, "set");
     const bool screen = axes.empty() && needs_screen(patch.moments);
     const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
-    if (!group) return false;
-    add(group->placement, members);
+    if (!group) {
+      note(axes.empty() ? "sets" : "axes", {}, members, false, "no group of their own");
+      return false;
+    }
+    add(axes.empty() ? "sets" : "axes", group->placement, members);
     return true;
   }
 
@@ -316,7 +338,7 @@ class Search {
       }
       if (!find_set_group(turned, {line.direction}) && !already_known({{Family::Cn, n}, frame, line.point}, turned)) {
         const GroupPlacement placement = refine(patch_of(turned, "axis"), {{Family::Cn, n}, frame, line.point});
-        if (verified(placement, turned)) add(placement, turned);
+        if (verified(placement, turned)) add("axes", placement, turned);
       }
       found.emplace_back(n, std::move(turned));
     }
@@ -329,7 +351,7 @@ class Search {
     if (!tried_.insert(parts).second) return;
     const SurfacePatch patch = patch_of(parts, "mirror");
     placement = refine(patch, placement);
-    if (verified(placement, parts)) add(placement, parts);
+    if (verified(placement, parts)) add("planes", placement, parts);
   }
 
   const PreparedMesh& prepared_;

@@ -1,6 +1,7 @@
 #include "orbifit/detection/detect.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 
 #include "orbifit/apps/render.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/subspace/closable.h"
 
@@ -20,7 +22,7 @@ namespace {
 constexpr std::size_t kMostPictures = 24;  // in one preview
 
 struct DetectArguments {
-  std::string mesh, output, preview, colour;
+  std::string mesh, output, preview, colour, explain;
   std::vector<double> up{0, 0, 1};
   DetectOptions options;
 };
@@ -127,6 +129,16 @@ void write_preview(const DetectArguments& arguments, const Mesh& mesh, const Sym
   write_png(arguments.preview, contact_sheet(images, captions, std::min<int>(static_cast<int>(images.size()), 4)));
 }
 
+// One line a judgement, columns apart by tabs.
+void write_explanation(const std::string& folder, const Explanation& explanation) {
+  std::string text = "stage\tsubject\tverdict\treason\n";
+  for (const Explanation::Note& note : explanation.notes) {
+    text += note.stage + "\t" + note.subject + "\t" + (note.kept ? "kept" : "dropped") + "\t" + note.reason + "\n";
+  }
+  std::filesystem::create_directories(folder);
+  write_file(folder + "/stages.tsv", text);
+}
+
 }  // namespace
 
 CommandBody detect(CLI::App& app) {
@@ -144,6 +156,8 @@ CommandBody detect(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
   app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
+  app.add_option("--explain", arguments->explain, "Folder for what each stage kept and dropped, and why (created)")
+      ->type_name("DIR");
   app.add_option("--up", arguments->up, "Upward direction of the preview")
       ->type_size(3)
       ->expected(1)
@@ -156,8 +170,11 @@ CommandBody detect(CLI::App& app) {
     if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
     const Mesh mesh = read_mesh(arguments->mesh);
     context.run.check();
-    const SymmetryAnnotation found =
-        closable(mesh, orbifit::detect(mesh, arguments->options, context.run), context.run);
+    Explanation explanation;
+    DetectOptions chosen = arguments->options;
+    if (!arguments->explain.empty()) chosen.explanation = &explanation;
+    const SymmetryAnnotation found = closable(mesh, orbifit::detect(mesh, chosen, context.run), context.run);
+    if (!arguments->explain.empty()) write_explanation(arguments->explain, explanation);
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
     if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);

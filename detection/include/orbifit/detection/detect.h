@@ -1,5 +1,6 @@
 #pragma once
 
+#include "orbifit/detection/explanation.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
@@ -13,6 +14,8 @@ struct DetectOptions {
   int samples = 4000;  // >= 100
   /// Stop after this many seconds and return what is verified by then.
   double max_seconds = 0;  // >= 0; 0: no limit
+  /// Where to note what each stage kept and dropped; null: nowhere.
+  Explanation* explanation = nullptr;
 
   /// \throw UsageError naming the field, its value and the rule
   void validate() const;

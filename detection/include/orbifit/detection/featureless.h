@@ -13,8 +13,4 @@ namespace orbifit {
 bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, const SurfaceIndex& whole,
                  double tolerance, const RunContext& context);
 
-/// In how many independent ways (of three shifts and three turns) the patch slides along itself, its borders aside: 3
-/// for a plane or a sphere, 2 for a cylinder, 1 for a surface of revolution, an extrusion or a helix.
-int slippable_ways(const SurfacePatch& patch);
-
 }  // namespace orbifit

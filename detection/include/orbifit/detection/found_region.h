@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "orbifit/detection/explanation.h"
 #include "orbifit/detection/refinement.h"
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/model/run_context.h"
@@ -25,11 +26,12 @@ bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundR
 
 /// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the
 /// same of one another the earlier stays. \param tolerance of the detector, a fraction of the diagonal
-void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions);
+void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
+                  Explanation* explanation = nullptr);
 
 /// Drops regions of at most half the surface to which only their border gives a group: pieces of a larger plane,
 /// cylinder or sphere. \param whole index of the whole mesh
 void drop_featureless(const PreparedMesh& prepared, const SurfaceIndex& whole, double tolerance,
-                      const RunContext& context, std::vector<FoundRegion>& regions);
+                      const RunContext& context, std::vector<FoundRegion>& regions, Explanation* explanation = nullptr);
 
 }  // namespace orbifit

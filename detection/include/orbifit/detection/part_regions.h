@@ -6,6 +6,7 @@
 
 #include "orbifit/detection/candidates.h"
 #include "orbifit/detection/components.h"
+#include "orbifit/detection/explanation.h"
 #include "orbifit/detection/found_region.h"
 #include "orbifit/model/run_context.h"
 
@@ -15,9 +16,10 @@ struct PartRegionOptions {
   double tolerance = 0.005;    ///< fraction of the mesh's diagonal
   double least_share = 0.002;  ///< of the mesh's area: smaller regions say little
   /// Whether the parts are pieces of larger surfaces: their borders alone then make no symmetry. Flat regions, and
-  /// finite groups of regions that slide in two ways or more, are left out.
+  /// finite groups of planes and surfaces of revolution, are left out.
   bool pieces = false;
-  std::function<bool()> late;  ///< whether time is up; may be empty
+  Explanation* explanation = nullptr;  ///< notes are added to it; may be null
+  std::function<bool()> late;          ///< whether time is up; may be empty
 };
 
 struct PartRegions {
