@@ -7,5 +7,6 @@ namespace orbifit::benchmarks {
 /// The subcommands: each adds its options to `app` and returns what runs it.
 CommandBody table1(CLI::App& app);
 CommandBody scaling(CLI::App& app);
+CommandBody detection(CLI::App& app);
 
 }  // namespace orbifit::benchmarks

@@ -22,6 +22,11 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark scaling\n"
             "orbifit-benchmark scaling --most 1000000 --json scaling.json",
             benchmarks::scaling},
+    Command{"detection", "What detection finds of the known symmetries of a suite of models, spoilt in several ways.",
+            "orbifit-benchmark detection\n"
+            "orbifit-benchmark detection --forms remesh --noise 0,0.001,0.003,0.01 --cut --json detection.json\n"
+            "orbifit-benchmark detection --models none --write cases",
+            benchmarks::detection},
 };
 
 int run(const CommandBody& body, bool quiet) {

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "orbifit/datasets_tools/detection_score.h"
+#include "orbifit/datasets_tools/detection_suite.h"
+#include "orbifit/datasets_tools/truth.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit::benchmarks {
+
+/// What becomes of a model before it is detected.
+struct CaseForm {
+  bool remeshed = false;  ///< one surface whose triangles know nothing of the parts; else the assembly as it was built
+  double noise = 0;       ///< standard deviation along the normals, fraction of the diagonal
+  bool cut = false;       ///< without a fifth of its area, beyond a random plane
+
+  bool operator==(const CaseForm&) const = default;
+  std::string name() const;       ///< "assembly" or "remesh", ", cut"
+  std::string file_name() const;  ///< "remesh-cut-noise0.001"
+};
+
+/// The model in this form, in a random pose and scale. The same seed gives the same bytes. Assemblies are subdivided
+/// where they are cut or get noise, so that there is something to cut and to move.
+/// \throw NoResultError, InputError when the model cannot be remeshed
+TruthModel case_of(const SuiteModel& model, const CaseForm& form, RunContext& context);
+
+/// One model in one form.
+struct DetectionRow {
+  std::string model, kind;
+  CaseForm form;
+  int vertices = 0, faces = 0;
+  double seconds = 0;   ///< of the detection
+  std::string failure;  ///< why there is no detection; empty where there is one
+  DetectionScore score;
+
+  /// Regions of finite groups that match nothing: on a shape without symmetry there should be none.
+  int unfounded_groups() const;
+};
+
+/// The means over some rows; none where no row has the figure.
+struct DetectionMeans {
+  int rows = 0;
+  std::optional<double> strict_recall, loose_recall, precision, f1, axis_error, offset_error;
+  double seconds = 0;  ///< of all rows together
+};
+
+DetectionMeans means_of(const std::vector<const DetectionRow*>& rows);
+
+/// The tables for people, at most 120 columns wide.
+std::string detection_text(const std::vector<DetectionRow>& rows);
+
+/// An object: "rows", and "means" by form and noise and by kind.
+std::string detection_json(const std::vector<DetectionRow>& rows);
+
+/// The truth as an annotation with the keys optional_regions, optional_patterns and, in a region, also_accept.
+std::string truth_json(const DetectionTruth& truth);
+
+}  // namespace orbifit::benchmarks
