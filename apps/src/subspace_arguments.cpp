@@ -4,10 +4,12 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/subspace/closable.h"
 #include "orbifit/subspace/radius_field.h"
 
 namespace orbifit {
@@ -58,6 +60,20 @@ SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh&
   const double base = options.radius > 0 ? options.radius : std::sqrt(area / (0.7 * samples));
   options.relative_radii = radius_field(mesh, read_radius_field(arguments.radius_field, base), context) / base;
   return options;
+}
+
+Subspace build_closable(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
+                        const RunContext& context) {
+  try {
+    return build_subspace(mesh, annotation, options, context);
+  } catch (const InputError&) {
+    SymmetryAnnotation kept = closable(mesh, annotation, context);
+    const bool fewer =
+        kept.regions.size() < annotation.regions.size() || kept.patterns.size() < annotation.patterns.size();
+    if (!fewer) throw;
+    annotation = std::move(kept);
+  }
+  return build_subspace(mesh, annotation, options, context);
 }
 
 }  // namespace orbifit

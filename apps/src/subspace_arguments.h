@@ -30,4 +30,10 @@ void exclude_subspace_options(CLI::App& app, CLI::Option& option);
 /// \throw UsageError, InputError
 SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh& mesh, const RunContext& context);
 
+/// Builds the subspace. Where groups do not close together, as those of detected regions may, regions are left out with
+/// a message until they do (closable.h), and `annotation` becomes what is left. \throw InputError as build_subspace
+/// does, when leaving out regions does not help
+Subspace build_closable(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
+                        const RunContext& context);
+
 }  // namespace orbifit

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "orbifit/detection/candidates.h"
+#include "orbifit/detection/completion.h"
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/found_region.h"
 #include "orbifit/detection/own_group.h"
@@ -27,6 +28,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastShare = 0.002;  // of the mesh's area: smaller regions and patterns say little
+constexpr std::size_t kMostRegions = 300;
 constexpr int kScreenDirections = 2500;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
@@ -50,6 +52,10 @@ class Detector {
       find_patterns(parts, annotation);
     }
     find_in_segments();
+    if (!late()) {
+      context_.progress("images", 0);
+      complete_regions(prepared_, {options_.tolerance, kMostRegions, options_.explanation}, context_, regions_);
+    }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
     write_regions(annotation);

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/completion.h"
 #include "orbifit/detection/explanation.h"
 #include "orbifit/detection/featureless.h"
 #include "orbifit/detection/own_group.h"
@@ -36,16 +37,6 @@ struct Found {
   double area = 0;
   bool known = false;  // found before
 };
-
-GroupPlacement moved(const GroupPlacement& placement, const Motion& motion) {
-  GroupPlacement result = placement;
-  result.frame = motion.linear * placement.frame;
-  // A frame stays right-handed: turning its first column over changes no group written in it but by a mirror image
-  // of its twist, and the elements of a group come with their inverses.
-  if (result.frame.determinant() < 0) result.frame.col(1) = -result.frame.col(1);
-  result.centre = motion(placement.centre);
-  return result;
-}
 
 class Search {
  public:
@@ -257,7 +248,7 @@ class Search {
       return note("parts", group->placement, {first}, false, "only its border gives it the group");
     }
     for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
-      add("parts", moved(group->placement, kind.motions[i]), {kind.members[i]});
+      add("parts", carried(group->placement, kind.motions[i]), {kind.members[i]});
     }
   }
 

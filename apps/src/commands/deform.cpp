@@ -61,7 +61,7 @@ CommandBody deform(CLI::App& app) {
                    {arguments->mesh, arguments->handles, arguments->output, arguments->basis, radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    const SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     HandleSet set = read_handles(arguments->handles, mesh);
     if (arguments->iterations > 0) set.iterations = arguments->iterations;
 
@@ -69,7 +69,7 @@ CommandBody deform(CLI::App& app) {
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = Clock::now();
     const Subspace built = loads ? read_subspace(arguments->basis, mesh, annotation, context.run)
-                                 : build_subspace(mesh, annotation, options, context.run);
+                                 : build_closable(mesh, annotation, options, context.run);
     const auto with_subspace = Clock::now();
     context.run.progress("handles", 0);
     Deformer deformer(built, mesh, {parse_laplacian_kind(arguments->laplacian).value()}, context.run);

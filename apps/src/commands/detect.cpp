@@ -11,7 +11,7 @@
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/subspace/closable.h"
+#include "orbifit/subspace/shared_axes.h"
 
 #include "../commands.h"
 
@@ -173,7 +173,7 @@ CommandBody detect(CLI::App& app) {
     Explanation explanation;
     DetectOptions chosen = arguments->options;
     if (!arguments->explain.empty()) chosen.explanation = &explanation;
-    const SymmetryAnnotation found = closable(mesh, orbifit::detect(mesh, chosen, context.run), context.run);
+    const SymmetryAnnotation found = share_axes(mesh, orbifit::detect(mesh, chosen, context.run), chosen.tolerance);
     if (!arguments->explain.empty()) write_explanation(arguments->explain, explanation);
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));

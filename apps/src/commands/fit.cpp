@@ -90,9 +90,10 @@ CommandBody fit(CLI::App& app) {
     if (scan.dropped > 0) {
       context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
     }
-    const SymmetryAnnotation annotation =
+    SymmetryAnnotation annotation =
         arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
                                       : read_annotation(arguments->annotation, mesh);
+    if (!arguments->annotation.empty()) build_closable(mesh, annotation, chosen.subspace, context.run);
     FitInput input{mesh, annotation, scan, Similarity{}, {}, {}};
     if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
     if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;

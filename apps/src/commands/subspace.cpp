@@ -114,10 +114,10 @@ CommandBody subspace(CLI::App& app) {
       check_output(arguments->output, {}, {arguments->mesh, arguments->annotation, arguments->subspace.radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    const SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = std::chrono::steady_clock::now();
-    const Subspace built = build_subspace(mesh, annotation, options, context.run);
+    const Subspace built = build_closable(mesh, annotation, options, context.run);
     const double seconds = seconds_since(start);
     std::vector<LiftResiduals> residuals{random_field_residuals(mesh, annotation, built, context.run)};
     if (arguments->compare_lifts) {

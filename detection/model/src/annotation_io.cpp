@@ -368,7 +368,11 @@ class AnnotationReader {
 }  // namespace
 
 SymmetryAnnotation read_annotation(const std::filesystem::path& file, const Mesh& mesh) {
-  return AnnotationReader(file.string(), mesh).read(read_file(file));
+  return annotation_from_json(read_file(file), mesh, file.string());
+}
+
+SymmetryAnnotation annotation_from_json(const std::string& text, const Mesh& mesh, const std::string& name) {
+  return AnnotationReader(name, mesh).read(text);
 }
 
 }  // namespace orbifit
