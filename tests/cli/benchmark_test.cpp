@@ -90,14 +90,68 @@ TEST_F(BenchmarkProgram, ScalingCountsVertices) {
   EXPECT_TRUE(std::isfinite(result["exponent"].get<double>()));
 }
 
+TEST_F(BenchmarkProgram, DetectionIsScoredInEveryForm) {
+  const json result = result_of("detection --models unequal_cross --cut");
+  const json& rows = result["rows"];
+  ASSERT_EQ(rows.size(), 4U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const json& row = rows[i];
+    EXPECT_EQ(row["model"], "unequal_cross");
+    EXPECT_EQ(row["kind"], "near miss");
+    EXPECT_EQ(row["form"], i < 2 ? "assembly" : "remesh");
+    EXPECT_EQ(row["noise"], 0);
+    EXPECT_EQ(row["cut"], i % 2 == 1);
+    EXPECT_EQ(row["failure"], "");
+    EXPECT_GT(row["faces"], 0);
+    EXPECT_GT(row["seconds"], 0);
+    EXPECT_EQ(row["breaches"], 0);
+    for (const char* key : {"precision", "f1"}) {
+      EXPECT_GE(row[key], 0) << key;
+      EXPECT_LE(row[key], 1) << key;
+    }
+  }
+  // Its whole group, at least, is found on the model as it is.
+  EXPECT_GT(rows[0]["expected"], 0);
+  EXPECT_GT(rows[0]["strict_recall"], 0);
+  EXPECT_LT(rows[0]["axis_error"], 1);
+  EXPECT_LT(rows[3]["faces"], rows[2]["faces"]) << "a part is cut away";
+  const json& means = result["means"]["by_form"];
+  ASSERT_EQ(means.size(), 4U);
+  EXPECT_EQ(means[0]["f1"], rows[0]["f1"]);
+  EXPECT_EQ(result["means"]["by_kind"].size(), 1U);
+  std::istringstream lines(text_);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120U) << line;
+}
+
+TEST_F(BenchmarkProgram, DetectionWritesTheSameFilesForTheSameSeed) {
+  for (const char* folder : {"first", "second"}) {
+    result_of("detection --models boulder --forms remesh --noise 0.003 --write " + std::string(folder));
+  }
+  result_of("detection --models boulder --forms remesh --noise 0.003 --seed 2 --write other");
+  const auto content = [&](const std::string& folder, const std::string& ending) {
+    return read_file(program_.folder().file(folder) / ("boulder-remesh-noise0.003" + ending));
+  };
+  for (const char* ending : {".ply", ".truth.json", ".detected.json"}) {
+    EXPECT_EQ(content("first", ending), content("second", ending)) << ending;
+  }
+  EXPECT_NE(content("first", ".ply"), content("other", ".ply"));
+  const json truth = json::parse(content("first", ".truth.json"));
+  const json detected = json::parse(content("first", ".detected.json"));
+  EXPECT_EQ(truth["mesh"]["faces"], detected["mesh"]["faces"]);
+  EXPECT_TRUE(truth["optional_regions"].is_array());
+}
+
 TEST_F(BenchmarkProgram, RefusesWhatItCannotMeasure) {
-  for (const char* line : {"", "table2", "table1 --models teapot", "table1 --repeat 0", "table1 --threads 0",
-                           "scaling --most 3", "scaling --most nan", "scaling --model teapot"}) {
+  for (const char* line :
+       {"", "table2", "table1 --models teapot", "table1 --repeat 0", "table1 --threads 0", "scaling --most 3",
+        "scaling --most nan", "scaling --model teapot", "detection --models cube", "detection --forms soup",
+        "detection --noise -1", "detection --noise nan", "detection --threads 0", "detection --tolerance 1"}) {
     const ProgramResult result = program_.run(line);
     EXPECT_EQ(result.code, 2) << line;
     EXPECT_TRUE(result.errors.starts_with("orbifit")) << result.errors;
   }
   EXPECT_EQ(program_.run("table1 --models bar --json missing/table.json").code, 3);
+  EXPECT_EQ(program_.run("detection --models boulder --write missing/cases").code, 3);
 }
 
 }  // namespace
