@@ -86,14 +86,15 @@ bool is_element(const Motion& motion, const Region& region, double size) {
 class OrbitTest {
  public:
   OrbitTest(const scoring::MeasuredMesh& measured, const std::vector<int>& from, const std::vector<int>& to,
-            const std::vector<Motion>& motions, double tolerance)
+            const std::vector<Motion>& motions, bool sampled, double tolerance)
       : measured_(measured),
         from_(from),
         motions_(motions),
+        sampled_(sampled),
         tolerance_(tolerance),
         surface_(measured.mesh, to),
         creases_(measured.mesh, measured.normals, from),
-        kept_(static_cast<std::size_t>(measured.mesh.faces.rows()), 0) {}
+        state_(static_cast<std::size_t>(measured.mesh.faces.rows()), State::open) {}
 
   KeptFaces operator()(const RunContext& context) {
     const std::size_t rounds = motions_.size() < kFewMotions ? 1 : kRounds;
@@ -103,7 +104,7 @@ class OrbitTest {
     for (std::size_t round = 0; round < rounds; ++round) {
       std::vector<int> open;
       for (std::size_t i = round; i < from_.size(); i += rounds) {
-        if (kept_[static_cast<std::size_t>(from_[i])] == 0 && measured_.areas[from_[i]] > 0) open.push_back(from_[i]);
+        if (state(from_[i]) == State::open && measured_.areas[from_[i]] > 0) open.push_back(from_[i]);
       }
       std::vector<Tested> tested(open.size());
       parallel_for(
@@ -113,18 +114,20 @@ class OrbitTest {
           },
           16);
       for (std::size_t i = 0; i < open.size(); ++i) {
-        if (!tested[i].kept) continue;
-        kept_[static_cast<std::size_t>(open[i])] = 1;
-        if (rounds > 1) {
-          for (const int face : tested[i].hit) kept_[static_cast<std::size_t>(face)] = 1;
+        const State found = tested[i].kept ? State::kept : State::lost;
+        state(open[i]) = found;
+        // Of a group that is only sampled, one member of an orbit may miss the gap that another one falls into.
+        for (const int face : tested[i].hit) {
+          if (rounds > 1 && state(face) == State::open && (sampled_ || tested[i].kept)) state(face) = found;
         }
+        if (!tested[i].kept) continue;
         squares += tested[i].squares;
         count += static_cast<double>(motions_.size());
         result.residual.max = std::max(result.residual.max, tested[i].largest / measured_.diagonal);
       }
     }
     for (const int face : from_) {
-      if (kept_[static_cast<std::size_t>(face)] != 0) result.faces.push_back(face);
+      if (state(face) == State::kept) result.faces.push_back(face);
     }
     if (count > 0) result.residual.rms = std::min(result.residual.max, std::sqrt(squares / count) / measured_.diagonal);
     return result;
@@ -133,6 +136,10 @@ class OrbitTest {
  private:
   static constexpr std::size_t kFewMotions = 8;
   static constexpr std::size_t kRounds = 61;
+
+  enum class State : char { open, kept, lost };
+
+  State& state(int face) { return state_[static_cast<std::size_t>(face)]; }
 
   struct Tested {
     bool kept = false;
@@ -164,18 +171,19 @@ class OrbitTest {
   const scoring::MeasuredMesh& measured_;
   const std::vector<int>& from_;
   const std::vector<Motion>& motions_;
+  bool sampled_;
   double tolerance_;
   SurfaceIndex surface_;
   scoring::CreaseIndex creases_;
-  std::vector<char> kept_;  // of all faces of the mesh
+  std::vector<State> state_;  // of all faces of the mesh
 };
 
 }  // namespace
 
 KeptFaces kept_faces(const scoring::MeasuredMesh& measured, const std::vector<int>& from, const std::vector<int>& to,
-                     const std::vector<Motion>& motions, double tolerance, const RunContext& context) {
+                     const std::vector<Motion>& motions, bool sampled, double tolerance, const RunContext& context) {
   if (from.empty() || to.empty()) return {};
-  OrbitTest test(measured, from, to, motions, tolerance);
+  OrbitTest test(measured, from, to, motions, sampled, tolerance);
   return test(context);
 }
 

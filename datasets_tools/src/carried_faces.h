@@ -18,14 +18,17 @@ struct KeptFaces {
 };
 
 /// The faces of `from` whose centroids' images under all the motions are on `to` within the tolerance, with normals
-/// that agree to 25 degrees unless next to a crease. Of many motions that form a group not every face is tested: those
-/// hit by images of one that is kept are kept. \param tolerance mesh units
+/// that agree to 25 degrees unless next to a crease. Of many motions not every face is tested: what images of a kept
+/// face hit is kept.
+/// \param motions elements of a group
+/// \param sampled whether they are some of infinitely many; then what images of a lost face hit is lost too
+/// \param tolerance mesh units
 KeptFaces kept_faces(const scoring::MeasuredMesh& measured, const std::vector<int>& from, const std::vector<int>& to,
-                     const std::vector<Motion>& motions, double tolerance, const RunContext& context);
+                     const std::vector<Motion>& motions, bool sampled, double tolerance, const RunContext& context);
 
 /// Whether the faces can slide along themselves, other than by a motion of the region's group: a twist whose velocity
-/// has less than a fifteenth across the surface (root mean squares; slippage of Gelfand and Guibas 2004). \param
-/// normals of all faces of the mesh, unit, #F by 3
+/// has less than a fifteenth across the surface (root mean squares; slippage of Gelfand and Guibas 2004).
+/// \param normals of all faces of the mesh, unit, #F by 3
 bool slides(const scoring::MeasuredMesh& measured, const Points& normals, const std::vector<int>& faces,
             const Region& region);
 

@@ -26,6 +26,9 @@ constexpr double kInside = 0.99;
 // Share of a region's visible area from which on all of it counts as kept, or lies in a region that is to contain it.
 constexpr double kWhole = 0.97;
 
+// Share of the kept faces that must be kept again, with only themselves to lie on.
+constexpr double kSymmetric = 0.9;
+
 void check_share(const char* name, double value, double most) {
   if (value >= 0 && value <= most) return;
   std::ostringstream text;
@@ -54,9 +57,17 @@ class SourceMap {
   std::vector<char> chosen_;
 };
 
+// All elements but the identity; of a continuous group so many that a gap of a hundredth of a turn is found.
 std::vector<Motion> tested_motions(const Region& region, Random& random) {
-  if (region.group.continuous()) return scoring::tried_elements(region, random);
-  return {region.elements.begin() + (region.elements.empty() ? 0 : 1), region.elements.end()};
+  if (!region.group.continuous()) {
+    return {region.elements.begin() + (region.elements.empty() ? 0 : 1), region.elements.end()};
+  }
+  std::vector<Motion> result;
+  for (int pass = 0; pass < 4; ++pass) {
+    const std::vector<Motion> more = scoring::tried_elements(region, random);
+    result.insert(result.end(), more.begin(), more.end());
+  }
+  return result;
 }
 
 class Carrier {
@@ -106,13 +117,22 @@ class Carrier {
   void carry(const Region& old, bool expected) {
     const std::vector<int> visible = new_faces_(old.faces);
     Random random(context_.seed, "carried truth " + std::to_string(old.id));
-    KeptFaces kept =
-        kept_faces(measured_, visible, visible, tested_motions(old, random), tolerance_of(visible), context_);
-    // Triangles that cut creases off fail here and there: not worth a ragged face set.
-    if (area_of(kept.faces) >= kWhole * area_of(visible)) kept.faces = visible;
+    const std::vector<Motion> motions = tested_motions(old, random);
+    const auto stay = [&](const std::vector<int>& faces) {
+      return kept_faces(measured_, faces, faces, motions, old.group.continuous(), tolerance_of(visible), context_);
+    };
+    KeptFaces kept = stay(visible);
+    bool whole = true;
+    if (area_of(kept.faces) >= kWhole * area_of(visible)) {
+      // Triangles that cut creases off fail here and there: not worth a ragged face set.
+      kept.faces = visible;
+    } else if (area_of(kept.faces) > 0) {
+      // Too ragged a set is not symmetric by itself.
+      whole = area_of(stay(kept.faces).faces) >= kSymmetric * area_of(kept.faces);
+    }
     const double area = area_of(kept.faces);
     if (kept.faces.empty() || area < options_.least_area * measured_.area) return;
-    expected = expected && area >= options_.least_expected * measured_.area &&
+    expected = expected && whole && area >= options_.least_expected * measured_.area &&
                area >= options_.least_kept * area_of(visible) && !slides(measured_, source_normals_, kept.faces, old);
     Region region = old;
     region.parent.reset();
@@ -168,34 +188,41 @@ class Carrier {
     }
   }
 
+  // What all instances show: other parts hide more of some than of others.
   void carry(const Pattern& old, bool expected) {
     Pattern pattern = old;
-    double area = 0;
-    double least = 0;
-    double most = 0;
-    for (std::size_t i = 0; i < pattern.instances.size(); ++i) {
-      std::vector<int>& faces = pattern.instances[i].faces;
-      faces = new_faces_(faces);
-      const double own = area_of(faces);
-      area += own;
-      least = i == 0 ? own : std::min(least, own);
-      most = std::max(most, own);
+    std::vector<PatternInstance>& instances = pattern.instances;
+    if (instances.empty()) return;
+    std::vector<double> visible;
+    for (PatternInstance& instance : instances) {
+      instance.faces = new_faces_(instance.faces);
+      visible.push_back(area_of(instance.faces));
     }
-    if (!(least > 0) || least < options_.least_instance * most || area < options_.least_area * measured_.area) return;
-    expected = expected && area >= options_.least_expected * measured_.area;
+    if (std::ranges::min(visible) < options_.least_instance * std::ranges::max(visible)) return;
+    PatternInstance& first = instances.front();
+    const double tolerance = tolerance_of(first.faces);
+    const auto kept = [&](const std::vector<int>& from, const std::vector<int>& to, const Motion& motion) {
+      return kept_faces(measured_, from, to, {motion}, false, tolerance, context_);
+    };
+    for (std::size_t i = 1; i < instances.size(); ++i) {
+      first.faces = kept(first.faces, instances[i].faces, instances[i].motion).faces;
+    }
+    double area = area_of(first.faces);
+    double least = area;
     double squares = 0;
     pattern.residual = {};
-    const std::vector<int>& first = pattern.instances.front().faces;
-    for (std::size_t i = 1; i < pattern.instances.size(); ++i) {
-      const KeptFaces kept = kept_faces(measured_, first, pattern.instances[i].faces, {pattern.instances[i].motion},
-                                        tolerance_of(first), context_);
-      expected = expected && area_of(kept.faces) >= options_.least_kept * area_of(first);
-      squares += kept.residual.rms * kept.residual.rms;
-      pattern.residual.max = std::max(pattern.residual.max, kept.residual.max);
+    for (std::size_t i = 1; i < instances.size(); ++i) {
+      KeptFaces common = kept(instances[i].faces, first.faces, inverse(instances[i].motion));
+      instances[i].faces = std::move(common.faces);
+      squares += common.residual.rms * common.residual.rms;
+      pattern.residual.max = std::max(pattern.residual.max, common.residual.max);
+      least = std::min(least, area_of(instances[i].faces));
+      area += area_of(instances[i].faces);
     }
-    if (pattern.instances.size() > 1) {
-      pattern.residual.rms = std::sqrt(squares / static_cast<double>(pattern.instances.size() - 1));
-    }
+    if (instances.size() > 1) pattern.residual.rms = std::sqrt(squares / static_cast<double>(instances.size() - 1));
+    if (!(least > 0) || area < options_.least_area * measured_.area) return;
+    expected = expected && area >= options_.least_expected * measured_.area &&
+               least >= options_.least_kept * std::ranges::max(visible);
     (expected ? truth_.expected.patterns : truth_.optional_patterns).push_back(std::move(pattern));
   }
 

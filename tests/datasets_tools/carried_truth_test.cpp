@@ -199,6 +199,30 @@ TEST_F(RoundBar, BecomesOptionalWithoutItsEnds) {
   EXPECT_EQ(static_cast<Eigen::Index>(truth.optional_regions.front().faces.size()), twice.mesh.faces.rows());
 }
 
+TEST_F(RoundBar, LosesEveryCircleThatANotchBreaks) {
+  // A notch in the middle of the bar, a fifth of a turn wide: the bar is round only away from it.
+  const Derived rest = cut(fine_.mesh, Ball{{1, 0, 0}, 0.6});
+  const DetectionTruth truth = after(rest);
+  const std::vector<Region>& regions = truth.expected.regions.empty() ? truth.optional_regions : truth.expected.regions;
+  ASSERT_EQ(regions.size(), 1U);
+  const Points& vertices = rest.mesh.vertices;
+  double broken = 0;
+  double kept = 0;
+  const Eigen::VectorXd areas = face_areas(rest.mesh);
+  for (Eigen::Index f = 0; f < rest.mesh.faces.rows(); ++f) {
+    const Vector3d centroid = vertices(rest.mesh.faces.row(f), Eigen::all).colwise().mean();
+    if (std::abs(centroid.z()) < 0.4 && std::hypot(centroid.x(), centroid.y()) > 0.9) {
+      broken += areas[f];
+      if (std::ranges::binary_search(regions.front().faces, static_cast<int>(f))) kept += areas[f];
+    }
+    if (std::abs(centroid.z()) > 0.9) {
+      EXPECT_TRUE(std::ranges::binary_search(regions.front().faces, static_cast<int>(f)));
+    }
+  }
+  EXPECT_GT(broken, 3);
+  EXPECT_LT(kept, 0.02 * broken);
+}
+
 TEST_F(RoundBar, IsNotKeptByAWrongGroup) {
   // Tilted axis: hardly a face stays on the bar.
   const GroupFrame tilted = axis_rotation(Vector3d::UnitX(), 0.2);
@@ -248,6 +272,38 @@ TEST(CarriedTruth, DropsSmallRegionsAndSpoiltPatterns) {
   const DetectionTruth spoilt = carried(model, rest.mesh, rest.source_face, {}, context);
   EXPECT_TRUE(spoilt.expected.patterns.empty());
   EXPECT_TRUE(spoilt.optional_patterns.empty());
+}
+
+TEST(CarriedTruth, KeepsOfAPatternWhatAllInstancesShow) {
+  // Three posts; a slab hides the lower half of the last one.
+  std::vector<Mesh> parts;
+  Pattern row;
+  row.kind = Pattern::Kind::translation_1d;
+  row.generators.push_back({Eigen::Matrix3d::Identity(), 2 * Vector3d::UnitX()});
+  for (int i = 0; i < 3; ++i) {
+    parts.push_back(test::solid_box({2.0 * i, 0, 0}, {2.0 * i + 1, 1, 3}));
+    row.instances.push_back({{Eigen::Matrix3d::Identity(), 2.0 * i * Vector3d::UnitX()}, range(12 * i, 12)});
+  }
+  parts.push_back(test::solid_box({3.5, -0.5, -0.5}, {5.5, 1.5, 0.7}));
+  TruthModel model{test::joined_meshes(parts), {}};
+  model.truth.expected = empty_annotation(model.mesh, 0.005);
+  model.truth.expected.patterns.push_back(row);
+  RunContext context;
+  const Remeshed remeshed = remesh(model.mesh, {}, context);
+  const DetectionTruth truth = carried(model, remeshed.mesh, remeshed.source_face, {}, context);
+  ASSERT_EQ(truth.expected.patterns.size(), 1U);
+  for (const PatternInstance& instance : truth.expected.patterns.front().instances) {
+    // Four sides above the slab and the top; twice the tolerance and a face more.
+    EXPECT_NEAR(area_of(remeshed.mesh, instance.faces), 4 * 2.3 + 1, 0.4);
+    double lowest = 3;
+    for (const int face : instance.faces) {
+      lowest = std::min(lowest, remeshed.mesh.vertices(remeshed.mesh.faces.row(face), 2).maxCoeff());
+    }
+    EXPECT_GT(lowest, 0.55);
+  }
+  const DetectionTruth strict = carried(model, remeshed.mesh, remeshed.source_face, {.least_kept = 0.9}, context);
+  EXPECT_TRUE(strict.expected.patterns.empty());
+  EXPECT_EQ(strict.optional_patterns.size(), 1U);
 }
 
 TEST(CarriedTruth, LeavesTheLesserOfTwoGroupsOnTheSameFacesOptional) {

@@ -303,6 +303,25 @@ TEST(Remesh, RefusesWhatHasNoInside) {
   EXPECT_THROW(remesh({Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Triangles{{0, 1, 1}}, {}}, {}, context), InputError);
 }
 
+// Walls down to a cell are whole and have two sides.
+class ThinWall : public testing::TestWithParam<double> {};
+
+TEST_P(ThinWall, KeepsItsPlaceAndItsSides) {
+  const Mesh wall = test::solid_box({0, 0, 0}, {1, 1.2, 1});
+  Mesh thin = wall;
+  const double cell = std::hypot(1.0, 1.2) / 60;
+  thin.vertices.col(2) *= GetParam() * cell;
+  const Mesh mesh = remeshed(thin).mesh;
+  expect_closed_surface(mesh);
+  EXPECT_EQ(inspect(mesh).components, 1);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_NEAR(inspect(mesh).volume, inspect(thin).volume, 0.05 * inspect(thin).volume);
+  EXPECT_LT(test::one_sided_distance(mesh, thin), 0.5 * cell);
+  EXPECT_LT(test::one_sided_distance(thin, mesh), cell);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, ThinWall, testing::Values(1.5, 2.0, 3.0));
+
 TEST(Remesh, SaysWhenNothingIsThickEnough) {
   RunContext context;
   EXPECT_THROW(remesh(test::solid_box({0, 0, 0}, {1, 1, 1e-4}), {}, context), NoResultError);

@@ -10,28 +10,30 @@ namespace orbifit {
 struct CarryOptions {
   double tolerance = 0.005;        ///< an image is on the region within this fraction of the mesh's diagonal, > 0 ...
   double region_tolerance = 0.02;  ///< ... and within this fraction of the region's, > 0
-  double least_kept = 0.6;         ///< share of a region's visible area below which it becomes optional, in [0, 1]
-  double least_expected = 0.003;   ///< share of the mesh's area below which it becomes optional, in [0, 1]
-  double least_area = 0.002;       ///< share of the mesh's area below which it vanishes, in [0, least_expected]
-  double least_instance =
-      0.5;  ///< area of a pattern's smallest instance by its largest's below which the pattern vanishes, in [0, 1]
+  double least_kept = 0.6;         ///< share of its visible area below which a region or pattern is optional, in [0, 1]
+  double least_expected = 0.003;   ///< share of the mesh's area below which one is optional, in [0, 1]
+  double least_area = 0.002;       ///< share of the mesh's area below which one vanishes, in [0, least_expected]
+  double least_instance = 0.5;     ///< share of the largest instance below which one ends its pattern, in [0, 1]
 
   void validate() const;  ///< \throw UsageError
 };
 
 /// The truth about a mesh made from a model's: remeshed, subdivided or cut, in the model's own pose and without noise.
 ///
-/// A region's faces are those whose source belongs to it and whose centroid stays, under every element of its group (24
+/// A region's faces are those whose source belongs to it and whose centroid stays, under every element of its group (96
 /// or more random ones of a continuous group), on the region's visible surface with a normal within 25 degrees,
-/// unsigned, unless next to a crease (method notes 4.1). The faces without that test are accepted as well, and what the
-/// model accepts besides. A region becomes optional when that test leaves too little of it, when it is small, when it
-/// may slide along itself because its ends are hidden or cut off (a piece of a plane or of a cylinder), or when a
-/// region of the same faces has all its elements. Patterns' instances are carried by source; a pattern becomes
-/// optional when instance 0 does not lie on the others any more as well as a region must.
-/// Residuals are those of the faces' centroids. Ids stay; parents are set anew among the expected regions.
-/// \param mesh         the new one
-/// \param source_face  #F of `mesh`: the model's face from which each came
-/// \throw InputError   when there is not one source for each face, or one is outside the model
+/// unsigned, unless next to a crease (method notes 4.1). All faces whose source belongs to it are accepted as well, and
+/// what the model accepts besides. A region becomes optional
+/// - when that test leaves too little or too ragged a part of it, or when it is small;
+/// - when it slides along itself because its ends are hidden or cut off: a piece of a plane or of a cylinder;
+/// - when a region that holds its faces also has all its elements.
+///
+/// A pattern's instances keep what all of them show. Residuals are those of the faces' centroids. Ids stay; parents are
+/// set anew among the expected regions.
+///
+/// \param mesh the new one
+/// \param source_face the model's face from which each face of `mesh` came, #F
+/// \throw InputError when there is not one source for each face, or one is outside the model
 DetectionTruth carried(const TruthModel& model, const Mesh& mesh, const std::vector<int>& source_face,
                        const CarryOptions& options, RunContext& context);
 

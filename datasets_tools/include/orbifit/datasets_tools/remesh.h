@@ -9,8 +9,7 @@ namespace orbifit {
 
 struct RemeshOptions {
   double cell = 1.0 / 110;  ///< width of a cell of the grid, fraction of the mesh's diagonal, in [1/600, 1/10]
-  int fitting_passes =
-      3;  ///< of the vertices to the surface, in [0, 20]; without them creases are cut off by up to half a cell
+  int fitting_passes = 4;   ///< of vertices to the surface, in [0, 20]; 0 leaves creases cut off by up to half a cell
 
   void validate() const;  ///< \throw UsageError
 };
@@ -31,10 +30,9 @@ struct Remeshed {
 /// oriented. So parts turned inside out count as others. What is enclosed is filled, between parts too. Where every
 /// face of a part has a second one that looks the other way, one of the two is taken.
 ///
-/// What is thinner than two cells keeps its place and its two sides, but not its sharp ends; what is thinner than
-/// one cell is torn into closed pieces or lost, and so are pieces of under 8 cells; gaps narrower than a cell may
-/// close. Grooves and edges narrower than a cell are rounded. Creases are followed to some hundredths of a cell away
-/// from their corners.
+/// Creases are met to some hundredths of a cell; those nearer to one another than a cell are rounded. Walls of down to
+/// a cell and a half keep their place and both sides; thinner ones are torn into closed pieces or lost, and so are
+/// pieces of under 8 cells. Gaps narrower than a cell may close.
 ///
 /// \throw InputError for a mesh without faces, of no size, or with a part that is not closed; it names the part's
 /// first face

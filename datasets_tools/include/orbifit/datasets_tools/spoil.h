@@ -40,9 +40,9 @@ struct Ball {
 };
 
 /// The mesh without the faces whose centroids are inside, in their order. All vertices stay, also those that no face
-/// uses any more, so that the box and the diagonal are what they were. No new edges are made: the cut is as ragged as
-/// the faces. \throw UsageError for a zero normal or a radius that is not positive \throw NoResultError when no face is
-/// left
+/// uses any more, so that the box and the diagonal are what they were. No edges are added: the cut is ragged.
+/// \throw UsageError for a zero normal or a radius that is not positive
+/// \throw NoResultError when no face is left
 Derived cut(const Mesh& mesh, const HalfSpace& removed);
 Derived cut(const Mesh& mesh, const Ball& removed);
 
