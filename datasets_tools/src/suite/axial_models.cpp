@@ -115,7 +115,7 @@ TruthModel daisy() {
             {});
   model.orbit(model.kind({"petal", petal, group("Cs"), OwnRegion::silent, across(Vector3d::UnitY()).frame}), {},
               group("C10v"), upright());
-  model.add(model.kind({"stalk", cone(0.09, 0.06, 0.9), group("Cinfv"), OwnRegion::silent}),
+  model.add(model.kind({"stalk", cone(0.09, 0.06, 0.9, 30), group("Cinfv"), OwnRegion::silent}),
             shift(0, 0, -0.05) * turn_x(180));
   return model.finish();
 }
@@ -123,7 +123,7 @@ TruthModel daisy() {
 TruthModel z_bracket() {
   SuiteBuilder model;
   model.add(model.kind({"bar", box({0.6, 0.14, 0.12}, {8, 2, 2}, 0, 0), group("D2h"), OwnRegion::optional}));
-  const Mesh hook = tapered(rectangle_outline(0.15, 0.1, 3), 0, 0.55, 0.7, 6);
+  const Mesh hook = tapered(rectangle_outline(0.15, 0.1, 4), 0, 0.55, 0.7, 8);
   model.orbit(model.kind({"hook", hook, group("C2v"), OwnRegion::silent}), shift(0.5, 0.05, 0) * turn_x(-90),
               group("C2h"));
   return model.finish();

@@ -25,7 +25,7 @@ TruthModel single(const std::string& name, const Mesh& mesh, const std::string& 
 
 // Flat triangles between a corner ring below and one above that stands half a step on.
 Mesh antiprism(int corners, double height) {
-  return subdivided(twisted(polygon_outline(corners, 1), height, -180.0 / corners, 1), corners < 5 ? 3 : 2);
+  return subdivided(twisted(polygon_outline(corners, 1), height, -180.0 / corners, 1), 3);
 }
 
 TruthModel crossed_bars() {
@@ -45,7 +45,7 @@ TruthModel staggered_arms(int arms, const std::string& symbol) {
   const double half_step = std::numbers::pi / (2 * arms);
   const Placement about{frame_about(Vector3d::UnitZ(), Vector3d(std::cos(half_step), std::sin(half_step), 0)),
                         Vector3d::Zero()};
-  model.orbit(arm, shift(0, 0, 0.45) * turn_y(90), group(symbol), about);
+  model.orbit(arm, shift(0.02, 0, 0.45) * turn_y(90), group(symbol), about);
   return model.finish();
 }
 
@@ -104,7 +104,7 @@ std::vector<SuiteModel> dihedral_suite() {
       {"nut_D6h", "group",
        [] { return single("nut", subdivided(ring_of(polygon_outline(6, 1, 10), 0.55, 0.4)), "D6h"); }},
       {"heptagon_D7h", "group",
-       [] { return single("dish", extruded(polygon_outline(7, 1, 6), -0.25, 0.25, 4), "D7h"); }},
+       [] { return single("dish", extruded(polygon_outline(7, 1, 8), -0.25, 0.25, 6), "D7h"); }},
       {"hand_wheel_D8h", "group", hand_wheel},
       {"gear_D12h", "group", gear_wheel},
       {"crossed_bars_D2d", "group", crossed_bars},

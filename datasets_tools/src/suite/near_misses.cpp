@@ -81,7 +81,7 @@ TruthModel unequal_cross() {
   return model.finish();
 }
 
-// Five degrees of twist leave no mirror.
+// Twelve degrees of twist leave no mirror.
 TruthModel nearly_straight_prism() {
   SuiteBuilder model;
   model.add(model.kind({"prism", twisted(rectangle_outline(0.5, 0.5, 8), 1.8, 12, 24), group("D4")}));
@@ -114,7 +114,7 @@ TruthModel unequal_handles() {
 // One tip of five is longer.
 TruthModel long_tip() {
   SuiteBuilder model;
-  Outline outline = star_outline(5, 1, 0.48, 5);
+  Outline outline = star_outline(5, 1, 0.48, 7);
   for (Eigen::Vector2d& point : outline) {
     if (point.x() > 0.5) point.x() = 0.5 + 1.16 * (point.x() - 0.5);
   }

@@ -52,7 +52,7 @@ TruthModel keyed_shaft() {
   model.add(model.kind({"shaft",
                         turned_part({{0, -1.1, 0, 2}, {0.3, -1.1, 0.03, 16}, {0.3, 1.1, 0.03, 2}, {0, 1.1, 0, 1}}, 72),
                         group("Dinfh"), OwnRegion::optional}));
-  model.add(model.kind({"key", box({0.1, 0.07, 0.3}, {2, 2, 6}, 0.01, 1), group("D2h"), OwnRegion::optional}),
+  model.add(model.kind({"key", box({0.16, 0.1, 0.3}, {4, 2, 6}, 0.01, 1), group("D2h"), OwnRegion::optional}),
             shift(0.29, 0, -0.6));
   model.expect(group("C18v"), upright());
   model.expect(group("Cs"), across(Vector3d::UnitY()));
@@ -166,12 +166,12 @@ TruthModel chandelier() {
 PartKind column(double height, int facets) {
   return {"column",
           turned_part({{0, 0, 0, 1},
-                       {0.15, 0, 0, 1},
-                       {0.15, 0.08, 0.03, 1},
-                       {0.1, 0.12, 0.02, 6},
-                       {0.08, height - 0.14, 0.02, 1},
-                       {0.16, height - 0.06, 0, 1},
-                       {0.16, height, 0, 1},
+                       {0.17, 0, 0, 1},
+                       {0.17, 0.22, 0, 1},
+                       {0.11, 0.26, 0.02, 6},
+                       {0.075, height - 0.14, 0.02, 1},
+                       {0.14, height - 0.08, 0, 1},
+                       {0.14, height, 0, 1},
                        {0, height, 0, 1}},
                       facets, 3),
           group("Cinfv")};
@@ -185,17 +185,17 @@ TruthModel rotunda() {
                                   {1.25, -0.07, 0, 2},
                                   {1.24, 0.03, 0, 6},
                                   {0, 0.04, 0, 1}},
-                                 72);
+                                 80);
   const Mesh roof = turned_part({{0, 0, 0, 6},
                                  {1.22, 0, 0.02, 2},
                                  {1.22, 0.15, 0.02, 2},
                                  {1.0, 0.16, 0.05, 2},
                                  {0.75, 0.8, 0.6, 2},
                                  {0, 0.85, 0, 1}},
-                                72);
+                                80);
   model.add(model.kind({"floor", floor, group("Cinfv"), OwnRegion::optional}));
   model.add(model.kind({"roof", roof, group("Cinfv"), OwnRegion::optional}), shift(0, 0, 1.38));
-  model.orbit(model.kind(column(1.4, 32)), shift(1.0, 0, 0.02), group("C10v"), upright());
+  model.orbit(model.kind(column(1.4, 24)), shift(1.0, 0, 0.02), group("C10v"), upright());
   model.expect(group("Cinfv"));
   model.add(
       model.kind({"porch", tapered(rectangle_outline(0.3, 0.25, 4), 0, 0.8, 0.8, 6), group("C2v"), OwnRegion::silent}),
@@ -258,8 +258,8 @@ TruthModel two_gears() {
     model.add(model.kind({name, ring_of(gear_outline(teeth, root, tip), 0.15, thickness), group("D" + n + "h"),
                           OwnRegion::expected}),
               at);
-    model.add(model.kind({"pin of the " + name, cylinder(0.19, 0.45, 72, 0.02), group("Dinfh"), OwnRegion::silent}),
-              shift(at.translation.x(), 0, -0.02));
+    model.add(model.kind({"pin of the " + name, cylinder(0.19, 0.45, 80, 0.02), group("Dinfh"), OwnRegion::silent}),
+              shift(0, 0, -0.02) * at);
     model.expect(group("C" + n + "v"), image(at, upright()));
   };
   train("wheel", 16, 0.83, 0.98, shift(-0.65, 0, 0), 0.14);
@@ -286,7 +286,7 @@ TruthModel round_table() {
                                              {0.26, 0.48, 0.02, 1},
                                              {0.24, 0.56, 0.03, 3},
                                              {0, 0.57, 0, 1}},
-                                            48, 3),
+                                            36, 2),
                                 group("Cinfv")});
   model.orbit(stool, shift(1.25, 0, 0.04), group("C6v"), upright());
   model.expect(group("Cinfv"));

@@ -23,7 +23,7 @@ PartKind joining_ball(const PointGroup& given, double radius) {
     case Family::Th:
     case Family::O:
     case Family::Oh:
-      return {"ball", cubic_ball(radius), group("Kh"), OwnRegion::optional};
+      return {"ball", cubic_ball(radius, 4), group("Kh"), OwnRegion::optional};
     case Family::I:
     case Family::Ih:
       return {"ball", icosahedral_ball(radius), group("Kh"), OwnRegion::optional};

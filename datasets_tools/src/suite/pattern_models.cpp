@@ -132,8 +132,8 @@ TruthModel lattice() {
   const Vector3d step(0.8, 0.95, 0.7);
   const auto rods = [&](int axis) {
     const Motion turn = axis == 0 ? turn_y(90) : axis == 1 ? turn_x(90) : Motion{};
-    return model.kind({"rod", moved(cylinder(0.09, axis == 2 ? 1.05 : step[axis], 16), turn), group("Dinfh"),
-                       OwnRegion::silent, frame_about(Vector3d::Unit(axis))});
+    return model.kind({"rod", moved(cylinder(0.09, (axis == 2 ? 1.05 : step[axis]) + 0.02 * (axis + 1), 16), turn),
+                       group("Dinfh"), OwnRegion::silent, frame_about(Vector3d::Unit(axis))});
   };
   const std::array<int, 3> kinds{rods(0), rods(1), rods(2)};
   const auto place = [&](double i, double j, double k) { return shift(step.x() * i, step.y() * j, step.z() * k); };
@@ -159,7 +159,7 @@ TruthModel egg_tray() {
   const int egg = model.kind(
       {"egg",
        turned_part({{0, -0.12, 0, 1}, {0.2, -0.1, 0.05, 2}, {0.2, 0.1, 0.1, 2}, {0.1, 0.42, 0.1, 1}, {0, 0.45, 0, 1}},
-                   36),
+                   24, 2),
        group("Cinfv")});
   std::vector<std::vector<int>> eggs;
   for (int j = 0; j < 4; ++j) {
@@ -173,7 +173,6 @@ TruthModel egg_tray() {
 // Links in turn upright and lying, each through its neighbours.
 TruthModel chain() {
   SuiteBuilder model;
-  std::vector<Vector3d> path;
   constexpr int kAround = 48;
   std::vector<Ring> rings;
   for (int k = 0; k < kAround; ++k) {

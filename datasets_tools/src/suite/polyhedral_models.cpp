@@ -19,9 +19,9 @@ Motion pointing(const Vector3d& direction) {
 
 TruthModel caltrop() {
   SuiteBuilder model;
-  model.add(model.kind({"ball", cubic_ball(0.35), group("Kh"), OwnRegion::optional}));
-  const int arm = model.kind({"arm", cone(0.2, 0.1, 1), group("Cinfv"), OwnRegion::optional});
-  model.orbit(arm, pointing({1, 1, 1}), group("Td"));
+  model.add(model.kind({"ball", cubic_ball(0.35, 4), group("Kh"), OwnRegion::optional}));
+  const int arm = model.kind({"arm", cone(0.2, 0.1, 0.95), group("Cinfv"), OwnRegion::optional});
+  model.orbit(arm, pointing({1, 1, 1}) * shift(0, 0, 0.1), group("Td"));
   return model.finish();
 }
 
@@ -47,7 +47,7 @@ TruthModel jack() {
   SuiteBuilder model;
   model.add(model.kind({"heart", cubic_ball(0.25), group("Kh"), OwnRegion::silent}));
   const int arm = model.kind({"arm", cone(0.13, 0.11, 0.85), group("Cinfv"), OwnRegion::silent});
-  model.orbit(arm, {}, group("Oh"));
+  model.orbit(arm, shift(0, 0, 0.05), group("Oh"));
   const int knob = model.kind({"knob", cubic_ball(0.22), group("Kh"), OwnRegion::optional});
   model.orbit(knob, shift(0, 0, 0.95), group("Oh"));
   return model.finish();

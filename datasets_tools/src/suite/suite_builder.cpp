@@ -138,11 +138,11 @@ std::vector<int> SuiteBuilder::orbit(int kind, const Motion& at, const PointGrou
 }
 
 void SuiteBuilder::expect(const PointGroup& group, const Placement& about, const std::string& name) {
-  asked_.push_back({make_region(group, about.origin, about.frame, {}, name), true, false});
+  asked_.push_back({make_region(group, about.origin, about.frame, {}, name), true});
 }
 
 void SuiteBuilder::allow(const PointGroup& group, const Placement& about, const std::string& name) {
-  asked_.push_back({make_region(group, about.origin, about.frame, {}, name), false, false});
+  asked_.push_back({make_region(group, about.origin, about.frame, {}, name), false});
 }
 
 Pattern SuiteBuilder::pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
@@ -215,15 +215,16 @@ std::vector<SuiteBuilder::Candidate> SuiteBuilder::candidates() const {
       const bool known = std::ranges::any_of(result, [&](const Candidate& other) {
         return other.region.group == common->group && group_within(*common, other.region, length);
       });
-      if (!known) result.push_back({*common, true, false});
+      if (!known) result.push_back({*common, true});
     }
   }
-  for (const Part& part : parts_) {
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Part& part = parts_[p];
     const PartKind& kind = kind_of(part);
     if (kind.own.family == Family::C1 || kind.report == OwnRegion::silent) continue;
     const Placement about = image(part.at, Placement{kind.frame, kind.centre});
-    result.push_back(
-        {make_region(kind.own, about.origin, about.frame, {}, {}), kind.report == OwnRegion::expected, true});
+    result.push_back({make_region(kind.own, about.origin, about.frame, {}, {}), kind.report == OwnRegion::expected,
+                      static_cast<int>(p)});
   }
   return result;
 }
@@ -270,7 +271,10 @@ TruthModel SuiteBuilder::finish() const {
     }
     std::ranges::sort(candidate.region.faces);
     if (areas(candidate.region.faces).sum() < kSmallestShare * areas.sum()) continue;
-    if (candidate.region.name.empty()) candidate.region.name = name_of(parts);
+    if (candidate.region.name.empty()) {
+      const bool joins_others = candidate.part >= 0 && parts.size() > 1 && parts.size() < parts_.size();
+      candidate.region.name = joins_others ? "about " + name_of({candidate.part}) : name_of(parts);
+    }
     (candidate.expected ? truth.expected.regions : truth.optional_regions).push_back(std::move(candidate.region));
   }
   truth.expected.patterns = patterns_;

@@ -74,7 +74,7 @@ class SuiteBuilder {
   struct Candidate {
     Region region;  // faces unset
     bool expected = true;
-    bool own = false;  // of a part
+    int part = -1;  // whose own group it is
   };
 
   Pattern pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
