@@ -6,12 +6,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "orbifit/datasets_tools/truth_io.h"
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/subspace/closable.h"
+#include "orbifit/subspace/shared_axes.h"
 
 #include "benchmarks.h"
 #include "stopwatch.h"
@@ -97,12 +98,12 @@ DetectionRow measure(const SuiteModel& suite_model, const CaseForm& form, const 
   const fs::path file = fs::path(options.folder) / (row.model + "-" + form.file_name());
   if (!options.folder.empty()) {
     write_mesh(file.string() + ".ply", model.mesh);
-    write_file(file.string() + ".truth.json", truth_json(model.truth));
+    write_truth(file.string() + ".truth.json", model.truth);
   }
   SymmetryAnnotation detected = empty_annotation(model.mesh, options.detect.tolerance);
   const double start = seconds_now();
   try {
-    detected = closable(model.mesh, orbifit::detect(model.mesh, options.detect, context), context);
+    detected = share_axes(model.mesh, orbifit::detect(model.mesh, options.detect, context), options.detect.tolerance);
   } catch (const InterruptedError&) {
     throw;
   } catch (const Error& error) {
@@ -112,6 +113,14 @@ DetectionRow measure(const SuiteModel& suite_model, const CaseForm& form, const 
   if (!options.folder.empty()) write_annotation(file.string() + ".detected.json", detected);
   row.score = score_detection(model.mesh, detected, &model.truth, {}, context);
   return row;
+}
+
+// A run takes minutes: how it goes.
+std::string in_short(const DetectionRow& row) {
+  if (!row.failure.empty()) return row.failure;
+  const DetectionSummary& summary = row.score.summary;
+  return std::to_string(summary.predicted) + " found, " + std::to_string(summary.expected.value_or(0)) +
+         " expected, F1 " + short_number(summary.f1.value_or(0), 3) + ", " + short_number(row.seconds, 3) + " s";
 }
 
 int run(const DetectionOptions& options, const CommandContext& given) {
@@ -124,17 +133,25 @@ int run(const DetectionOptions& options, const CommandContext& given) {
   context.threads = options.threads;
   context.seed = options.seed;
   std::vector<DetectionRow> rows;
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    for (const CaseForm& form : forms) {
-      given.run.check();
-      given.run.message(std::to_string(m + 1) + "/" + std::to_string(models.size()) + " " + models[m].name + ", " +
-                        form.name() + (form.noise > 0 ? ", noise " + short_number(form.noise) : ""));
-      rows.push_back(measure(models[m], form, options, context));
-      if (!rows.back().failure.empty()) given.run.message("  " + rows.back().failure);
+  const auto report = [&] {
+    if (!options.json.empty()) write_file(options.json, detection_json(rows));
+    print(detection_text(rows));
+  };
+  try {
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      for (const CaseForm& form : forms) {
+        given.run.check();
+        given.run.message(std::to_string(m + 1) + "/" + std::to_string(models.size()) + " " + models[m].name + ", " +
+                          form.name() + (form.noise > 0 ? ", noise " + short_number(form.noise) : ""));
+        rows.push_back(measure(models[m], form, options, context));
+        given.run.message("  " + in_short(rows.back()));
+      }
     }
+  } catch (const InterruptedError&) {
+    report();  // of what was measured until then
+    throw;
   }
-  if (!options.json.empty()) write_file(options.json, detection_json(rows));
-  print(detection_text(rows));
+  report();
   return kDone;
 }
 

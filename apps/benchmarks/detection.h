@@ -56,7 +56,4 @@ std::string detection_text(const std::vector<DetectionRow>& rows);
 /// An object: "rows", and "means" by form and noise and by kind.
 std::string detection_json(const std::vector<DetectionRow>& rows);
 
-/// The truth as an annotation with the keys optional_regions, optional_patterns and, in a region, also_accept.
-std::string truth_json(const DetectionTruth& truth);
-
 }  // namespace orbifit::benchmarks

@@ -5,8 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "orbifit/model/annotation_io.h"
-
 #include "command.h"
 #include "detection.h"
 
@@ -182,17 +180,6 @@ Json row_json(const DetectionRow& row) {
           {"vertices_per_second", row.seconds > 0 ? Json(row.vertices / row.seconds) : Json()}};
 }
 
-Json runs_of(const std::vector<int>& faces) {
-  Json runs = Json::array();
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && faces[end] == faces[end - 1] + 1) ++end;
-    runs.push_back({faces[i], end - i});
-    i = end;
-  }
-  return runs;
-}
-
 }  // namespace
 
 int DetectionRow::unfounded_groups() const {
@@ -263,25 +250,6 @@ std::string detection_json(const std::vector<DetectionRow>& rows) {
     kinds.push_back(std::move(entry));
   }
   return Json{{"rows", list}, {"means", {{"by_form", forms}, {"by_kind", kinds}}}}.dump(2) + "\n";
-}
-
-std::string truth_json(const DetectionTruth& truth) {
-  Json result = Json::parse(to_json(truth.expected));
-  SymmetryAnnotation further = truth.expected;
-  further.regions = truth.optional_regions;
-  further.patterns = truth.optional_patterns;
-  const Json rest = Json::parse(to_json(further));
-  result["optional_regions"] = rest["regions"];
-  result["optional_patterns"] = rest["patterns"];
-  for (const char* key : {"regions", "optional_regions"}) {
-    for (Json& region : result[key]) {
-      const auto sets = truth.also_accepted.find(region["id"].get<int>());
-      if (sets == truth.also_accepted.end()) continue;
-      Json& accepted = region["also_accept"] = Json::array();
-      for (const std::vector<int>& faces : sets->second) accepted.push_back(runs_of(faces));
-    }
-  }
-  return result.dump(1) + "\n";
 }
 
 }  // namespace orbifit::benchmarks
