@@ -141,10 +141,6 @@ void SuiteBuilder::expect(const PointGroup& group, const Placement& about, const
   asked_.push_back({make_region(group, about.origin, about.frame, {}, name), true});
 }
 
-void SuiteBuilder::allow(const PointGroup& group, const Placement& about, const std::string& name) {
-  asked_.push_back({make_region(group, about.origin, about.frame, {}, name), false});
-}
-
 Pattern SuiteBuilder::pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
                               const std::vector<std::vector<int>>& copies) const {
   Pattern pattern;
@@ -168,11 +164,6 @@ Pattern SuiteBuilder::pattern(const std::string& name, Pattern::Kind kind, const
 void SuiteBuilder::expect_pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
                                   const std::vector<std::vector<int>>& copies) {
   patterns_.push_back(pattern(name, kind, generators, copies));
-}
-
-void SuiteBuilder::allow_pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
-                                 const std::vector<std::vector<int>>& copies) {
-  optional_patterns_.push_back(pattern(name, kind, generators, copies));
 }
 
 std::vector<int> SuiteBuilder::parts_under(const Region& group) const {
@@ -278,7 +269,6 @@ TruthModel SuiteBuilder::finish() const {
     (candidate.expected ? truth.expected.regions : truth.optional_regions).push_back(std::move(candidate.region));
   }
   truth.expected.patterns = patterns_;
-  truth.optional_patterns = optional_patterns_;
   leave_out_repeated(model.mesh, truth);
 
   // Products of exact motions add rounding only: the generators are enough. Continuous groups are measured at the

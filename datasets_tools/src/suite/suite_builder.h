@@ -52,14 +52,9 @@ class SuiteBuilder {
   /// Expects the group's region; without a name it is named after its parts.
   void expect(const PointGroup& group, const Placement& about = {}, const std::string& name = {});
 
-  /// Accepts the group's region without asking for it.
-  void allow(const PointGroup& group, const Placement& about = {}, const std::string& name = {});
-
   /// Expects a pattern. \param copies the parts of each instance, those of one kind at the same place of every list
   void expect_pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
                       const std::vector<std::vector<int>>& copies);
-  void allow_pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,
-                     const std::vector<std::vector<int>>& copies);
 
   /// The mesh and its truth. Expected are the regions of the groups asked for, of what two of them have in common, and
   /// of the parts' own groups; not those below 0.25 % of the area nor those inside a region whose group says it all.
@@ -90,7 +85,7 @@ class SuiteBuilder {
   std::vector<Part> parts_;
   int faces_ = 0;
   std::vector<Candidate> asked_;
-  std::vector<Pattern> patterns_, optional_patterns_;
+  std::vector<Pattern> patterns_;
 };
 
 /// Moves the regions that say nothing new, of `expected` and `optional_regions`, out of the truth: those inside another

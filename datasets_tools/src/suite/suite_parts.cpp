@@ -72,10 +72,6 @@ Motion turn_z(double degrees) {
   return {axis_rotation(Vector3d::UnitZ(), degrees * pi / 180), Vector3d::Zero()};
 }
 
-Motion mirror_x() {
-  return Motion::reflection(Vector3d::UnitX(), Vector3d::Zero());
-}
-
 Placement upright(double x, double y, double z) {
   Matrix3d frame;
   frame << 0, -1, 0, 1, 0, 0, 0, 0, 1;

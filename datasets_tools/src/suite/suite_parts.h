@@ -25,7 +25,6 @@ Motion shift(double x, double y, double z);
 Motion turn_x(double degrees);  ///< about the x axis
 Motion turn_y(double degrees);
 Motion turn_z(double degrees);
-Motion mirror_x();  ///< x to -x
 
 /// About z, column 0 along y: the frame of a Cnv that has a mirror through angle 0.
 Placement upright(double x = 0, double y = 0, double z = 0);
