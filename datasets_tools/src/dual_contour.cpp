@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-
-#include <Eigen/Cholesky>
+#include <utility>
 
 #include "plane_fit.h"
 
