@@ -83,10 +83,21 @@ class Completion {
 
   // Makes all images of region q; their numbers.
   std::vector<std::size_t> carry(std::size_t q, const std::vector<Motion>& motions) {
-    const SurfaceIndex surface(prepared_.mesh, regions_[q].faces);
+    const SurfaceIndex& surface = surface_of(q);
     std::vector<Motion> stabiliser;
+    std::vector<std::pair<std::size_t, Motion>> images;
     std::vector<std::pair<Motion, std::vector<int>>> elsewhere;
+    std::vector<std::size_t> result;
     for (const Motion& motion : motions) {
+      if (const std::optional<std::size_t> known = known_image(q, motion)) {
+        if (*known == q) {
+          stabiliser.push_back(motion);
+        } else if (std::ranges::find(result, *known) == result.end()) {
+          result.push_back(*known);
+          images.emplace_back(*known, motion);
+        }
+        continue;
+      }
       std::vector<int> image = image_of(q, surface, motion);
       if (image.empty()) continue;
       if (overlap(image, regions_[q].faces) > 0.85) {
@@ -96,16 +107,13 @@ class Completion {
       }
     }
     settle(q, stabiliser);
-    std::vector<std::size_t> result;
+    for (const auto& [image, motion] : images) place(image, carried(regions_[q].placement, motion));
     for (const auto& [motion, faces] : elsewhere) {
       const GroupPlacement goal = carried(regions_[q].placement, motion);
       const std::optional<std::size_t> known = find(goal, faces);
       if (known) {
         const bool fresh = std::ranges::find(result, *known) == result.end();
-        if (fresh && *known != q && regions_[*known].placement.group == goal.group &&
-            holds(goal, regions_[*known].faces)) {
-          regions_[*known].placement = goal;
-        }
+        if (fresh && *known != q && regions_[*known].placement.group == goal.group) place(*known, goal);
         result.push_back(*known);
       } else if (regions_.size() < options_.most && holds(goal, faces)) {
         note(goal, regions_[q], true, "image of a region under a larger region's group");
@@ -116,6 +124,38 @@ class Completion {
       }
     }
     return result;
+  }
+
+  // The region of the same group onto which the motion carries this one, told by a few of its faces.
+  std::optional<std::size_t> known_image(std::size_t q, const Motion& motion) {
+    constexpr std::size_t kLooks = 24;
+    const double reach = 1.5 * tolerance_of(q);
+    const Vector3d goal = motion(moments_[q].centroid);
+    for (std::size_t k = 0; k < regions_.size(); ++k) {
+      if (regions_[k].placement.group != regions_[q].placement.group) continue;
+      if ((moments_[k].centroid - goal).norm() > 2 * reach) continue;
+      if (std::abs(regions_[k].area - regions_[q].area) > 0.05 * regions_[q].area) continue;
+      if (!contains_group(regions_[k].placement, carried(regions_[q].placement, motion), goal, moments_[q].radius,
+                          reach)) {
+        continue;
+      }
+      const SurfaceIndex& surface = surface_of(k);
+      const std::vector<int>& faces = regions_[q].faces;
+      std::size_t hits = 0;
+      for (std::size_t i = 0; i < kLooks; ++i) {
+        const int face = faces[i * faces.size() / kLooks];
+        const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
+        if (surface.nearest_facing(motion(centroids_.row(face)), normal, kNormalCosine, reach, true).face >= 0) ++hits;
+      }
+      if (hits >= kLooks - 2) return k;
+    }
+    return std::nullopt;
+  }
+
+  const SurfaceIndex& surface_of(std::size_t region) {
+    if (surfaces_.size() <= region) surfaces_.resize(region + 1);
+    if (!surfaces_[region]) surfaces_[region] = std::make_unique<SurfaceIndex>(prepared_.mesh, regions_[region].faces);
+    return *surfaces_[region];
   }
 
   // The faces that the motion carries the region onto; empty where there is no such surface.
@@ -178,7 +218,17 @@ class Completion {
     if (stabiliser.empty()) return;
     GroupPlacement placement = regions_[q].placement;
     for (int round = 0; round < 4; ++round) placement = mean_of_images(placement, stabiliser);
-    if (holds(placement, regions_[q].faces)) regions_[q].placement = placement;
+    place(q, placement);
+  }
+
+  // Moves a region's group; far enough to matter only where it still holds.
+  void place(std::size_t region, const GroupPlacement& goal) {
+    constexpr double kNothing = 0.02;  // tolerances
+    const FoundRegion& now = regions_[region];
+    const SurfaceMoments& moments = moments_[region];
+    const bool same =
+        contains_group(now.placement, goal, moments.centroid, moments.radius, kNothing * tolerance_of(region) / 3);
+    if (same || holds(goal, now.faces)) regions_[region].placement = goal;
   }
 
   static GroupPlacement mean_of_images(const GroupPlacement& placement, const std::vector<Motion>& stabiliser) {
@@ -232,6 +282,7 @@ class Completion {
   const RunContext& context_;
   std::vector<FoundRegion>& regions_;
   std::vector<SurfaceMoments> moments_;
+  std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;  // of the regions, built when first needed
   Points centroids_;
   PointIndex near_;
 };

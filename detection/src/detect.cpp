@@ -54,6 +54,7 @@ class Detector {
     find_in_segments();
     if (!late()) {
       context_.progress("images", 0);
+      drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
       complete_regions(prepared_, {options_.tolerance, kMostRegions, options_.explanation}, context_, regions_);
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);

@@ -144,7 +144,7 @@ class Search {
     if (placement.group.continuous()) return false;
     constexpr int kSamples = 300;
     constexpr double kAngle = 0.1;  // radians
-    const SurfacePatch patch = make_patch(prepared_, faces_of(parts), kSamples, options_.tolerance, context_, "slip");
+    const SurfacePatch patch = sample_patch(prepared_, faces_of(parts), kSamples, options_.tolerance, context_, "slip");
     const std::optional<RevolutionFit> fit =
         fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
     return fit && (fit->planar || fit->inliers > 0.95);
@@ -160,8 +160,11 @@ class Search {
   }
 
   bool verified(const GroupPlacement& placement, const std::vector<int>& parts) const {
-    const SurfacePatch patch =
-        make_patch(prepared_, faces_of(parts), kPartSamples, options_.tolerance, context_, "grown");
+    return verified(placement,
+                    make_patch(prepared_, faces_of(parts), kPartSamples, options_.tolerance, context_, "grown"));
+  }
+
+  bool verified(const GroupPlacement& placement, const SurfacePatch& patch) const {
     const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
     return passes(verify(patch, motions, tolerance, 0, VerificationLimits{}.joint, context_));
@@ -191,13 +194,14 @@ class Search {
 
   // How closely parts must fit a group that fits the seed as well as it does, in tolerances: parts that fit far worse
   // are not of the same making.
-  double strictness(const GroupPlacement& placement, const std::vector<int>& seed) const {
+  double strictness(const GroupPlacement& placement, const SurfacePatch& seed) const {
     if (placement.group.continuous()) return 1;
     constexpr double kDeviations = 8;
     constexpr double kStrictest = 0.15;
-    const SurfacePatch patch = make_patch(prepared_, faces_of(seed), 200, options_.tolerance, context_, "fit");
+    constexpr std::size_t kQueries = 1500;
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-    return std::clamp(kDeviations * measure_residual(patch, motions, context_).rms / patch.tolerance, kStrictest, 1.0);
+    const double rms = measure_residual(seed, motions, context_, kQueries).rms;
+    return std::clamp(kDeviations * rms / seed.tolerance, kStrictest, 1.0);
   }
 
   void note(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& parts, bool kept,
@@ -209,9 +213,9 @@ class Search {
   }
 
   // Adds a region for a group known on `seed`, grown to all parts that the group permutes.
-  void add(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& seed) {
+  void add(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& seed, double strictness) {
     if (already_known(placement, seed)) return note(stage, placement, seed, false, "known from a larger region");
-    std::vector<int> grown = mover_->permuted(placement, seed, strictness(placement, seed));
+    std::vector<int> grown = mover_->permuted(placement, seed, strictness);
     if (seed.size() == 1 && !options_.pieces) drop_siblings(grown, seed.front());
     if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
@@ -247,8 +251,9 @@ class Search {
     if (options_.pieces && (sheet || mere_border(group->placement, {first}))) {
       return note("parts", group->placement, {first}, false, "only its border gives it the group");
     }
+    const double strict = strictness(group->placement, patch);
     for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
-      add("parts", carried(group->placement, kind.motions[i]), {kind.members[i]});
+      add("parts", carried(group->placement, kind.motions[i]), {kind.members[i]}, strict);
     }
   }
 
@@ -259,9 +264,18 @@ class Search {
     return normal.dot(moments.covariance * normal) < std::pow(0.5 * options_.tolerance * moments.diagonal, 2);
   }
 
+  // Any two copies of a symmetric part are symmetric together, wherever they are: of more than two, a pair says
+  // nothing.
+  bool mere_pair(const std::vector<int>& parts) const {
+    if (parts.size() != 2) return false;
+    return std::ranges::any_of(classes(), [&](const CongruenceClass& kind) {
+      return kind.members.size() > 2 && std::ranges::includes(kind.members, parts);
+    });
+  }
+
   // The own group of several parts together. Whether there is one.
   bool find_set_group(const std::vector<int>& members, const std::vector<Vector3d>& axes) {
-    if (area_of(members) < least_area() || !tried_.insert(members).second) return false;
+    if (area_of(members) < least_area() || mere_pair(members) || !tried_.insert(members).second) return false;
     const SurfacePatch patch = patch_of(members, "set");
     const bool screen = axes.empty() && needs_screen(patch.moments);
     const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
@@ -269,7 +283,7 @@ class Search {
       note(axes.empty() ? "sets" : "axes", {}, members, false, "no group of their own");
       return false;
     }
-    add(axes.empty() ? "sets" : "axes", group->placement, members);
+    add(axes.empty() ? "sets" : "axes", group->placement, members, strictness(group->placement, patch));
     return true;
   }
 
@@ -309,7 +323,9 @@ class Search {
   void find_axis_regions(const Line& line) {
     const GroupFrame frame = frame_about(line.direction);
     const std::vector<int> round = mover_->permuted({{Family::Cinf, 1}, frame, line.point}, {});
-    if (!round.empty()) find_set_group(round, {line.direction});
+    if (!round.empty() && !already_known({{Family::Cinf, 1}, frame, line.point}, round)) {
+      find_set_group(round, {line.direction});
+    }
     std::vector<std::pair<int, std::vector<int>>> found;
     for (int n = kHighestOrder; n >= 2; --n) {
       context_.check();
@@ -322,14 +338,17 @@ class Search {
       // What lies on the line speaks for itself.
       std::erase_if(fresh, [&](int c) { return distance_from(line, moments(c).centroid) < 3 * options_.tolerance; });
       if (area_of(fresh) < least_area()) continue;
+      // Whole classes were looked at before; what turns with a larger region as well has nothing new to say.
+      const GroupPlacement turn{{Family::Cn, n}, frame, line.point};
       for (const CongruenceClass& kind : classes()) {
         std::vector<int> ring;
         std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));
-        if (ring.size() > 1) find_set_group(ring, {line.direction});
+        if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, {line.direction});
       }
-      if (!find_set_group(turned, {line.direction}) && !already_known({{Family::Cn, n}, frame, line.point}, turned)) {
-        const GroupPlacement placement = refine(patch_of(turned, "axis"), {{Family::Cn, n}, frame, line.point});
-        if (verified(placement, turned)) add("axes", placement, turned);
+      if (!already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
+        const SurfacePatch patch = patch_of(turned, "axis");
+        const GroupPlacement placement = refine(patch, turn);
+        if (verified(placement, patch)) add("axes", placement, turned, strictness(placement, patch));
       }
       found.emplace_back(n, std::move(turned));
     }
@@ -339,10 +358,10 @@ class Search {
     GroupPlacement placement{{Family::Cs, 1}, frame_about(line.direction), line.point};
     const std::vector<int> parts = mover_->permuted(placement, {});
     if (parts.size() < 2 || area_of(parts) < least_area() || already_known(placement, parts)) return;
-    if (!tried_.insert(parts).second) return;
+    if (mere_pair(parts) || !tried_.insert(parts).second) return;
     const SurfacePatch patch = patch_of(parts, "mirror");
     placement = refine(patch, placement);
-    if (verified(placement, parts)) add("planes", placement, parts);
+    if (verified(placement, patch)) add("planes", placement, parts, strictness(placement, patch));
   }
 
   const PreparedMesh& prepared_;

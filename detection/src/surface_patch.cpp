@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -158,27 +159,44 @@ SurfaceMoments surface_moments(const PreparedMesh& prepared, const std::vector<i
   return result;
 }
 
-SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
-                        const RunContext& context, std::string_view stream) {
+namespace {
+
+std::vector<int> visible_faces(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  std::vector<int> visible;
+  visible.reserve(faces.size());
+  for (const int f : faces) {
+    if (prepared.areas[f] > 0) visible.push_back(f);
+  }
+  return visible;
+}
+
+}  // namespace
+
+SurfacePatch sample_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
+                          const RunContext& context, std::string_view stream) {
   SurfacePatch patch;
   patch.prepared = &prepared;
   std::ranges::sort(faces);
   patch.moments = surface_moments(prepared, faces);
   patch.relative_tolerance = tolerance;
   patch.tolerance = tolerance * std::min(1.0, 4 * patch.moments.diagonal);
-  std::vector<int> visible;
-  visible.reserve(faces.size());
-  for (const int f : faces) {
-    if (prepared.areas[f] > 0) visible.push_back(f);
-  }
   Random random(context.seed, stream);
-  patch.samples = sample_surface(prepared.mesh, samples, random, visible);
+  patch.samples = sample_surface(prepared.mesh, samples, random, visible_faces(prepared, faces));
+  patch.at_crease.assign(static_cast<std::size_t>(patch.samples.points.rows()), 0);
+  patch.faces = std::move(faces);
+  return patch;
+}
+
+SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
+                        const RunContext& context, std::string_view stream) {
+  SurfacePatch patch = sample_patch(prepared, std::move(faces), samples, tolerance, context, stream);
+  const std::vector<int> visible = visible_faces(prepared, patch.faces);
   patch.index = std::make_shared<const SurfaceIndex>(prepared.mesh, visible);
   const double reach = 3 * patch.tolerance;
   patch.at_crease = at_creases(prepared, patch.samples, reach, context);
+  Random random(context.seed, std::string(stream) + " parts");
   patch.part_samples = samples_of_parts(prepared, visible, patch.moments.area, random);
   patch.part_at_crease = at_creases(prepared, patch.part_samples, reach, context);
-  patch.faces = std::move(faces);
   return patch;
 }
 

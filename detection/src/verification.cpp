@@ -207,9 +207,10 @@ double kept_share(const SurfacePatch& patch, const Motion& motion, double tolera
   return chosen.empty() ? 0 : static_cast<double>(kept) / static_cast<double>(chosen.size());
 }
 
-Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context) {
-  constexpr std::size_t kQueries = 16000;
-  const std::size_t count = std::clamp<std::size_t>(kQueries / std::max<std::size_t>(1, motions.size()), 100, 2000);
+Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context,
+                          std::size_t queries) {
+  const std::size_t least = std::min<std::size_t>(100, queries / 60);
+  const std::size_t count = std::clamp<std::size_t>(queries / std::max<std::size_t>(1, motions.size()), least, 2000);
   const std::vector<std::size_t> chosen = spread(patch.at_crease.size(), static_cast<int>(count));
   std::vector<double> square(chosen.size(), 0);
   std::vector<double> largest(chosen.size(), 0);

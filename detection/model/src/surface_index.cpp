@@ -60,9 +60,13 @@ struct Corners {
   Eigen::Vector3d at(const Eigen::Vector3d& weights) const { return from(Eigen::Vector3d::Zero(), weights); }
 };
 
-// Of a triangle's edges, within its plane; unit, or zero for a degenerate face.
-struct OutwardNormals {
-  Eigen::Vector3d ab, bc, ca;
+// What a query asks of a triangle before it measures, in one place of the memory.
+struct Facet {
+  Eigen::Vector3d normal;      // unit, zero for a degenerate face
+  Eigen::Vector3d a, b;        // corners
+  Eigen::Vector3d ab, bc, ca;  // outward normals of the edges within the plane; unit, or zero
+  double longest = 0;          // the edge from a to b by its coordinates
+  bool needle = false;         // the normal is too uncertain to cull with
 };
 
 // Parameter in [0, 1] of the point of segment a + t ab nearest to a + ap.
@@ -171,10 +175,8 @@ struct SurfaceIndex::Implementation {
   double scale = 1;                                  // a power of two; lengths below are in scaled units
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
   std::vector<Corners> corners;                      // scaled units
-  std::vector<Eigen::Vector3d> normals;              // unit, zero for degenerate faces
-  std::vector<OutwardNormals> outward;
-  std::vector<std::uint8_t> needles;  // 1 where the normal is too uncertain to cull with
-  std::vector<int> face_numbers;      // in the mesh
+  std::vector<Facet> facets;
+  std::vector<int> face_numbers;  // in the mesh
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
@@ -202,9 +204,7 @@ namespace {
 // State of one nearest-point query; Embree hands it to the callback.
 struct Search {
   const Corners* corners = nullptr;
-  const Eigen::Vector3d* normals = nullptr;
-  const OutwardNormals* outward = nullptr;
-  const std::uint8_t* needles = nullptr;
+  const Facet* facets = nullptr;
   const int* face_numbers = nullptr;
   Eigen::Vector3d point;  // scaled units
   double max_distance = 0;
@@ -224,7 +224,7 @@ struct Search {
 
   bool faces_the_right_way(unsigned triangle) const {
     if (facing == nullptr) return true;
-    const double cosine = normals[triangle].dot(*facing);
+    const double cosine = facets[triangle].normal.dot(*facing);
     return (unsigned_normal ? std::abs(cosine) : cosine) >= min_cosine;
   }
 };
@@ -233,16 +233,14 @@ struct Search {
 // that plane. Its normals are known to 1e-9 unless it is a needle, so nothing nearer is lost; this spares most
 // measurements, far from the surface by the plane, near fans of long triangles by the edges.
 bool plainly_beyond(const Search& search, unsigned triangle) {
-  if (search.needles[triangle]) return false;
+  const Facet& facet = search.facets[triangle];
+  if (facet.needle) return false;
   const double limit = search.face < 0 ? search.max_distance * search.max_distance : search.squared_distance;
-  const Corners& corners = search.corners[triangle];
-  const Eigen::Vector3d from_a = search.point - corners.a;
-  const double slack = 1e-8 * (from_a.lpNorm<1>() + (corners.b - corners.a).lpNorm<1>());
-  const double height = std::max(0.0, std::abs(search.normals[triangle].dot(from_a)) - slack);
-  const OutwardNormals& outward = search.outward[triangle];
-  const double outside =
-      std::max({outward.ab.dot(from_a), outward.ca.dot(from_a), outward.bc.dot(search.point - corners.b)}) - slack;
-  const double beside = std::max(0.0, outside);
+  const Eigen::Vector3d from_a = search.point - facet.a;
+  const double slack = 1e-8 * (from_a.lpNorm<1>() + facet.longest);
+  const double height = std::max(0.0, std::abs(facet.normal.dot(from_a)) - slack);
+  const double outside = std::max({facet.ab.dot(from_a), facet.ca.dot(from_a), facet.bc.dot(search.point - facet.b)});
+  const double beside = std::max(0.0, outside - slack);
   return height * height + beside * beside > limit;
 }
 
@@ -277,17 +275,20 @@ void SurfaceIndex::Implementation::build() {
   // Unscaled so far: choose the scale, then apply it.
   scale = unit_scale(box.sizes().maxCoeff());
   centre = scale * (0.5 * box.min() + 0.5 * box.max());
-  normals.reserve(corners.size());
-  outward.reserve(corners.size());
+  facets.reserve(corners.size());
   for (Corners& face : corners) {
     face = {scale * face.a, scale * face.b, scale * face.c};
     const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
     const double length = vector.stableNorm();
-    needles.push_back(length > 1e-6 * (face.b - face.a).norm() * (face.c - face.a).norm() ? 0 : 1);
-    const Eigen::Vector3d normal = length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
-    normals.push_back(normal);
-    outward.push_back({(face.b - face.a).cross(normal).normalized(), (face.c - face.b).cross(normal).normalized(),
-                       (face.a - face.c).cross(normal).normalized()});
+    Facet& facet = facets.emplace_back();
+    facet.needle = !(length > 1e-6 * (face.b - face.a).norm() * (face.c - face.a).norm());
+    facet.normal = length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
+    facet.a = face.a;
+    facet.b = face.b;
+    facet.ab = (face.b - face.a).cross(facet.normal).normalized();
+    facet.bc = (face.c - face.b).cross(facet.normal).normalized();
+    facet.ca = (face.a - face.c).cross(facet.normal).normalized();
+    facet.longest = (face.b - face.a).lpNorm<1>();
   }
 
   device = shared_device();
@@ -322,9 +323,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   if (corners.empty() || !(max_distance >= 0)) return result;
   Search search;
   search.corners = corners.data();
-  search.normals = normals.data();
-  search.outward = outward.data();
-  search.needles = needles.data();
+  search.facets = facets.data();
   search.face_numbers = face_numbers.data();
   search.point = scale * point;
   search.max_distance = scale * max_distance;

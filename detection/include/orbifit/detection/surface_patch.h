@@ -60,4 +60,8 @@ struct SurfacePatch {
 SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
                         const RunContext& context, std::string_view stream);
 
+/// The samples alone: without index, parts and creases.
+SurfacePatch sample_patch(const PreparedMesh& prepared, std::vector<int> faces, int samples, double tolerance,
+                          const RunContext& context, std::string_view stream);
+
 }  // namespace orbifit

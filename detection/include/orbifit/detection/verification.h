@@ -47,6 +47,8 @@ double kept_share(const SurfacePatch& patch, const Motion& motion, double tolera
                   double give_up_below = 0);
 
 /// Distances between g(S) and S over samples and motions, in the mesh's diagonal.
-Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context);
+/// \param queries how many pairs of a sample and a motion to measure, about
+Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context,
+                          std::size_t queries = 16000);
 
 }  // namespace orbifit
