@@ -345,7 +345,7 @@ class Search {
         std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));
         if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, {line.direction});
       }
-      if (!already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
+      if (!mere_pair(turned) && !already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
         const SurfacePatch patch = patch_of(turned, "axis");
         const GroupPlacement placement = refine(patch, turn);
         if (verified(placement, patch)) add("axes", placement, turned, strictness(placement, patch));
