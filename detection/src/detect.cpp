@@ -16,6 +16,7 @@
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/part_regions.h"
 #include "orbifit/detection/patterns.h"
+#include "orbifit/detection/revolution_regions.h"
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/detection/verification.h"
@@ -97,8 +98,38 @@ class Detector {
     PreparedMesh partition = prepared_;
     partition.components = smooth_segments(prepared_);
     const std::size_t count = partition.components.faces.size();
-    if (count == prepared_.components.faces.size() || count > kMostSegments) return;
+    if (count > kMostSegments) return;
+    if (count == prepared_.components.faces.size()) return find_turned(partition);
     for (const FoundRegion& region : find_in_parts(partition, true).regions) regions_.push_back(region);
+    find_turned(partition);
+  }
+
+  // Turned regions that end within a piece.
+  void find_turned(const PreparedMesh& partition) {
+    if (late()) return;
+    std::vector<Line> axes;
+    for (const FoundRegion& region : regions_) {
+      const PointGroup& group = region.placement.group;
+      const bool turns = group.continuous()
+                             ? group.family != PointGroup::Family::K && group.family != PointGroup::Family::Kh
+                             : group.order() >= 3;
+      if (turns) axes.push_back({region.placement.centre, region.placement.frame.col(2)});
+    }
+    const std::vector<Line> fitted = revolution_axes(partition, options_.tolerance, context_);
+    axes.insert(axes.end(), fitted.begin(), fitted.end());
+    std::vector<Line> distinct;
+    for (const Line& line : axes) {
+      const bool known = std::ranges::any_of(distinct, [&](const Line& other) {
+        return line.direction.cross(other.direction).norm() < 0.01 &&
+               (line.point - other.point).cross(other.direction).norm() < 0.3 * options_.tolerance;
+      });
+      if (!known) distinct.push_back(line);
+    }
+    RevolutionRegionOptions turned{options_.tolerance, kLeastShare, options_.explanation, [this] { return late(); }};
+    for (FoundRegion& region :
+         find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_)) {
+      regions_.push_back(std::move(region));
+    }
   }
 
   // Whether some region's group carries the first member of the class onto each of the others.

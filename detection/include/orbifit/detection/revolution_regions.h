@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "orbifit/detection/explanation.h"
+#include "orbifit/detection/found_region.h"
+#include "orbifit/detection/symmetry_lines.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+struct RevolutionRegionOptions {
+  double tolerance = 0.005;            ///< fraction of the mesh's diagonal
+  double least_share = 0.002;          ///< of the mesh's area: smaller regions say little
+  Explanation* explanation = nullptr;  ///< may be null
+  std::function<bool()> late;          ///< whether time is up; may be empty
+};
+
+/// Turned regions that end within a piece of surface, where other things are joined to it: for each axis the faces
+/// whose whole circles lie on the surface (the orbit test, method notes 4.1), then the largest group of what they make
+/// up. Of a plane all within its creases is taken or nothing: a disc on a larger plane is no part of anything. \param
+/// prepared with pieces of surface between creases for components \param whole index of the whole mesh \param axes
+/// where to look \param known regions found before; what they say is not repeated Costs O(F) cheap tests an axis, and
+/// 12 nearest-point queries a face of the region.
+std::vector<FoundRegion> find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                                                 const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
+                                                 const RevolutionRegionOptions& options, const RunContext& context);
+
+/// Axes about which large parts of the pieces of surface turn: robust fits to each piece, and to surroundings of points
+/// spread over the pieces that no fit explains.
+std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance, const RunContext& context);
+
+}  // namespace orbifit

@@ -1,0 +1,273 @@
+#include "orbifit/detection/revolution_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/own_group.h"
+#include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/verification.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+constexpr int kAngles = 12;
+constexpr double kMeetsAxis = 0.2;                  // sine of the angle between a normal and the axis's half-plane
+constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
+constexpr int kPatchSamples = 700;
+
+Vector3d centroid_of(const PreparedMesh& prepared, int face) {
+  const Eigen::RowVector3i corners = prepared.mesh.faces.row(face);
+  return (prepared.mesh.vertices.row(corners[0]) + prepared.mesh.vertices.row(corners[1]) +
+          prepared.mesh.vertices.row(corners[2]))
+             .transpose() /
+         3;
+}
+
+/// The faces about one axis.
+class Turned {
+ public:
+  Turned(const PreparedMesh& prepared, const SurfaceIndex& whole, const Line& axis, double tolerance)
+      : prepared_(prepared), whole_(whole), axis_(axis), tolerance_(tolerance) {
+    for (int k = 1; k < kAngles; ++k) {
+      const double turns = k / std::numbers::phi;
+      turns_.push_back(
+          Motion::rotation(axis.direction, 2 * std::numbers::pi * (turns - std::floor(turns)), axis.point));
+    }
+  }
+
+  // Whether the normal meets the axis, as on every surface turned about it.
+  bool may_turn(int face) const {
+    const Vector3d from = centroid_of(prepared_, face) - axis_.point;
+    const Vector3d around = axis_.direction.cross(from);
+    const double radius = around.norm();
+    if (radius < tolerance_) return true;
+    return std::abs(around.dot(prepared_.normals.row(face))) <= kMeetsAxis * radius;
+  }
+
+  // Whether the whole circle of the face's centroid lies on the surface.
+  bool turns(int face) const {
+    const Vector3d centroid = centroid_of(prepared_, face);
+    const Vector3d normal = prepared_.normals.row(face);
+    return std::ranges::all_of(turns_, [&](const Motion& motion) {
+      return whole_.nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_, true).face >= 0;
+    });
+  }
+
+ private:
+  const PreparedMesh& prepared_;
+  const SurfaceIndex& whole_;
+  Line axis_;
+  double tolerance_;
+  std::vector<Motion> turns_;
+};
+
+double planarity(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  Vector3d sum = Vector3d::Zero();
+  double area = 0;
+  for (const int f : faces) {
+    sum += prepared.areas[f] * prepared.normals.row(f).transpose();
+    area += prepared.areas[f];
+  }
+  return area > 0 ? sum.norm() / area : 0;
+}
+
+class Search {
+ public:
+  Search(const PreparedMesh& prepared, const SurfaceIndex& whole, const std::vector<FoundRegion>& known,
+         const RevolutionRegionOptions& options, const RunContext& context)
+      : prepared_(prepared), whole_(whole), known_(known), options_(options), context_(context) {
+    for (const std::vector<int>& faces : prepared.components.faces) {
+      double area = 0;
+      for (const int f : faces) area += prepared.areas[f];
+      areas_.push_back(area);
+      flat_.push_back(planarity(prepared, faces) > 0.999 ? 1 : 0);
+    }
+  }
+
+  void look_at(const Line& axis) {
+    const std::vector<int> faces = faces_about(axis);
+    double area = 0;
+    for (const int f : faces) area += prepared_.areas[f];
+    if (area < options_.least_share * prepared_.area) return;
+    const GroupPlacement turn{{Family::Cinf, 1}, frame_about(axis.direction), axis.point};
+    FoundRegion region{turn, faces, area, "turned about an axis"};
+    if (says_nothing_new(region)) return;
+    const SurfacePatch patch = make_patch(prepared_, faces, kPatchSamples, options_.tolerance, context_, "turned");
+    if (!continuous_about(patch, axis.direction, axis.point)) {
+      return note(region, false, "does not turn into itself closely enough");
+    }
+    const std::optional<OwnGroup> group = find_own_group(patch, nullptr, {{axis.direction}}, context_);
+    if (!group || !group->placement.group.continuous()) {
+      note(region, false, group ? "only a finite group holds" : "does not turn into itself closely enough");
+      return;
+    }
+    region.placement = group->placement;
+    if (says_nothing_new(region)) return;
+    note(region, true, "verified");
+    found_.push_back(std::move(region));
+  }
+
+  std::vector<FoundRegion> take() { return std::move(found_); }
+
+ private:
+  bool says_nothing_new(const FoundRegion& region) const {
+    const SurfaceMoments moments = surface_moments(prepared_, region.faces);
+    const double reach = options_.tolerance * std::min(1.0, 4 * moments.diagonal);
+    const auto holds = [&](const FoundRegion& other) {
+      return other.placement.group.continuous() &&
+             area_outside(prepared_, region.faces, other.faces) <= 0.1 * region.area &&
+             contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
+    };
+    return std::ranges::any_of(known_, holds) || std::ranges::any_of(found_, holds);
+  }
+
+  void note(const FoundRegion& region, bool kept, const std::string& reason) const {
+    if (options_.explanation == nullptr) return;
+    options_.explanation->notes.push_back(
+        {"revolution", region.placement.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces", kept,
+         reason});
+  }
+
+  std::vector<int> faces_about(const Line& axis) const {
+    const double tolerance = 1.2 * options_.tolerance;
+    const Turned turned(prepared_, whole_, axis, tolerance);
+    std::vector<int> result;
+    for (std::size_t s = 0; s < prepared_.components.faces.size(); ++s) {
+      if (areas_[s] <= 0) continue;
+      const std::vector<int>& faces = prepared_.components.faces[s];
+      std::vector<int> candidates;
+      double area = 0;
+      for (const int f : faces) {
+        if (prepared_.areas[f] <= 0 || !turned.may_turn(f)) continue;
+        candidates.push_back(f);
+        area += prepared_.areas[f];
+      }
+      if (area < 0.05 * areas_[s] || (flat_[s] != 0 && area < 0.9 * areas_[s])) continue;
+      if (few_turn(turned, candidates)) continue;
+      std::vector<int> kept;
+      double kept_area = 0;
+      for (const int f : candidates) {
+        if (!turned.turns(f)) continue;
+        kept.push_back(f);
+        kept_area += prepared_.areas[f];
+      }
+      if (flat_[s] != 0 && kept_area < 0.8 * areas_[s]) continue;
+      if (kept_area > 0.97 * areas_[s]) kept = faces;
+      result.insert(result.end(), kept.begin(), kept.end());
+    }
+    std::ranges::sort(result);
+    return result;
+  }
+
+  static bool few_turn(const Turned& turned, const std::vector<int>& candidates) {
+    constexpr std::size_t kLooks = 40;
+    if (candidates.size() <= 2 * kLooks) return false;
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < kLooks; ++i) {
+      if (turned.turns(candidates[i * candidates.size() / kLooks])) ++hits;
+    }
+    return hits < 2;
+  }
+
+  const PreparedMesh& prepared_;
+  const SurfaceIndex& whole_;
+  const std::vector<FoundRegion>& known_;
+  const RevolutionRegionOptions& options_;
+  const RunContext& context_;
+  std::vector<double> areas_;
+  std::vector<char> flat_;
+  std::vector<FoundRegion> found_;
+};
+
+// Centroids, normals and areas of at most `most` of the faces.
+struct Oriented {
+  Points points, normals;
+  Eigen::VectorXd weights;
+};
+
+Oriented oriented_points(const PreparedMesh& prepared, const std::vector<int>& faces, std::size_t most) {
+  const std::size_t count = std::min(faces.size(), most);
+  Oriented result{Points(static_cast<Eigen::Index>(count), 3), Points(static_cast<Eigen::Index>(count), 3),
+                  Eigen::VectorXd(static_cast<Eigen::Index>(count))};
+  for (std::size_t i = 0; i < count; ++i) {
+    const int f = faces[i * faces.size() / count];
+    const auto row = static_cast<Eigen::Index>(i);
+    result.points.row(row) = centroid_of(prepared, f);
+    result.normals.row(row) = prepared.normals.row(f);
+    result.weights[row] = prepared.areas[f];
+  }
+  return result;
+}
+
+bool same_axis(const Line& a, const Line& b, double tolerance) {
+  return a.direction.cross(b.direction).norm() < 0.02 &&
+         (b.point - a.point).cross(a.direction).norm() < 0.5 * tolerance;
+}
+
+}  // namespace
+
+std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance, const RunContext& context) {
+  constexpr double kAngle = 0.08;        // radians
+  constexpr double kLeastShare = 0.004;  // of the mesh's area
+  constexpr double kLocalShare = 0.05;   // pieces this large are looked at place by place
+  constexpr double kReach = 0.12;        // of the diagonal
+  constexpr int kSeeds = 16;
+  constexpr std::size_t kMostAxes = 48;
+  std::vector<Line> result;
+  const auto add = [&](const Line& line) {
+    if (result.size() >= kMostAxes || line.point.norm() > 2) return;
+    if (std::ranges::none_of(result, [&](const Line& known) { return same_axis(known, line, tolerance); })) {
+      result.push_back(line);
+    }
+  };
+  for (const std::vector<int>& faces : prepared.components.faces) {
+    context.check();
+    double area = 0;
+    for (const int f : faces) area += prepared.areas[f];
+    if (area < kLeastShare * prepared.area) continue;
+    const Oriented all = oriented_points(prepared, faces, 1500);
+    const std::optional<RevolutionFit> fit = fit_axis_of_revolution(all.points, all.normals, all.weights, kAngle);
+    if (fit && (fit->planar || fit->spherical)) continue;
+    if (fit) add(fit->axis);
+    if ((fit && fit->inliers > 0.9) || area < kLocalShare * prepared.area) continue;
+    // Seeds far from one another.
+    Eigen::VectorXd nearest = Eigen::VectorXd::Constant(all.points.rows(), 10);
+    Eigen::Index seed = 0;
+    for (int k = 0; k < kSeeds; ++k) {
+      Eigen::VectorXd local = all.weights;
+      for (Eigen::Index i = 0; i < all.points.rows(); ++i) {
+        const double distance = (all.points.row(i) - all.points.row(seed)).norm();
+        nearest[i] = std::min(nearest[i], distance);
+        if (distance > kReach) local[i] = 0;
+      }
+      const std::optional<RevolutionFit> near = fit_axis_of_revolution(all.points, all.normals, local, kAngle);
+      if (near && !near->planar && !near->spherical && near->inliers > 0.6) add(near->axis);
+      nearest.maxCoeff(&seed);
+    }
+  }
+  return result;
+}
+
+std::vector<FoundRegion> find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                                                 const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
+                                                 const RevolutionRegionOptions& options, const RunContext& context) {
+  Search search(prepared, whole, known, options, context);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (options.late && options.late()) break;
+    context.check();
+    context.progress("turned regions", static_cast<double>(i) / static_cast<double>(axes.size()));
+    search.look_at(axes[i]);
+  }
+  return search.take();
+}
+
+}  // namespace orbifit
