@@ -1,7 +1,9 @@
 #include "orbifit/detection/segments.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -35,12 +37,91 @@ class Sets {
   std::vector<int> parent_;
 };
 
+// Where one end of the edge is.
+Eigen::Vector3d end_of(const PreparedMesh& prepared, const Edge& edge, std::size_t k) {
+  return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(edge.vertices[k])]);
+}
+
 double edge_length(const PreparedMesh& prepared, const Edge& edge) {
-  const auto place = [&](int k) {
-    return prepared.mesh.vertices.row(
-        prepared.weld.representative[static_cast<std::size_t>(edge.vertices[static_cast<std::size_t>(k)])]);
+  return (end_of(prepared, edge, 1) - end_of(prepared, edge, 0)).norm();
+}
+
+// The faces at the edge that count: no repeated ones, none without area.
+std::vector<int> visible_faces(const PreparedMesh& prepared, const Edge& edge) {
+  std::vector<int> result;
+  std::ranges::copy_if(edge.faces, std::back_inserter(result), [&](int f) { return prepared.areas[f] > 0; });
+  return result;
+}
+
+// From the edge across the face, to its third corner.
+Eigen::Vector3d across(const PreparedMesh& prepared, const Edge& edge, int face) {
+  const Eigen::Vector3d start = end_of(prepared, edge, 0);
+  const Eigen::Vector3d along = end_of(prepared, edge, 1) - start;
+  for (int k = 0; k < 3; ++k) {
+    const int corner = prepared.mesh.faces(face, k);
+    const int group = prepared.weld.group_of_vertex[static_cast<std::size_t>(corner)];
+    if (group == edge.vertices[0] || group == edge.vertices[1]) continue;
+    const Eigen::Vector3d to = prepared.mesh.vertices.row(corner).transpose() - start;
+    return to - along * (along.dot(to) / along.squaredNorm());
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+// Whether the surface goes on smoothly over the edge, however its two faces are oriented: not so where it folds back,
+// as at a knife's edge, although its normals are nearly parallel there.
+bool smooth_across(const PreparedMesh& prepared, const Edge& edge, int first, int second, double cosine) {
+  if (std::abs(prepared.normals.row(first).dot(prepared.normals.row(second))) < cosine) return false;
+  return across(prepared, edge, first).dot(across(prepared, edge, second)) <= 0;
+}
+
+std::array<int, 3> corners_of(const PreparedMesh& prepared, int face) {
+  std::array<int, 3> corners{};
+  for (int k = 0; k < 3; ++k) {
+    corners[static_cast<std::size_t>(k)] =
+        prepared.weld.group_of_vertex[static_cast<std::size_t>(prepared.mesh.faces(face, k))];
+  }
+  std::ranges::sort(corners);
+  return corners;
+}
+
+// Joins each face without area to one neighbour, and no more, so that none bridges a crease. What has the same corners
+// as an earlier face joins it: the sheet goes on on both.
+void join_without_area(const PreparedMesh& prepared, const std::vector<Edge>& edges, Sets& sets) {
+  const auto count = static_cast<int>(prepared.mesh.faces.rows());
+  std::vector<char> joined(static_cast<std::size_t>(count), 0);
+  std::map<std::array<int, 3>, int> first_with;
+  for (int f = 0; f < count; ++f) {
+    joined[static_cast<std::size_t>(f)] = prepared.areas[f] > 0 ? 1 : 0;
+    const auto [known, fresh] = first_with.try_emplace(corners_of(prepared, f), f);
+    if (fresh) continue;
+    sets.unite(f, known->second);
+    joined[static_cast<std::size_t>(f)] = 1;
+  }
+  const auto join = [&](int face, const Edge& edge) {
+    const auto neighbour =
+        std::ranges::find_if(edge.faces, [&](int f) { return joined[static_cast<std::size_t>(f)] != 0; });
+    if (neighbour == edge.faces.end()) return false;
+    sets.unite(face, *neighbour);
+    joined[static_cast<std::size_t>(face)] = 1;
+    return true;
   };
-  return (place(1) - place(0)).norm();
+  // Next to one another they follow in turn.
+  for (bool more = true; more;) {
+    more = false;
+    for (const Edge& edge : edges) {
+      for (const int f : edge.faces) {
+        if (joined[static_cast<std::size_t>(f)] == 0 && join(f, edge)) more = true;
+      }
+    }
+  }
+  // A face with two corners at one place is at no edge of the welded mesh, but lies on one.
+  for (int f = 0; f < count; ++f) {
+    if (joined[static_cast<std::size_t>(f)] != 0) continue;
+    const std::array<int, 3> corners = corners_of(prepared, f);
+    const std::array<int, 2> ends{corners[0], corners[2]};
+    const auto edge = std::ranges::lower_bound(edges, ends, {}, &Edge::vertices);
+    if (edge != edges.end() && edge->vertices == ends) join(f, *edge);
+  }
 }
 
 // Segments too small to say anything join the neighbour along the longest common border, smallest first.
@@ -54,9 +135,10 @@ void absorb_slivers(const PreparedMesh& prepared, const std::vector<Edge>& edges
     }
     std::map<std::pair<int, int>, double> borders;  // (small segment, neighbour): common length
     for (const Edge& edge : edges) {
-      if (edge.faces.size() != 2) continue;
-      const int a = sets.root(edge.faces[0]);
-      const int b = sets.root(edge.faces[1]);
+      const std::vector<int> visible = visible_faces(prepared, edge);
+      if (visible.size() != 2) continue;
+      const int a = sets.root(visible[0]);
+      const int b = sets.root(visible[1]);
       if (a == b) continue;
       const double length = edge_length(prepared, edge);
       if (area[static_cast<std::size_t>(a)] < least_area) borders[{a, b}] += length;
@@ -80,19 +162,12 @@ Components smooth_segments(const PreparedMesh& prepared, const SegmentOptions& o
   const std::vector<Edge> edges = welded_edges(prepared.mesh, prepared.weld);
   Sets sets(count);
   std::vector<char> joined(count, 0);
+  join_without_area(prepared, edges, sets);
   for (const Edge& edge : edges) {
-    // Repeated faces lie on one another: the sheet goes on on both.
-    std::vector<int> visible;
-    std::vector<int> hidden;
-    for (const int f : edge.faces) (prepared.areas[f] > 0 ? visible : hidden).push_back(f);
-    for (const int f : hidden) {
-      if (joined[static_cast<std::size_t>(f)] != 0) continue;  // once: it must not bridge a crease
-      sets.unite(f, visible.empty() ? edge.faces.front() : visible.front());
-      joined[static_cast<std::size_t>(f)] = visible.empty() ? 0 : 1;
+    const std::vector<int> visible = visible_faces(prepared, edge);
+    if (visible.size() == 2 && smooth_across(prepared, edge, visible[0], visible[1], cosine)) {
+      sets.unite(visible[0], visible[1]);
     }
-    if (visible.size() != 2) continue;
-    const Eigen::Vector3d first = prepared.normals.row(visible[0]);
-    if (std::abs(first.dot(prepared.normals.row(visible[1]))) >= cosine) sets.unite(visible[0], visible[1]);
   }
   absorb_slivers(prepared, edges, options.least_share * prepared.area, sets);
 

@@ -1,0 +1,195 @@
+#include "orbifit/detection/found_region.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/model/random.h"
+
+#include "placements.h"
+#include "shapes.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTolerance = 0.005;
+
+// A plate with four equal blocks upon it, a post on the axis and a speck.
+class Regions : public testing::Test {
+ protected:
+  Regions() {
+    std::vector<Mesh> parts{test::box(2, 2, 0.2)};
+    for (int i = 0; i < 4; ++i) {
+      const Mesh block = test::moved(test::box(0.3, 0.4, 0.5), test::shift(0.7, 0, 0.4));
+      parts.push_back(test::moved(block, Motion::rotation({0, 0, 1}, i * std::numbers::pi / 2, {0, 0, 0})));
+    }
+    parts.push_back(test::moved(test::box(0.2, 0.2, 0.6), test::shift(0, 0, 0.5)));
+    parts.push_back(test::moved(test::box(0.01, 0.01, 0.01), test::shift(0.3, 0.4, 0.2)));
+    prepared_ = prepare(test::joined(parts));
+  }
+
+  FoundRegion region(const char* symbol, const std::vector<int>& parts,
+                     const Vector3d& axis = Vector3d::UnitZ()) const {
+    FoundRegion result;
+    result.placement =
+        test::normalised(prepared_, {*PointGroup::parse(symbol), frame_about(axis, Vector3d::UnitX()), {0, 0, 0}});
+    for (const int c : parts) {
+      const std::vector<int>& faces = prepared_.components.faces[static_cast<std::size_t>(c)];
+      result.faces.insert(result.faces.end(), faces.begin(), faces.end());
+    }
+    std::ranges::sort(result.faces);
+    result.area = surface_moments(prepared_, result.faces).area;
+    result.name = std::string(symbol) + " of " + std::to_string(parts.size());
+    return result;
+  }
+
+  std::vector<std::string> kept(std::vector<FoundRegion> regions, Explanation* explanation = nullptr) const {
+    drop_repeats(prepared_, kTolerance, regions, explanation);
+    std::vector<std::string> names;
+    for (const FoundRegion& each : regions) names.push_back(each.name);
+    return names;
+  }
+
+  // What stays of two regions, whichever comes first, in alphabetical order.
+  std::vector<std::string> kept_either_way(const FoundRegion& a, const FoundRegion& b) const {
+    std::vector<std::string> one = kept({a, b});
+    std::vector<std::string> other = kept({b, a});
+    std::ranges::sort(one);
+    std::ranges::sort(other);
+    EXPECT_EQ(one, other) << "whichever came first";
+    return one;
+  }
+
+  PreparedMesh prepared_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(Regions, AreaOutsideIsThatOfTheDifference) {
+  Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<int> a;
+    std::vector<int> b;
+    std::vector<int> difference;
+    for (int f = 0; f < prepared_.mesh.faces.rows(); ++f) {
+      const bool in_a = random.below(2) == 0;
+      const bool in_b = random.below(3) == 0;
+      if (in_a) a.push_back(f);
+      if (in_b) b.push_back(f);
+      if (in_a && !in_b) difference.push_back(f);
+    }
+    double expected = 0;
+    for (const int f : difference) expected += prepared_.areas[f];
+    EXPECT_NEAR(area_outside(prepared_, a, b), expected, 1e-14);
+    EXPECT_EQ(area_outside(prepared_, a, a), 0);
+  }
+  EXPECT_EQ(area_outside(prepared_, {}, {0, 1}), 0);
+  EXPECT_EQ(area_outside(prepared_, {2}, {}), prepared_.areas[2]);
+}
+
+TEST_F(Regions, CoverWhatLiesInThemButForASliver) {
+  const FoundRegion all = region("C4v", {0, 1, 2, 3, 4, 5, 6});
+  const FoundRegion clean = region("C4v", {0, 1, 2, 3, 4, 5});
+  const FoundRegion lacking = region("C4v", {0, 1, 2, 3, 5});
+  const FoundRegion post = region("D4h", {5});
+  EXPECT_TRUE(covers(prepared_, all, all));
+  EXPECT_TRUE(covers(prepared_, all, post));
+  EXPECT_FALSE(covers(prepared_, post, all));
+  EXPECT_TRUE(covers(prepared_, clean, all)) << "the speck is a sliver";
+  EXPECT_FALSE(covers(prepared_, lacking, all)) << "a block is not";
+  EXPECT_TRUE(covers(prepared_, all, lacking));
+  EXPECT_FALSE(covers(prepared_, region("C4v", {0}), post));
+  EXPECT_FALSE(covers(prepared_, all, FoundRegion{}));
+}
+
+TEST_F(Regions, WithinOneThatSaysAsMuchAreDropped) {
+  const FoundRegion all = region("C4v", {0, 1, 2, 3, 4, 5});
+  EXPECT_EQ(kept_either_way(all, region("C2v", {1, 3})), (Names{"C4v of 6"})) << "a subgroup on less";
+  EXPECT_EQ(kept_either_way(all, region("C4v", {1, 2, 3, 4})), (Names{"C4v of 6"})) << "the same on less";
+  EXPECT_EQ(kept_either_way(all, region("C4", {0, 1, 2, 3, 4, 5})), (Names{"C4v of 6"})) << "a subgroup on all";
+  EXPECT_EQ(kept_either_way(all, region("D4h", {5})), (Names{"C4v of 6", "D4h of 1"})) << "more on less";
+  EXPECT_EQ(kept_either_way(all, region("C2", {1, 3}, {1, 0, 0})), (Names{"C2 of 2", "C4v of 6"})) << "another axis";
+  EXPECT_EQ(kept_either_way(region("D4h", {0, 5}), all), (Names{"C4v of 6", "D4h of 2"}));
+}
+
+TEST_F(Regions, TheEarlierOfTwoThatSayTheSameStays) {
+  FoundRegion first = region("C4v", {0, 1, 2, 3, 4, 5});
+  FoundRegion second = region("C4v", {0, 1, 2, 3, 4, 5, 6});
+  first.name = "first";
+  second.name = "second";
+  EXPECT_EQ(kept({first, second}), Names{"first"});
+  EXPECT_EQ(kept({second, first}), Names{"second"});
+  EXPECT_EQ(kept({first, first, second, first}), Names{"first"});
+}
+
+TEST_F(Regions, LackingOnePartAreNoRepeat) {
+  // More of a smaller group: not all of it lies in the region that lacks a block.
+  EXPECT_EQ(kept_either_way(region("C4v", {0, 5}), region("C2v", {0, 1, 3, 5})), (Names{"C2v of 4", "C4v of 2"}));
+  EXPECT_EQ(kept_either_way(region("C4v", {0, 1, 2, 3, 5}), region("Cs", {0, 1, 2, 3, 4, 5}, {1, 0, 0})),
+            (Names{"C4v of 5", "Cs of 6"}));
+}
+
+TEST_F(Regions, AnOrderOfRegionsChangesWhichStayOnlyAmongEquals) {
+  std::vector<FoundRegion> regions{region("C4v", {0, 1, 2, 3, 4, 5}),
+                                   region("D4h", {5}),
+                                   region("D2h", {5}),
+                                   region("C2v", {1, 3}),
+                                   region("D4h", {0, 5}),
+                                   region("C4v", {0}),
+                                   region("Cs", {1}, {0, 1, 0}),
+                                   region("C2v", {1, 2, 3}, {1, 0, 0})};
+  std::vector<std::string> expected = kept(regions);
+  std::ranges::sort(expected);
+  Random random(2);
+  for (int trial = 0; trial < 20; ++trial) {
+    for (std::size_t i = regions.size(); i > 1; --i) std::swap(regions[i - 1], regions[random.below(i)]);
+    std::vector<std::string> names = kept(regions);
+    std::ranges::sort(names);
+    EXPECT_EQ(names, expected);
+  }
+}
+
+TEST_F(Regions, EveryDropIsExplained) {
+  Explanation explanation;
+  const std::vector<FoundRegion> regions{region("C4v", {0, 1, 2, 3, 4, 5}), region("C2v", {1, 3}), region("C4", {0}),
+                                         region("D4h", {5})};
+  const std::size_t stay = kept(regions, &explanation).size();
+  EXPECT_EQ(explanation.notes.size(), regions.size() - stay);
+  for (const Explanation::Note& note : explanation.notes) {
+    EXPECT_FALSE(note.kept);
+    EXPECT_EQ(note.stage, "repeats");
+    EXPECT_NE(note.reason.find("C4v of 6"), std::string::npos) << "names what says as much";
+  }
+}
+
+TEST(DropFeatureless, PiecesOfALargerSurfaceGoTheWholeStays) {
+  // Seen alone a tile on a slab is a rectangle; upon the slab it slides. A tile that stands out does not.
+  const Mesh slab = test::box(4, 4, 0.01);
+  const Mesh tile = test::moved(test::box(0.4, 0.3, 0.01), test::shift(0.5, 0.2, 0.006));
+  const Mesh block = test::moved(test::box(0.4, 0.3, 0.5), test::shift(-0.8, 0.7, 0.3));
+  const PreparedMesh prepared = prepare(test::joined({slab, tile, block}));
+  const SurfaceIndex whole(prepared.mesh);
+  std::vector<FoundRegion> regions;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const SurfaceMoments moments = surface_moments(prepared, prepared.components.faces[c]);
+    regions.push_back({{*PointGroup::parse("D2h"), GroupFrame::Identity(), moments.centroid},
+                       prepared.components.faces[c],
+                       moments.area,
+                       std::to_string(c)});
+  }
+  Explanation explanation;
+  drop_featureless(prepared, whole, kTolerance, RunContext{}, regions, &explanation);
+  ASSERT_EQ(regions.size(), 2U);
+  EXPECT_EQ(regions[0].name, "0");
+  EXPECT_EQ(regions[1].name, "2");
+  ASSERT_EQ(explanation.notes.size(), 1U);
+  EXPECT_EQ(explanation.notes[0].stage, "featureless");
+  EXPECT_FALSE(explanation.notes[0].kept);
+}
+
+}  // namespace
+}  // namespace orbifit
