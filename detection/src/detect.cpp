@@ -12,6 +12,7 @@
 #include "orbifit/detection/candidates.h"
 #include "orbifit/detection/completion.h"
 #include "orbifit/detection/components.h"
+#include "orbifit/detection/denoise.h"
 #include "orbifit/detection/found_region.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/part_regions.h"
@@ -30,6 +31,7 @@ using Eigen::Vector3d;
 
 constexpr double kLeastShare = 0.002;  // of the mesh's area: smaller regions and patterns say little
 constexpr std::size_t kMostRegions = 300;
+constexpr double kLeastNoise = 3e-4;  // of the diagonal
 constexpr int kScreenDirections = 2500;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
@@ -45,6 +47,7 @@ class Detector {
 
   SymmetryAnnotation run(const Mesh& mesh) {
     SymmetryAnnotation annotation = empty_annotation(mesh, options_.tolerance);
+    take_noise_out();
     find_whole();
     if (prepared_.components.faces.size() > 1) {
       const PartRegions parts = find_in_parts(prepared_, false);
@@ -70,6 +73,17 @@ class Detector {
     if (options_.max_seconds <= 0) return false;
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
     return spent.count() > options_.max_seconds;
+  }
+
+  void take_noise_out() {
+    const double noise = noise_of(prepared_);
+    if (noise < kLeastNoise) return;
+    context_.progress("noise", 0);
+    denoise(prepared_, noise, context_);
+    if (options_.explanation != nullptr) {
+      options_.explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
+                                             "taken out of the vertices before anything else"});
+    }
   }
 
   void find_whole() {

@@ -20,7 +20,8 @@ using Family = PointGroup::Family;
 constexpr double kSlack = 2.5;         // tolerances, while directions are not refined yet
 constexpr double kScreenShare = 0.80;  // of the samples, likewise
 constexpr int kScreenSamples = 96;
-constexpr double kSameDirection = 0.03;  // radians
+constexpr double kSameDirection = 0.03;     // radians
+constexpr std::size_t kMostRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
 constexpr double kClassifyTolerance = 0.02;
 
 Matrix3d mirror(const Vector3d& normal) {
@@ -50,7 +51,7 @@ class Search {
     if (!try_sphere(candidates)) {
       collect(candidates, hints);
       for (const Vector3d& axis : axes_) {
-        if (!continuous()) find_rotations(axis);
+        if (!continuous() && rotations_.size() < kMostRotations) find_rotations(axis);
       }
       if (!continuous()) {
         try_polyhedral();
@@ -222,7 +223,7 @@ class Search {
       ranking = first;
       chosen = axis;
     }
-    constexpr std::size_t kMostTries = 12;
+    constexpr std::size_t kMostTries = 6;
     for (std::size_t i = 0; i < std::min(kMostTries, ranking.size()); ++i) {
       if (add_rotation(chosen, ranking[i].order)) return;
     }

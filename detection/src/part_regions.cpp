@@ -30,6 +30,7 @@ using Family = PointGroup::Family;
 constexpr int kPartSamples = 700;
 constexpr std::size_t kMostPartRegions = 200;
 constexpr int kHighestOrder = 72;
+constexpr double kTurned = 0.95;  // share of the normals that meet the axis of a turned surface
 
 struct Found {
   GroupPlacement placement;
@@ -143,11 +144,14 @@ class Search {
     if (flat(moments_of(parts))) return true;
     if (placement.group.continuous()) return false;
     constexpr int kSamples = 300;
-    constexpr double kAngle = 0.1;  // radians
     const SurfacePatch patch = sample_patch(prepared_, faces_of(parts), kSamples, options_.tolerance, context_, "slip");
-    const std::optional<RevolutionFit> fit =
-        fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
-    return fit && (fit->planar || fit->inliers > 0.95);
+    const std::optional<RevolutionFit> fit = revolution_of(patch);
+    return fit && (fit->planar || fit->inliers > kTurned);
+  }
+
+  static std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {
+    constexpr double kAngle = 0.1;  // radians
+    return fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
   }
 
   bool already_known(const GroupPlacement& placement, const std::vector<int>& parts) const {
@@ -243,8 +247,15 @@ class Search {
     const bool sheet = flat(mine);
     const SurfacePatch patch = make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(first)],
                                           kPartSamples, options_.tolerance, context_, "part");
-    const bool screen = needs_screen(mine) && !(options_.pieces && sheet);
-    const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(), context_);
+    bool screen = needs_screen(mine);
+    std::vector<Vector3d> axes;
+    if (options_.pieces) {
+      // A piece of a plane or a turned surface is as symmetric as that, or by its border only.
+      const std::optional<RevolutionFit> fit = revolution_of(patch);
+      if (sheet || (fit && (fit->planar || fit->spherical || fit->inliers > kTurned))) screen = false;
+      if (fit && !fit->planar && !fit->spherical) axes.push_back(fit->axis.direction);
+    }
+    const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
     if (!group) return note("parts", {}, {first}, false, "no group of its own");
     result_.own_groups[number] = group->placement;
     if (flat_mirror_only(mine, group->placement)) return;

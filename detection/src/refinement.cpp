@@ -119,8 +119,19 @@ GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, co
   return placement;
 }
 
-GroupPlacement refine_on_vertices(const SurfacePatch& patch, const GroupPlacement& start) {
-  if (start.group.continuous()) return start;
+namespace {
+
+// A turned surface has facets: its vertices are images of one another under some of the rotations. Of those of prime
+// order, with the mirror across the axis where there is one, which need no more of the frame than the axis.
+std::vector<PointGroup> groups_of_facets(const PointGroup& group) {
+  if (group.family == Family::K || group.family == Family::Kh) return {};
+  const bool across = group.family == Family::Cinfh || group.family == Family::Dinfh;
+  std::vector<PointGroup> result;
+  for (const int n : {2, 3, 5, 7}) result.push_back({across ? Family::Cnh : Family::Cn, n});
+  return result;
+}
+
+std::optional<GroupPlacement> fit_to_vertices(const SurfacePatch& patch, const GroupPlacement& start) {
   const PreparedMesh& prepared = *patch.prepared;
   std::vector<int> groups;
   for (const int f : patch.faces) {
@@ -162,13 +173,27 @@ GroupPlacement refine_on_vertices(const SurfacePatch& patch, const GroupPlacemen
       }
     }
     const auto pairs = static_cast<Eigen::Index>(motions.size()) * count;
-    if (matched < static_cast<Eigen::Index>(0.9 * static_cast<double>(pairs)) || pairs == 0) return start;
+    if (matched < static_cast<Eigen::Index>(0.9 * static_cast<double>(pairs)) || pairs == 0) return std::nullopt;
     apply(equations, scale, placement);
     rms = std::sqrt(square / static_cast<double>(matched));
     reach = std::max(1e-9, std::min(reach, 4 * rms + 1e-9));
   }
   // In a dense mesh some vertex is always near; only a true correspondence makes the distances vanish.
-  return rms < 0.02 * patch.tolerance ? placement : start;
+  if (rms >= 0.02 * patch.tolerance) return std::nullopt;
+  return placement;
+}
+
+}  // namespace
+
+GroupPlacement refine_on_vertices(const SurfacePatch& patch, const GroupPlacement& start) {
+  if (!start.group.continuous()) return fit_to_vertices(patch, start).value_or(start);
+  for (const PointGroup& group : groups_of_facets(start.group)) {
+    std::optional<GroupPlacement> placement = fit_to_vertices(patch, {group, start.frame, start.centre});
+    if (!placement) continue;
+    placement->group = start.group;
+    return *placement;
+  }
+  return start;
 }
 
 }  // namespace orbifit

@@ -13,6 +13,8 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
 
+#include "creases.h"
+
 namespace orbifit {
 
 namespace {
@@ -21,7 +23,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kWeldTolerance = 1e-7;
-constexpr double kCreaseCosine = 0.90630778703665;  // 25 degrees
 
 // Faces with the same welded corners as an earlier one carry no area of their own: a sheet modelled with two sides
 // would else weigh double and pull the centroid away from the axis.
@@ -39,24 +40,6 @@ void silence_repeated_faces(const Mesh& mesh, const Weld& weld, Eigen::VectorXd&
   for (std::size_t i = 1; i < corners.size(); ++i) {
     if (corners[i].first == corners[i - 1].first) areas[corners[i].second] = 0;
   }
-}
-
-bool near_crease(const PreparedMesh& prepared, const Vector3d& point, int face, double reach) {
-  const Vector3d normal = prepared.normals.row(face);
-  for (int k = 0; k < 3; ++k) {
-    const int group = prepared.weld.group_of_vertex[static_cast<std::size_t>(prepared.mesh.faces(face, k))];
-    const std::vector<int>& around = prepared.faces_of_vertex[static_cast<std::size_t>(group)];
-    if (around.size() > 64) continue;  // the apex of a fan: its faces are seen from their other corners
-    for (const int other : around) {
-      if (std::abs(normal.dot(prepared.normals.row(other))) > kCreaseCosine) continue;
-      const Vector3d a = prepared.mesh.vertices.row(prepared.mesh.faces(other, 0));
-      const Vector3d b = prepared.mesh.vertices.row(prepared.mesh.faces(other, 1));
-      const Vector3d c = prepared.mesh.vertices.row(prepared.mesh.faces(other, 2));
-      const Vector3d weights = nearest_on_triangle(point, a, b, c);
-      if ((weights[0] * a + weights[1] * b + weights[2] * c - point).norm() <= reach) return true;
-    }
-  }
-  return false;
 }
 
 std::vector<char> at_creases(const PreparedMesh& prepared, const SurfaceSamples& samples, double reach,

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "orbifit/detection/refinement.h"
+#include "orbifit/detection/surface_patch.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// The maximal region of a known group, by the orbit test on faces: S(G) = {x : g x is on the surface for all g in G}.
+/// A face belongs when 97 % of its sample points stay within `tolerance` of the surface under every judged
+/// motion (verification.h) with a normal within 25 degrees, whichever way it faces; any normal will do next to a
+/// crease. A face has one sample point where its edges are short (four tolerances), else one for each of up to 64 equal
+/// triangles, so that a coarse triangle of which only a part is symmetric is out. Then faces leave of whose images
+/// under some motion most lie off the faces that are in, until none does. Costs O(P M log F) a round, P points, M
+/// judged motions; most faces that do not belong end after a few queries. Rounds after the first look at the faces that
+/// are in. \param whole index of the whole mesh \param tolerance a length of the normalised mesh, > 0 \return
+/// ascending; empty when nothing belongs
+std::vector<int> symmetric_faces(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                                 const GroupPlacement& placement, double tolerance, const RunContext& context);
+
+/// Of the faces that a group permutes those that belong to the seeds: the edge-connected piece of each seed, and pieces
+/// that are images of these, in full or for the most part, until closed. Costs O(P M log F) for the points P of the
+/// pieces taken.
+/// \param symmetric ascending, of symmetric_faces() with the same placement and tolerance
+/// \param seeds face numbers; those not among `symmetric` say nothing
+/// \return ascending; empty when no seed is among `symmetric`
+std::vector<int> connected_orbit(const PreparedMesh& prepared, const GroupPlacement& placement,
+                                 const std::vector<int>& symmetric, const std::vector<int>& seeds, double tolerance,
+                                 const RunContext& context);
+
+}  // namespace orbifit

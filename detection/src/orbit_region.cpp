@@ -1,0 +1,212 @@
+#include "orbifit/detection/orbit_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "orbifit/detection/verification.h"
+#include "orbifit/model/topology.h"
+
+#include "creases.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
+constexpr double kSpacing = 4;                      // of a face's sample points, tolerances
+constexpr int kMostCuts = 8;                        // of each edge
+constexpr double kCreaseReach = 3;                  // tolerances, as in verification
+constexpr double kMostOff = 0.03;                   // of a face's points, off the surface
+constexpr double kMostAstray = 0.5;                 // of a face's points, on faces that are out
+
+// Centroids of the k^2 equal triangles into which k cuts of each edge divide the face.
+void face_points(const PreparedMesh& prepared, int face, double spacing, std::vector<Vector3d>& points) {
+  points.clear();
+  const auto corner = [&](int k) -> Vector3d { return prepared.mesh.vertices.row(prepared.mesh.faces(face, k)); };
+  const Vector3d a = corner(0);
+  const Vector3d u = corner(1) - a;
+  const Vector3d v = corner(2) - a;
+  const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+  const int cuts = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, static_cast<double>(kMostCuts)));
+  for (int i = 0; i < cuts; ++i) {
+    for (int j = 0; i + j < cuts; ++j) {
+      points.emplace_back(a + ((i + 1.0 / 3) * u + (j + 1.0 / 3) * v) / cuts);
+      if (i + j + 1 < cuts) points.emplace_back(a + ((i + 2.0 / 3) * u + (j + 2.0 / 3) * v) / cuts);
+    }
+  }
+}
+
+/// Asks whether motions keep faces on a surface.
+class OrbitTest {
+ public:
+  OrbitTest(const PreparedMesh& prepared, const GroupPlacement& placement, double tolerance)
+      : prepared_(prepared),
+        motions_(judged_motions(placement.group, placement.frame, placement.centre)),
+        tolerance_(tolerance) {}
+
+  const std::vector<Motion>& motions() const { return motions_; }
+
+  // Whether every motion keeps all but a share of the face's points; `points` is working space.
+  bool stays(const SurfaceIndex& surface, int face, double most_off, std::vector<Vector3d>& points) const {
+    face_points(prepared_, face, kSpacing * tolerance_, points);
+    const auto allowed = static_cast<std::size_t>(most_off * static_cast<double>(points.size()));
+    return std::ranges::all_of(motions_, [&](const Motion& motion) {
+      std::size_t off = 0;
+      for (const Vector3d& point : points) {
+        if (!on(surface, motion, face, point) && ++off > allowed) return false;
+      }
+      return true;
+    });
+  }
+
+  // The face of the surface on which the point's image lies with a compatible normal, -1 for none.
+  int image(const SurfaceIndex& surface, const Motion& motion, int face, const Vector3d& point) const {
+    const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
+    return surface.nearest_facing(motion(point), normal, kNormalCosine, tolerance_, true).face;
+  }
+
+ private:
+  bool on(const SurfaceIndex& surface, const Motion& motion, int face, const Vector3d& point) const {
+    if (image(surface, motion, face, point) >= 0) return true;
+    if (surface.nearest(motion(point), tolerance_).face < 0) return false;
+    const bool degenerate = prepared_.normals.row(face).squaredNorm() < 0.5;  // any normal will do
+    return degenerate || near_crease(prepared_, point, face, kCreaseReach * tolerance_);
+  }
+
+  const PreparedMesh& prepared_;
+  std::vector<Motion> motions_;
+  double tolerance_;
+};
+
+// Of these faces those that stay on the surface.
+std::vector<int> staying(const OrbitTest& test, const SurfaceIndex& surface, const std::vector<int>& faces,
+                         double most_off, const RunContext& context) {
+  std::vector<char> stays(faces.size(), 0);
+  parallel_for(
+      context, faces.size(),
+      [&](std::size_t begin, std::size_t end) {
+        std::vector<Vector3d> points;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (i % 256 == 0) context.check();
+          stays[i] = test.stays(surface, faces[i], most_off, points) ? 1 : 0;
+        }
+      },
+      64);
+  std::vector<int> result;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (stays[i] != 0) result.push_back(faces[i]);
+  }
+  return result;
+}
+
+/// Faces joined along edges.
+struct Pieces {
+  std::vector<int> piece_of_face;  // of the mesh, -1 for faces that are out
+  std::vector<std::vector<int>> faces;
+  std::vector<double> areas;
+};
+
+Pieces connected_pieces(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  const auto count = static_cast<std::size_t>(prepared.mesh.faces.rows());
+  std::vector<char> in(count, 0);
+  for (const int f : faces) in[static_cast<std::size_t>(f)] = 1;
+  std::vector<std::vector<int>> neighbours(count);
+  for (const Edge& edge : welded_edges(prepared.mesh, prepared.weld)) {
+    int last = -1;
+    for (const int f : edge.faces) {
+      if (in[static_cast<std::size_t>(f)] == 0) continue;
+      if (last >= 0) {
+        neighbours[static_cast<std::size_t>(f)].push_back(last);
+        neighbours[static_cast<std::size_t>(last)].push_back(f);
+      }
+      last = f;
+    }
+  }
+  Pieces result;
+  result.piece_of_face.assign(count, -1);
+  for (const int first : faces) {
+    if (result.piece_of_face[static_cast<std::size_t>(first)] >= 0) continue;
+    const auto number = static_cast<int>(result.faces.size());
+    std::vector<int> piece{first};
+    result.piece_of_face[static_cast<std::size_t>(first)] = number;
+    double area = 0;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      const int face = piece[i];
+      area += prepared.areas[face];
+      for (const int next : neighbours[static_cast<std::size_t>(face)]) {
+        if (result.piece_of_face[static_cast<std::size_t>(next)] >= 0) continue;
+        result.piece_of_face[static_cast<std::size_t>(next)] = number;
+        piece.push_back(next);
+      }
+    }
+    result.faces.push_back(std::move(piece));
+    result.areas.push_back(area);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> symmetric_faces(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                                 const GroupPlacement& placement, double tolerance, const RunContext& context) {
+  const OrbitTest test(prepared, placement, tolerance);
+  std::vector<int> faces(static_cast<std::size_t>(prepared.mesh.faces.rows()));
+  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = static_cast<int>(f);
+  std::vector<int> kept = staying(test, whole, faces, kMostOff, context);
+  while (!kept.empty() && kept.size() < faces.size()) {
+    faces = std::move(kept);
+    const SurfaceIndex inside(prepared.mesh, faces);
+    kept = staying(test, inside, faces, kMostAstray, context);
+  }
+  return kept;
+}
+
+std::vector<int> connected_orbit(const PreparedMesh& prepared, const GroupPlacement& placement,
+                                 const std::vector<int>& symmetric, const std::vector<int>& seeds, double tolerance,
+                                 const RunContext& context) {
+  constexpr double kMostly = 0.5;  // of either piece's area
+  if (symmetric.empty()) return {};
+  const Pieces pieces = connected_pieces(prepared, symmetric);
+  std::vector<char> taken(pieces.faces.size(), 0);
+  std::vector<std::size_t> order;
+  const auto take = [&](int piece) {
+    if (piece < 0 || taken[static_cast<std::size_t>(piece)] != 0) return;
+    taken[static_cast<std::size_t>(piece)] = 1;
+    order.push_back(static_cast<std::size_t>(piece));
+  };
+  for (const int seed : seeds) take(pieces.piece_of_face[static_cast<std::size_t>(seed)]);
+  const OrbitTest test(prepared, placement, tolerance);
+  const SurfaceIndex inside(prepared.mesh, symmetric);
+  std::vector<Vector3d> points;
+  for (std::size_t i = 0; i < order.size() && order.size() < pieces.faces.size(); ++i) {
+    const std::size_t piece = order[i];
+    for (const Motion& motion : test.motions()) {
+      context.check();
+      std::map<int, double> received;  // by piece: the area that falls on it
+      for (const int face : pieces.faces[piece]) {
+        face_points(prepared, face, kSpacing * tolerance, points);
+        const double share = prepared.areas[face] / static_cast<double>(points.size());
+        for (const Vector3d& point : points) {
+          const int image = test.image(inside, motion, face, point);
+          if (image >= 0) received[pieces.piece_of_face[static_cast<std::size_t>(image)]] += share;
+        }
+      }
+      for (const auto& [other, area] : received) {
+        const double whole = std::min(pieces.areas[static_cast<std::size_t>(other)], pieces.areas[piece]);
+        if (area > 0 && area >= kMostly * whole) take(other);
+      }
+    }
+  }
+  std::vector<int> result;
+  for (const std::size_t piece : order) {
+    result.insert(result.end(), pieces.faces[piece].begin(), pieces.faces[piece].end());
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+}  // namespace orbifit
