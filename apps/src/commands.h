@@ -6,6 +6,7 @@
 /// commands/NAME.cpp; the table in main.cpp gives its name, summary and examples.
 namespace orbifit::commands {
 
+CommandBody annotate(CLI::App& app);
 CommandBody check(CLI::App& app);
 CommandBody convert(CLI::App& app);
 CommandBody deform(CLI::App& app);

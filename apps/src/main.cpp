@@ -22,11 +22,18 @@ constexpr std::array kCommands{
             "orbifit info chair.obj\n"
             "orbifit info chair.obj --json",
             commands::info},
-    Command{"detect", "Find the symmetric regions of a mesh.",
+    Command{"detect", "Find the symmetric regions of a mesh or a scan.",
             "orbifit detect chair.obj -o chair.json\n"
             "orbifit detect chair.obj -o chair.json --preview chair.png --colour chair_regions.ply\n"
-            "orbifit detect noisy.ply -o noisy.json --tolerance 0.02 --max-seconds 30",
+            "orbifit detect noisy.ply -o noisy.json --tolerance 0.02 --max-seconds 30\n"
+            "orbifit detect --points scan.pcd -o scan.json",
             commands::detect},
+    Command{"annotate",
+            "Add a region to an annotation by hand: where its symmetry sits, roughly, and a face that has it.",
+            "orbifit annotate cup.obj -o cup.json --plane 0 0 0 1 0 0 --seed-face 812\n"
+            "orbifit annotate cup.obj -o cup.json --annotation cup.json --axis 0 0 0 0 0 1 --order inf --seed-face 12\n"
+            "orbifit annotate wheel.stl -o wheel.json --axis 3 0 1 0 1 0 --group C5v --seed-face 40 --name hub",
+            commands::annotate},
     Command{"check", "Measure how symmetric the regions of a mesh are, at rest or after a deformation.",
             "orbifit check chair.obj chair.json\n"
             "orbifit check chair.obj chair.json --deformed edited.obj --max-residual 1e-9",

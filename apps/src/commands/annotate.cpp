@@ -1,0 +1,200 @@
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/detection/add_region.h"
+#include "orbifit/detection/detect.h"
+#include "orbifit/detection/guided_region.h"
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/mesh_io.h"
+#include "orbifit/subspace/shared_axes.h"
+
+#include "../commands.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+constexpr int kHighestOrder = 1000;
+
+struct AnnotateArguments {
+  std::string mesh, output, annotation, order, group, name;
+  std::vector<double> plane, axis, centre;
+  std::vector<int> seeds;
+  double tolerance = 0.005;
+  bool as_given = false;
+};
+
+// "PX PY PZ" or "PX PY PZ DX DY DZ": a point, and where there are six a direction.
+void read_place(const std::string& option, const std::vector<double>& values, RegionHint& hint) {
+  for (const double value : values) {
+    if (!std::isfinite(value)) throw UsageError(option + ": " + short_number(value) + " is not finite");
+  }
+  hint.point = Eigen::Vector3d(values.data());
+  if (values.size() < 6) return;
+  const Eigen::Vector3d direction(values.data() + 3);
+  if (!(direction.stableNorm() > 0)) throw UsageError(option + ": the direction is 0 0 0; it must not be");
+  hint.direction = direction.stableNormalized();
+}
+
+int to_order(const std::string& text) {
+  if (text == "inf") return RegionHint::kContinuous;
+  const std::string rule =
+      "--order is '" + text + "': must be inf or a whole number from 2 to " + std::to_string(kHighestOrder);
+  if (text.empty() || text.size() > 4 || text.find_first_not_of("0123456789") != std::string::npos) {
+    throw UsageError(rule);
+  }
+  const int order = std::stoi(text);
+  if (order < 2 || order > kHighestOrder) throw UsageError(rule);
+  return order;
+}
+
+RegionHint to_hint(const AnnotateArguments& arguments) {
+  RegionHint hint;
+  const int places = static_cast<int>(!arguments.plane.empty()) + static_cast<int>(!arguments.axis.empty()) +
+                     static_cast<int>(!arguments.centre.empty());
+  if (places != 1) throw UsageError("one of --plane, --axis and --centre is needed, and no more than one");
+  if (!arguments.plane.empty()) {
+    read_place("--plane", arguments.plane, hint);
+  } else if (!arguments.axis.empty()) {
+    hint.about = RegionHint::About::axis;
+    read_place("--axis", arguments.axis, hint);
+  } else {
+    hint.about = RegionHint::About::centre;
+    read_place("--centre", arguments.centre, hint);
+  }
+  if (!arguments.order.empty()) hint.order = to_order(arguments.order);
+  if (!arguments.group.empty()) {
+    hint.group = PointGroup::parse(arguments.group);
+    if (!hint.group) throw UsageError("--group is '" + arguments.group + "': is no Schoenflies symbol such as C4v");
+  }
+  hint.seeds = arguments.seeds;
+  hint.refine = !arguments.as_given;
+  return hint;
+}
+
+double area_fraction(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  double area = 0;
+  for (const int face : faces) area += prepared.areas[face];
+  return area / prepared.area;
+}
+
+std::string percent(double fraction) {
+  return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3) + " %";
+}
+
+std::string reason_against(const GuidedRegion& found, const Mesh& mesh) {
+  const std::string group = found.region.placement.group.symbol();
+  if (found.region.faces.empty()) return group + " does not hold: the surface around the seed faces is empty";
+  return group + " does not hold around the seed faces: " + percent(found.verification.joint) + " of the area of " +
+         count_of(static_cast<long long>(found.region.faces.size()), "face") + " fits, the residual is " +
+         percent(found.residual.rms) + " rms and " + percent(found.residual.max) + " at most of the diagonal, " +
+         short_number(diagonal(mesh.vertices), 6) + "; nothing was written";
+}
+
+nlohmann::ordered_json to_json(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
+                               const PreparedMesh& prepared, std::size_t regions) {
+  nlohmann::ordered_json result = {
+      {"id", region.id},
+      {"name", region.name},
+      {"group", region.group.symbol()},
+      {"centre", {region.centre.x(), region.centre.y(), region.centre.z()}},
+  };
+  if (region.group.has_axis()) result["axis"] = {region.axis.x(), region.axis.y(), region.axis.z()};
+  result["faces"] = region.faces.size();
+  result["area_fraction"] = area_fraction(prepared, region.faces);
+  result["parent"] = region.parent ? nlohmann::ordered_json(*region.parent) : nullptr;
+  result["share_kept"] = found.verification.joint;
+  result["residual"] = {{"rms", region.residual.rms}, {"max", region.residual.max}};
+  result["replaced"] = addition.replaced;
+  result["regions"] = regions;
+  return result;
+}
+
+std::string triple(const Eigen::Vector3d& v) {
+  return short_number(v.x(), 6) + " " + short_number(v.y(), 6) + " " + short_number(v.z(), 6);
+}
+
+std::string to_text(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
+                    const PreparedMesh& prepared, std::size_t regions) {
+  std::string text = "region " + std::to_string(region.id) + " of " + std::to_string(regions) + ": " +
+                     region.group.symbol() + " on " + count_of(static_cast<long long>(region.faces.size()), "face") +
+                     ", " + percent(area_fraction(prepared, region.faces)) + " of the area, parent " +
+                     (region.parent ? std::to_string(*region.parent) : "none") + "\n";
+  text += "  centre " + triple(region.centre) +
+          (region.group.has_axis() ? ", axis " + triple(region.axis) : std::string()) + "\n";
+  text += "  " + percent(found.verification.joint) + " of it fits; residual " + percent(region.residual.rms) +
+          " rms, " + percent(region.residual.max) + " at most of the diagonal\n";
+  for (const std::string& old : addition.replaced) text += "  in place of " + old + ", which says nothing more\n";
+  return text;
+}
+
+void add_place(CLI::App& app, const std::string& option, std::vector<double>& values, int count,
+               const std::string& help, const std::string& type) {
+  app.add_option(option, values, help)->type_size(count)->expected(1)->type_name(type);
+}
+
+}  // namespace
+
+CommandBody annotate(CLI::App& app) {
+  const auto arguments = std::make_shared<AnnotateArguments>();
+  app.add_option("MESH", arguments->mesh, "Mesh to annotate")->required()->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it the region is only shown")
+      ->type_name("FILE");
+  app.add_option("--annotation", arguments->annotation, "Annotation to which the region is added")->type_name("FILE");
+  add_place(app, "--plane", arguments->plane, 6, "Mirror plane, roughly: a point and the normal", "PX PY PZ NX NY NZ");
+  add_place(app, "--axis", arguments->axis, 6, "Axis, roughly: a point and the direction", "PX PY PZ DX DY DZ");
+  add_place(app, "--centre,--center", arguments->centre, 3, "Centre, roughly", "X Y Z");
+  app.add_option("--order", arguments->order,
+                 "Order of the rotation about the axis, or inf for all; the region's largest group with it is taken")
+      ->type_name("N");
+  app.add_option("--group", arguments->group, "The group itself, such as C4v (default: Cs, Ci, or the largest found)")
+      ->type_name("SYMBOL");
+  app.add_option("--seed-face", arguments->seeds, "Face of the region, numbered from 0; may be given again")
+      ->required()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("F");
+  app.add_option("--name", arguments->name, "Name of the region")->type_name("TEXT");
+  app.add_option("--tolerance", arguments->tolerance,
+                 "Largest distance that counts as symmetric, as a fraction of the diagonal "
+                 "(default: that of --annotation, or 0.005)");
+  app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as it is given");
+  return [arguments, &app](CommandContext& context) {
+    const RegionHint hint = to_hint(*arguments);
+    if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
+    DetectOptions limits;
+    limits.tolerance = arguments->tolerance;
+    limits.validate();
+    const Mesh mesh = read_mesh(arguments->mesh);
+    hint.validate(static_cast<int>(mesh.faces.rows()));
+    GuidedRegionOptions options;
+    options.tolerance = arguments->tolerance;
+    SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
+    if (!arguments->annotation.empty()) {
+      annotation = read_annotation(arguments->annotation, mesh);
+      if (app.count("--tolerance") == 0) options.tolerance = annotation.tolerance;
+    }
+    context.run.check();
+    const PreparedMesh prepared = prepare(mesh);
+    const auto whole = std::make_shared<const SurfaceIndex>(prepared.mesh);
+    GuidedRegion found = guided_region(prepared, whole, hint, options, context.run);
+    if (!found.stands) throw NoResultError(reason_against(found, mesh));
+    found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
+    const RegionAddition addition = add_region(prepared, found.region, found.residual, options.tolerance, annotation);
+    if (hint.refine) annotation = share_axes(mesh, annotation, options.tolerance);
+    if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
+    const Region& region = annotation.regions[static_cast<std::size_t>(addition.id)];
+    const std::size_t count = annotation.regions.size();
+    print(context.json ? to_json(region, addition, found, prepared, count).dump(2) + "\n"
+                       : to_text(region, addition, found, prepared, count));
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands
