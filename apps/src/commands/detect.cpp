@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/apps/render.h"
+#include "orbifit/detection/points.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/errors.h"
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
+#include "orbifit/model/scan_io.h"
 #include "orbifit/subspace/shared_axes.h"
 
 #include "../commands.h"
@@ -24,6 +27,7 @@ constexpr std::size_t kMostPictures = 24;  // in one preview
 struct DetectArguments {
   std::string mesh, output, preview, colour, explain;
   std::vector<double> up{0, 0, 1};
+  bool points = false;
   DetectOptions options;
 };
 
@@ -139,17 +143,66 @@ void write_explanation(const std::string& folder, const Explanation& explanation
   write_file(folder + "/stages.tsv", text);
 }
 
+nlohmann::ordered_json points_json(const SymmetryAnnotation& found) {
+  nlohmann::ordered_json regions = nlohmann::ordered_json::array();
+  for (const Region& region : found.regions) {
+    regions.push_back({{"id", region.id},
+                       {"name", region.name},
+                       {"group", region.group.symbol()},
+                       {"points", region.faces.size()},
+                       {"point_fraction", static_cast<double>(region.faces.size()) / found.mesh_faces},
+                       {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
+                       {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
+  }
+  return {{"points", found.mesh_faces}, {"tolerance", found.tolerance}, {"regions", regions}};
+}
+
+std::string points_text(const SymmetryAnnotation& found) {
+  const std::string tolerance = short_number(100 * found.tolerance) + " % of the diagonal.\n";
+  if (found.regions.empty()) return "No symmetry within " + tolerance;
+  TextTable table({"region", "group", "points", "points %", "parent", "residual rms %", "name"});
+  for (const Region& region : found.regions) {
+    table.add({std::to_string(region.id), region.group.symbol(), std::to_string(region.faces.size()),
+               short_number(100.0 * static_cast<double>(region.faces.size()) / found.mesh_faces, 3),
+               region.parent ? std::to_string(*region.parent) : "-", short_number(100 * region.residual.rms, 3),
+               region.name});
+  }
+  return table.text() + "Judged within " + tolerance;
+}
+
+ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& context) {
+  if (!arguments.preview.empty() || !arguments.colour.empty()) {
+    throw UsageError("--preview and --colour show surfaces; they cannot be used with --points");
+  }
+  const PointCloud scan = read_scan(arguments.mesh);
+  if (scan.dropped > 0) {
+    context.run.message(count_of(scan.dropped, "point") + " not finite, left out and not numbered");
+  }
+  Explanation explanation;
+  DetectOptions chosen = arguments.options;
+  if (!arguments.explain.empty()) chosen.explanation = &explanation;
+  const SymmetryAnnotation found = detect_points(scan, chosen, context.run);
+  if (!arguments.explain.empty()) write_explanation(arguments.explain, explanation);
+  if (!arguments.output.empty()) write_annotation(arguments.output, found);
+  print(context.json ? points_json(found).dump(2) + "\n" : points_text(found));
+  return kDone;
+}
+
 }  // namespace
 
 CommandBody detect(CLI::App& app) {
   const auto arguments = std::make_shared<DetectArguments>();
   DetectOptions& options = arguments->options;
-  app.add_option("MESH", arguments->mesh, "Mesh to look at")->required()->type_name("FILE");
+  app.add_option("MESH", arguments->mesh, "Mesh to look at; with --points a scan")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it only the list is printed")
       ->type_name("FILE");
   app.add_option("--tolerance", options.tolerance,
                  "Largest distance that counts as symmetric, as a fraction of the diagonal")
       ->capture_default_str();
+  app.add_flag(
+      "--points", arguments->points,
+      "The file is a scan (PLY, PCD, XYZ, PTS), perhaps seen from one side only: the annotation's face numbers "
+      "are point numbers, and its counts of vertices and of faces are both the number of points");
   app.add_option("--max-seconds", options.max_seconds, "Stop then and keep what is verified; 0: no limit")
       ->capture_default_str();
   app.add_option("--samples", options.samples, "Surface samples on which a whole mesh is verified")
@@ -168,6 +221,7 @@ CommandBody detect(CLI::App& app) {
     if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
     if (!arguments->preview.empty()) check_output(arguments->preview, {".png"}, {arguments->mesh});
     if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
+    if (arguments->points) return detect_in_points(*arguments, context);
     const Mesh mesh = read_mesh(arguments->mesh);
     context.run.check();
     Explanation explanation;
