@@ -31,7 +31,7 @@ constexpr int kScreenDirections = 2500;
 constexpr double kLeastCluster = 0.02;  // of the points: smaller clusters say little
 constexpr double kLeastShare = 0.15;    // of a cluster: smaller surfaces of revolution say little
 constexpr double kMostShare = 0.5;      // of several clusters together
-constexpr double kCovered = 0.8;        // of a cluster: nothing new in it
+constexpr double kCovered = 0.8;        // of some points: nothing new in them
 constexpr int kMostRevolutions = 4;     // of one cluster
 
 // Per kept point whether normals nearby differ: there each says little.
@@ -161,7 +161,7 @@ class PointDetector {
       const double share = least_share * static_cast<double>(points.size()) / static_cast<double>(rest.size());
       const PartialRevolution found =
           find_partial_revolution(surface_, rest, tolerance_, share, context_, name + " turned " + std::to_string(k));
-      if (found.points.empty()) break;
+      if (found.points.empty() || known(found.points)) break;
       if (k == 0) first = found.points.size();
       note("turned", "Cinfv on " + name, true,
            std::to_string(found.points.size()) + " of " + std::to_string(points.size()) + " points, " +
