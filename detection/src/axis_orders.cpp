@@ -52,7 +52,10 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
     const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
     return kept_share(patch, turn, slack * patch.tolerance, kScreenSamples, kScreenShare) >= kScreenShare;
   };
+  constexpr std::size_t kNearlyRound = 16;  // orders: with so many, those between say nothing more
+  constexpr int kLow = 12;
   for (int n = highest; n >= 2; --n) {
+    if (result.size() >= kNearlyRound && n > kLow) continue;
     const std::vector<int> powers = judged_powers(n);
     if (std::ranges::all_of(powers, [&](int k) { return kept(k, n); })) result.push_back(n);
   }
