@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
+#include <numeric>
+#include <utility>
 
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/topology.h"
@@ -51,16 +52,24 @@ class OrbitTest {
   const std::vector<Motion>& motions() const { return motions_; }
 
   // Whether every motion keeps all but a share of the face's points; `points` is working space.
-  bool stays(const SurfaceIndex& surface, int face, double most_off, std::vector<Vector3d>& points) const {
+  // \param[out] images the faces on which the points come to lie, ascending
+  bool stays(const SurfaceIndex& surface, int face, double most_off, std::vector<Vector3d>& points,
+             std::vector<int>& images) const {
+    images.clear();
     face_points(prepared_, face, kSpacing * tolerance_, points);
     const auto allowed = static_cast<std::size_t>(most_off * static_cast<double>(points.size()));
-    return std::ranges::all_of(motions_, [&](const Motion& motion) {
+    const bool kept = std::ranges::all_of(motions_, [&](const Motion& motion) {
       std::size_t off = 0;
       for (const Vector3d& point : points) {
-        if (!on(surface, motion, face, point) && ++off > allowed) return false;
+        images.push_back(landing(surface, motion, face, point));
+        if (images.back() < 0 && ++off > allowed) return false;
       }
       return true;
     });
+    std::ranges::sort(images);
+    images.erase(std::ranges::unique(images).begin(), images.end());
+    images.shrink_to_fit();
+    return kept;
   }
 
   // The face of the surface on which the point's image lies with a compatible normal, -1 for none.
@@ -70,11 +79,14 @@ class OrbitTest {
   }
 
  private:
-  bool on(const SurfaceIndex& surface, const Motion& motion, int face, const Vector3d& point) const {
-    if (image(surface, motion, face, point) >= 0) return true;
-    if (surface.nearest(motion(point), tolerance_).face < 0) return false;
-    const bool degenerate = prepared_.normals.row(face).squaredNorm() < 0.5;  // any normal will do
-    return degenerate || near_crease(prepared_, point, face, kCreaseReach * tolerance_);
+  // The same, but next to a crease any normal will do.
+  int landing(const SurfaceIndex& surface, const Motion& motion, int face, const Vector3d& point) const {
+    const int facing = image(surface, motion, face, point);
+    if (facing >= 0) return facing;
+    const int any = surface.nearest(motion(point), tolerance_).face;
+    if (any < 0) return -1;
+    const bool degenerate = prepared_.normals.row(face).squaredNorm() < 0.5;
+    return degenerate || near_crease(prepared_, point, face, kCreaseReach * tolerance_) ? any : -1;
   }
 
   const PreparedMesh& prepared_;
@@ -82,26 +94,61 @@ class OrbitTest {
   double tolerance_;
 };
 
-// Of these faces those that stay on the surface.
-std::vector<int> staying(const OrbitTest& test, const SurfaceIndex& surface, const std::vector<int>& faces,
-                         double most_off, const RunContext& context) {
-  std::vector<char> stays(faces.size(), 0);
-  parallel_for(
-      context, faces.size(),
-      [&](std::size_t begin, std::size_t end) {
-        std::vector<Vector3d> points;
-        for (std::size_t i = begin; i < end; ++i) {
-          if (i % 256 == 0) context.check();
-          stays[i] = test.stays(surface, faces[i], most_off, points) ? 1 : 0;
-        }
-      },
-      64);
-  std::vector<int> result;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (stays[i] != 0) result.push_back(faces[i]);
+/// The faces that are in, thinned out round by round.
+class Erosion {
+ public:
+  Erosion(const PreparedMesh& prepared, const OrbitTest& test, const RunContext& context)
+      : prepared_(prepared),
+        test_(test),
+        context_(context),
+        in_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 1),
+        images_(in_.size()),
+        faces_(in_.size()) {
+    std::iota(faces_.begin(), faces_.end(), 0);
   }
-  return result;
-}
+
+  std::vector<int> run(const SurfaceIndex& whole) {
+    std::size_t before = faces_.size();
+    judge(whole, faces_, kMostOff);
+    while (!faces_.empty() && faces_.size() < before) {
+      before = faces_.size();
+      // What lands on faces that are still in does so as before.
+      std::vector<int> doubtful;
+      for (const int face : faces_) {
+        const auto out = [&](int image) { return image >= 0 && in_[static_cast<std::size_t>(image)] == 0; };
+        if (std::ranges::any_of(images_[static_cast<std::size_t>(face)], out)) doubtful.push_back(face);
+      }
+      if (!doubtful.empty()) judge(SurfaceIndex(prepared_.mesh, faces_), doubtful, kMostAstray);
+    }
+    return faces_;
+  }
+
+ private:
+  void judge(const SurfaceIndex& surface, const std::vector<int>& doubtful, double most_off) {
+    constexpr std::size_t kLeastShare = 64;
+    const auto body = [&](std::size_t begin, std::size_t end) {
+      std::vector<Vector3d> points;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i % 256 == 0) context_.check();
+        const auto face = static_cast<std::size_t>(doubtful[i]);
+        in_[face] = test_.stays(surface, doubtful[i], most_off, points, images_[face]) ? 1 : 0;
+      }
+    };
+    parallel_for(context_, doubtful.size(), body, kLeastShare);
+    std::vector<int> kept;
+    for (const int face : faces_) {
+      if (in_[static_cast<std::size_t>(face)] != 0) kept.push_back(face);
+    }
+    faces_ = std::move(kept);
+  }
+
+  const PreparedMesh& prepared_;
+  const OrbitTest& test_;
+  const RunContext& context_;
+  std::vector<char> in_;                  // by face
+  std::vector<std::vector<int>> images_;  // by face: where its points came to lie when last judged
+  std::vector<int> faces_;                // that are in, ascending
+};
 
 /// Faces joined along edges.
 struct Pieces {
@@ -154,15 +201,7 @@ Pieces connected_pieces(const PreparedMesh& prepared, const std::vector<int>& fa
 std::vector<int> symmetric_faces(const PreparedMesh& prepared, const SurfaceIndex& whole,
                                  const GroupPlacement& placement, double tolerance, const RunContext& context) {
   const OrbitTest test(prepared, placement, tolerance);
-  std::vector<int> faces(static_cast<std::size_t>(prepared.mesh.faces.rows()));
-  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = static_cast<int>(f);
-  std::vector<int> kept = staying(test, whole, faces, kMostOff, context);
-  while (!kept.empty() && kept.size() < faces.size()) {
-    faces = std::move(kept);
-    const SurfaceIndex inside(prepared.mesh, faces);
-    kept = staying(test, inside, faces, kMostAstray, context);
-  }
-  return kept;
+  return Erosion(prepared, test, context).run(whole);
 }
 
 std::vector<int> connected_orbit(const PreparedMesh& prepared, const GroupPlacement& placement,
