@@ -1,5 +1,9 @@
 #include "orbifit/detection/refinement.h"
 
+#include <cmath>
+#include <string>
+
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/orbit_model.h"
@@ -37,6 +41,30 @@ TEST_P(Refine, ComesBackFromAPerturbedTruth) {
 INSTANTIATE_TEST_SUITE_P(Groups, Refine,
                          testing::Values("Cs", "Ci", "C2", "C5", "C4v", "C3h", "D3", "D2d", "D6h", "S6", "T", "Oh",
                                          "I"));
+
+class TurnedPrism : public testing::TestWithParam<int> {};
+
+TEST_P(TurnedPrism, GetsItsAxisFromTheCornersOfItsFacets) {
+  Random random(9, std::to_string(GetParam()));
+  const Mesh mesh = test::prism(GetParam(), 1, 1.4);
+  const PreparedMesh prepared = prepare(mesh);
+  const RunContext context;
+  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 1000, 0.005, context, "test");
+  const Eigen::Vector3d centre = inverse(prepared.input_of_normalised)(Eigen::Vector3d::Zero());
+  for (const char* symbol : {"Cinf", "Cinfv", "Cinfh", "Dinf", "Dinfh"}) {
+    GroupPlacement start{*PointGroup::parse(symbol), GroupFrame::Identity(), centre};
+    start.frame = axis_rotation(random.direction(), 3e-4) * start.frame;
+    start.centre += 3e-4 * random.direction();
+    const GroupPlacement end = refine_on_vertices(patch, start);
+    EXPECT_EQ(end.group, start.group);
+    EXPECT_LT(end.frame.col(2).cross(Eigen::Vector3d::UnitZ()).norm(), 1e-9) << symbol;
+    EXPECT_LT((end.centre - centre).head<2>().norm(), 1e-9) << symbol;
+    const bool across = std::string(symbol).ends_with("h");
+    EXPECT_LT(std::abs((end.centre - centre).z()), across ? 1e-9 : 1e-3) << symbol;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sides, TurnedPrism, testing::Values(40, 45, 49, 55));
 
 TEST(RefineOnVertices, LeavesAloneWhatHasNoMatchingVertices) {
   // A square's sides cut differently: the surface has the group, the vertices do not.

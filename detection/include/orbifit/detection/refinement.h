@@ -27,7 +27,8 @@ struct RefinementOptions {
 GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RefinementOptions& options = {});
 
 /// Where the vertices of the patch are images of one another, lets them decide: point-to-point least squares, which
-/// leaves no more than rounding. Returns `start` unchanged where they are not.
+/// leaves no more than rounding. Of a continuous group, which facets have by halves, thirds, fifths or sevenths of a
+/// turn only, these decide. Returns `start` unchanged where they are not.
 GroupPlacement refine_on_vertices(const SurfacePatch& patch, const GroupPlacement& start);
 
 }  // namespace orbifit
