@@ -207,7 +207,10 @@ class Completion {
   }
 
   bool holds(const GroupPlacement& placement, const std::vector<int>& faces) const {
-    const SurfacePatch patch = make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion");
+    return holds(placement, make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion"));
+  }
+
+  bool holds(const GroupPlacement& placement, const SurfacePatch& patch) const {
     const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
     return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
                          VerificationLimits{}.joint, context_));
@@ -221,14 +224,23 @@ class Completion {
     place(q, placement);
   }
 
-  // Moves a region's group; far enough to matter only where it still holds.
+  // Moves a region's group, unless the region fits it far less well there: a group that is exact by itself is not bent
+  // to one around it that is not.
   void place(std::size_t region, const GroupPlacement& goal) {
-    constexpr double kNothing = 0.02;  // tolerances
+    constexpr double kNothing = 1e-9;
+    constexpr double kAsWell = 1.5;
+    constexpr std::size_t kQueries = 1500;
     const FoundRegion& now = regions_[region];
     const SurfaceMoments& moments = moments_[region];
-    const bool same =
-        contains_group(now.placement, goal, moments.centroid, moments.radius, kNothing * tolerance_of(region) / 3);
-    if (same || holds(goal, now.faces)) regions_[region].placement = goal;
+    if (!contains_group(now.placement, goal, moments.centroid, moments.radius, kNothing)) {
+      const SurfacePatch patch = make_patch(prepared_, now.faces, kSamples, options_.tolerance, context_, "completion");
+      const auto fit = [&](const GroupPlacement& placement) {
+        const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+        return measure_residual(patch, motions, context_, kQueries).rms;
+      };
+      if (fit(goal) > kAsWell * fit(now.placement) + kNothing || !holds(goal, patch)) return;
+    }
+    regions_[region].placement = goal;
   }
 
   static GroupPlacement mean_of_images(const GroupPlacement& placement, const std::vector<Motion>& stabiliser) {

@@ -93,7 +93,11 @@ class Detector {
     const SurfacePatch patch = make_patch(prepared_, all, options_.samples, options_.tolerance, context_, "whole");
     whole_index_ = patch.index;
     const std::optional<OwnGroup> group = find_own_group(patch, &screen_, {}, context_);
-    if (group) regions_.push_back({group->placement, all, prepared_.area, "whole"});
+    if (!group) return;
+    regions_.push_back({group->placement, all, prepared_.area, "whole"});
+    if (options_.explanation != nullptr) {
+      options_.explanation->notes.push_back({"whole", group->placement.group.symbol() + " on whole", true, "verified"});
+    }
   }
 
   PartRegions find_in_parts(const PreparedMesh& partition, bool pieces) const {

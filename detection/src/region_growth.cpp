@@ -21,8 +21,9 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
-constexpr int kComponentSamples = 48;
+constexpr int kComponentSamples = 96;
 constexpr double kKeptShare = 0.9;
+constexpr double kKeptByAll = 0.96;  // by rotations of a continuous group: a regular polygon keeps 0.9 of itself
 
 bool rotates_all(const PointGroup& group) {
   return group.family == Family::K || group.family == Family::Kh;
@@ -140,7 +141,7 @@ ComponentMover::ComponentMover(const PreparedMesh& prepared, const ComponentSurv
   centroids_ = std::make_unique<PointIndex>(centroids);
 }
 
-int ComponentMover::image(std::size_t component, const Motion& motion, double reach) {
+int ComponentMover::image(std::size_t component, const Motion& motion, double reach, double least_share) {
   const SurfaceMoments& mine = survey_.moments[component];
   if (mine.area <= 0) return -1;
   int target = -1;
@@ -166,7 +167,7 @@ int ComponentMover::image(std::size_t component, const Motion& motion, double re
     const Vector3d normal = motion.linear * samples.normals.row(s).transpose();
     const Vector3d place = motion(samples.points.row(s));
     if (whole_.nearest_facing(place, normal, kNormalCosine, reach, true).face >= 0) ++hits;
-    if (s + 1 - hits > (1 - kKeptShare) * kComponentSamples) return -1;
+    if (s + 1 - hits > (1 - least_share) * kComponentSamples) return -1;
   }
   return target;
 }
@@ -190,9 +191,10 @@ std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const
     context_.check();
     if (in[c] != 0) continue;
     const double reach = strictness * reach_of(c, placement.group);
+    const double share = placement.group.continuous() ? kKeptByAll : kKeptShare;
     std::vector<int> targets;
     const bool kept = std::ranges::all_of(motions, [&](const Motion& motion) {
-      targets.push_back(image(c, motion, reach));
+      targets.push_back(image(c, motion, reach, share));
       return targets.back() >= 0;
     });
     if (!kept) continue;
@@ -239,7 +241,7 @@ std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacemen
     mask[0] = 1;
     bool moved = false;
     for (std::size_t g = 1; g < order; ++g) {
-      images[c][g] = image(c, Motion::about(linear[g], placement.centre), reach);
+      images[c][g] = image(c, Motion::about(linear[g], placement.centre), reach, kKeptShare);
       mask[g] = images[c][g] >= 0 ? 1 : 0;
       moved = moved || mask[g] != 0;
     }

@@ -33,8 +33,8 @@ class ComponentMover {
   std::vector<SubgroupRegion> subgroup_regions(const GroupPlacement& placement, const std::vector<int>& seed);
 
  private:
-  // The component onto which the motion carries this one, -1 for none.
-  int image(std::size_t component, const Motion& motion, double reach);
+  // The component onto which the motion carries this one, or that share of it; -1 for none.
+  int image(std::size_t component, const Motion& motion, double reach, double least_share);
   double reach_of(std::size_t component, const PointGroup& group) const;
 
   const PreparedMesh& prepared_;
