@@ -118,7 +118,7 @@ class Completion {
       } else if (regions_.size() < options_.most && holds(goal, faces)) {
         note(goal, regions_[q], true, "image of a region under a larger region's group");
         const SurfaceMoments moments = surface_moments(prepared_, faces);
-        regions_.push_back({goal, faces, moments.area, "image of " + regions_[q].name});
+        regions_.push_back({goal, faces, moments.area, "image of " + regions_[q].name, regions_[q].of_pieces});
         moments_.push_back(moments);
         result.push_back(regions_.size() - 1);
       }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "orbifit/detection/candidates.h"
 #include "orbifit/detection/completion.h"
@@ -118,7 +119,10 @@ class Detector {
     const std::size_t count = partition.components.faces.size();
     if (count > kMostSegments) return;
     if (count == prepared_.components.faces.size()) return find_turned(partition);
-    for (const FoundRegion& region : find_in_parts(partition, true).regions) regions_.push_back(region);
+    for (FoundRegion& region : find_in_parts(partition, true).regions) {
+      region.of_pieces = true;
+      regions_.push_back(std::move(region));
+    }
     find_turned(partition);
   }
 
@@ -146,6 +150,7 @@ class Detector {
     RevolutionRegionOptions turned{options_.tolerance, kLeastShare, options_.explanation, [this] { return late(); }};
     for (FoundRegion& region :
          find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_)) {
+      region.of_pieces = true;
       regions_.push_back(std::move(region));
     }
   }

@@ -6,6 +6,7 @@
 
 #include "orbifit/detection/featureless.h"
 #include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/verification.h"
 
 namespace orbifit {
 
@@ -22,6 +23,23 @@ bool plainly_outside(const std::vector<int>& inner, const std::vector<int>& oute
     if (!std::ranges::binary_search(outer, face)) ++outside;
   }
   return outside > kLooks / 2;
+}
+
+// Whether pieces of surface were added to components at the cost of how well they turn or mirror.
+bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
+  constexpr double kFarLess = 3;
+  constexpr int kSamples = 250;
+  constexpr std::size_t kQueries = 2500;
+  if (!outer.of_pieces || inner.of_pieces) return false;
+  const RunContext context;
+  const auto fit = [&](const FoundRegion& region) {
+    const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "repeats");
+    const GroupPlacement& placement = region.placement;
+    return measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context,
+                            kQueries)
+        .rms;
+  };
+  return fit(outer) > kFarLess * fit(inner);
 }
 
 void note_drop(Explanation* explanation, const std::string& stage, const FoundRegion& region,
@@ -59,7 +77,7 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
       if (i == j || !covers(prepared, regions[j], mine)) continue;
       if (!contains_group(regions[j].placement, mine.placement, moments.centroid, moments.radius, reach)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
-      repeats = !mutual || j < i;
+      repeats = (!mutual || j < i) && !looser(prepared, tolerance, regions[j], mine);
       if (repeats)
         note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
     }

@@ -319,10 +319,16 @@ class Search {
       find_axis_regions(axis.line);
     }
     for (const CandidateLine& plane : lines.planes) {
-      if (late()) return;
+      if (late() || crowded()) return;
       context_.progress("axes", static_cast<double>(done++) / total);
       find_mirror_region(plane.line);
     }
+  }
+
+  // Among so many pieces any few are mirror images of one another by chance: only whole rings say something.
+  bool crowded() const {
+    constexpr std::size_t kMany = 150;
+    return options_.pieces && survey().moments.size() > kMany;
   }
 
   static double distance_from(const Line& line, const Vector3d& point) {
@@ -338,7 +344,8 @@ class Search {
       find_set_group(round, {line.direction});
     }
     std::vector<std::pair<int, std::vector<int>>> found;
-    for (int n = kHighestOrder; n >= 2; --n) {
+    const int lowest = crowded() ? 3 : 2;
+    for (int n = kHighestOrder; n >= lowest; --n) {
       context_.check();
       std::vector<int> turned = mover_->permuted({{Family::Cn, n}, frame, line.point}, round);
       std::vector<std::vector<int>> larger{round};

@@ -16,6 +16,7 @@ struct FoundRegion {
   std::vector<int> faces;  ///< ascending
   double area = 0;         ///< of the faces that count
   std::string name;
+  bool of_pieces = false;  ///< made of pieces of surface, not of whole components
 };
 
 /// Area of the faces of `inner` that are not in `outer`; both ascending.
@@ -25,7 +26,8 @@ double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner,
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner);
 
 /// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the
-/// same of one another the earlier stays. \param tolerance of the detector, a fraction of the diagonal
+/// same of one another the earlier stays. A region of whole components stays beside one of pieces that fits far less
+/// well. \param tolerance of the detector, a fraction of the diagonal
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation = nullptr);
 
