@@ -242,16 +242,23 @@ class Detector {
     set_parents(annotation.regions);
   }
 
+  double area_of(const std::vector<int>& faces) const {
+    double area = 0;
+    for (const int f : faces) area += prepared_.areas[f];
+    return area;
+  }
+
   // A region that is far less exact than one that contains it is symmetric by coincidence: the shape around it shows
   // how exact this mesh is. Kept, its group would also clash with the exact ones. A turned part's residual is that of
   // its facets and says nothing.
   void drop_coincidences(std::vector<Region>& regions) const {
     constexpr double kFarLess = 20;
+    constexpr double kMost = 0.5;  // of what is around: the larger part of a shape is no coincidence
     const double least = 0.01 * options_.tolerance;
     const std::vector<Region> all = regions;
     std::erase_if(regions, [&](const Region& region) {
       const bool coincidence = !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
-        return around.faces.size() > region.faces.size() &&
+        return around.faces.size() > region.faces.size() && area_of(region.faces) < kMost * area_of(around.faces) &&
                region.residual.max > kFarLess * std::max(around.residual.max, least) &&
                std::ranges::includes(around.faces, region.faces);
       });
