@@ -21,11 +21,15 @@ constexpr std::array<KindName, 6> kKinds{{{Pattern::Kind::translation_1d, "trans
                                           {Pattern::Kind::screw, "screw", 1},
                                           {Pattern::Kind::congruent, "congruent", 0}}};
 
-const KindName& find_kind(Pattern::Kind kind) { return *std::ranges::find(kKinds, kind, &KindName::kind); }
+const KindName& find_kind(Pattern::Kind kind) {
+  return *std::ranges::find(kKinds, kind, &KindName::kind);
+}
 
 }  // namespace
 
-std::string to_string(Pattern::Kind kind) { return std::string(find_kind(kind).name); }
+std::string to_string(Pattern::Kind kind) {
+  return std::string(find_kind(kind).name);
+}
 
 std::optional<Pattern::Kind> parse_pattern_kind(std::string_view text) {
   const auto* found = std::ranges::find(kKinds, text, &KindName::name);
@@ -33,7 +37,9 @@ std::optional<Pattern::Kind> parse_pattern_kind(std::string_view text) {
   return found->kind;
 }
 
-int generator_count(Pattern::Kind kind) { return find_kind(kind).generators; }
+int generator_count(Pattern::Kind kind) {
+  return find_kind(kind).generators;
+}
 
 SymmetryAnnotation empty_annotation(const Mesh& mesh, double tolerance) {
   SymmetryAnnotation result;

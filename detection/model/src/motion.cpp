@@ -31,7 +31,9 @@ Motion inverse(const Motion& motion) {
   return {motion.linear.transpose(), -(motion.linear.transpose() * motion.translation)};
 }
 
-Motion conjugate(const Motion& frame, const Motion& motion) { return frame * motion * inverse(frame); }
+Motion conjugate(const Motion& frame, const Motion& motion) {
+  return frame * motion * inverse(frame);
+}
 
 double orthogonality_error(const Eigen::Matrix3d& linear) {
   return (linear * linear.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();

@@ -21,8 +21,8 @@ struct RegionResidual {
   int id = 0;
   std::string name;
   std::string group;
-  int vertices = 0;       ///< of the region
-  int mapped = 0;         ///< of its (vertex, element) pairs, how many map onto a vertex to 1e-6 of the diagonal
+  int vertices = 0;  ///< of the region
+  int mapped = 0;    ///< of its (vertex, element) pairs, how many map onto a vertex to 1e-6 of the diagonal
   int pairs = 0;
   /// Of the rest shape: distances |g p - q|, q the region's surface point nearest to g p. Fractions of its diagonal.
   Residual floor;

@@ -20,7 +20,7 @@ struct PieceMoments {
 
 /// Of each set of faces: entry s sums up the faces whose set is s. Positions are told from `origin`.
 std::vector<PieceMoments> moments_of_sets(const Mesh& mesh, const std::vector<int>& set_of_face, int sets,
-                                            const Eigen::Vector3d& origin);
+                                          const Eigen::Vector3d& origin);
 
 /// How far apart `motion` of the one piece and the other are, as a fraction of `size`; infinite where their areas
 /// differ by more than 3 % or they lie apart by half their width. Costs no more the more triangles they have.

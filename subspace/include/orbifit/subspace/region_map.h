@@ -176,7 +176,7 @@ class RegionMap {
   mutable std::unordered_map<std::uint64_t, int> with_;
   mutable std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;
   std::vector<std::vector<int>> meeting_;             // of each place, the places that share faces with it
-  std::vector<PieceMoments> moments_;               // of the faces of each set
+  std::vector<PieceMoments> moments_;                 // of the faces of each set
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };

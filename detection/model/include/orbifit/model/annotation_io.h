@@ -16,7 +16,8 @@ SymmetryAnnotation read_annotation(const std::filesystem::path& file, const Mesh
 /// The same from a file's text. \param name of the file, for messages
 SymmetryAnnotation annotation_from_json(const std::string& text, const Mesh& mesh, const std::string& name);
 
-/// The file's text: keys in the format's order, 17 digits, one region a block; the same annotation gives the same bytes.
+/// The file's text: keys in the format's order, 17 digits, one region a block; the same annotation gives the same
+/// bytes.
 std::string to_json(const SymmetryAnnotation& annotation);
 
 /// Whole or not at all.

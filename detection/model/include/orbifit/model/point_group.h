@@ -14,7 +14,30 @@ namespace orbifit {
 /// A point group by its Schoenflies symbol (annotation-format: "regions").
 struct PointGroup {
   enum class Family {
-    C1, Cs, Ci, Cn, Cnv, Cnh, Dn, Dnh, Dnd, Sn, T, Td, Th, O, Oh, I, Ih, Cinf, Cinfv, Cinfh, Dinf, Dinfh, K, Kh
+    C1,
+    Cs,
+    Ci,
+    Cn,
+    Cnv,
+    Cnh,
+    Dn,
+    Dnh,
+    Dnd,
+    Sn,
+    T,
+    Td,
+    Th,
+    O,
+    Oh,
+    I,
+    Ih,
+    Cinf,
+    Cinfv,
+    Cinfh,
+    Dinf,
+    Dinfh,
+    K,
+    Kh
   };
   Family family = Family::C1;
   int n = 1;  ///< the number in the symbol: >= 2 for Cn ... Dnd, even and >= 4 for Sn, else 1
@@ -22,9 +45,9 @@ struct PointGroup {
   bool operator==(const PointGroup&) const = default;
 
   bool continuous() const;
-  int order() const;     ///< number of elements; 0 for a continuous group
-  bool has_axis() const; ///< false for C1, Ci, K, Kh and the polyhedral groups
-  bool proper() const;   ///< rotations only
+  int order() const;      ///< number of elements; 0 for a continuous group
+  bool has_axis() const;  ///< false for C1, Ci, K, Kh and the polyhedral groups
+  bool proper() const;    ///< rotations only
 
   /// Schoenflies symbol in ASCII: "C4v", "D2h", "S6", "Cinfv", "C1".
   std::string symbol() const;

@@ -12,8 +12,8 @@ namespace orbifit {
 /// \throw InputError with file, line and reason; also when no point remains
 PointCloud read_scan(const std::filesystem::path& file);
 
-/// Writes PLY (binary little endian, double; viewpoints as vx, vy, vz when there is one per point), PCD (binary, float),
-/// XYZ and PTS (17 digits; XYZ with normals when known). Whole or not at all.
+/// Writes PLY (binary little endian, double; viewpoints as vx, vy, vz when there is one per point), PCD (binary,
+/// float), XYZ and PTS (17 digits; XYZ with normals when known). Whole or not at all.
 void write_scan(const std::filesystem::path& file, const PointCloud& scan);
 
 }  // namespace orbifit

@@ -9,8 +9,8 @@
 
 namespace orbifit {
 
-/// Nearest points and rays on a triangle mesh. Distances are exact in double precision (the tree, Embree's, only culls);
-/// among faces at the same distance the lowest number wins. Const calls may run on several threads.
+/// Nearest points and rays on a triangle mesh. Distances are exact in double precision (the tree, Embree's, only
+/// culls); among faces at the same distance the lowest number wins. Const calls may run on several threads.
 class SurfaceIndex {
  public:
   /// \param faces the faces to index; empty means all. The mesh is copied as far as needed.
@@ -27,8 +27,7 @@ class SurfaceIndex {
   };
 
   /// O(log F). Nearest point within `max_distance`.
-  Nearest nearest(const Eigen::Vector3d& point,
-                  double max_distance = std::numeric_limits<double>::infinity()) const;
+  Nearest nearest(const Eigen::Vector3d& point, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
   Nearest nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,

@@ -18,8 +18,8 @@ Weld weld_vertices(const Points& vertices, double tolerance = 0);
 
 /// Faces connected over shared edges of the welded mesh.
 struct Components {
-  std::vector<int> component_of_face;    ///< #F, numbered by first appearance
-  std::vector<std::vector<int>> faces;   ///< of each component, ascending
+  std::vector<int> component_of_face;   ///< #F, numbered by first appearance
+  std::vector<std::vector<int>> faces;  ///< of each component, ascending
 };
 
 Components connected_components(const Mesh& mesh, const Weld& weld);
@@ -36,15 +36,15 @@ std::vector<Edge> welded_edges(const Mesh& mesh, const Weld& weld);
 /// What `orbifit info` reports: counts of what a mesh should not have.
 struct MeshReport {
   int vertices = 0, faces = 0, components = 0;
-  int duplicate_vertices = 0;    ///< at the very same coordinates as an earlier one
+  int duplicate_vertices = 0;  ///< at the very same coordinates as an earlier one
   int unused_vertices = 0;
-  int degenerate_faces = 0;      ///< of no area
-  int duplicate_faces = 0;       ///< the same welded corners as an earlier one, in any order
-  int boundary_edges = 0;        ///< of the welded mesh
-  int non_manifold_edges = 0;    ///< more than two faces
-  int inconsistent_edges = 0;    ///< two faces that run along it in the same direction
-  bool watertight = false;       ///< no boundary and no non-manifold edges
-  double area = 0, volume = 0;   ///< volume 0 unless watertight
+  int degenerate_faces = 0;     ///< of no area
+  int duplicate_faces = 0;      ///< the same welded corners as an earlier one, in any order
+  int boundary_edges = 0;       ///< of the welded mesh
+  int non_manifold_edges = 0;   ///< more than two faces
+  int inconsistent_edges = 0;   ///< two faces that run along it in the same direction
+  bool watertight = false;      ///< no boundary and no non-manifold edges
+  double area = 0, volume = 0;  ///< volume 0 unless watertight
   double diagonal = 0;
   Eigen::Vector3d minimum = Eigen::Vector3d::Zero(), maximum = Eigen::Vector3d::Zero();
 };
