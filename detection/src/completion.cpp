@@ -26,16 +26,6 @@ constexpr double kNormalCosine = 0.8;  // 37 degrees: the images of coarse trian
 constexpr int kMostElements = 120;
 constexpr int kSamples = 500;
 
-Points face_centroids(const Mesh& mesh) {
-  Points result(mesh.faces.rows(), 3);
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    result.row(f) = (mesh.vertices.row(mesh.faces(f, 0)) + mesh.vertices.row(mesh.faces(f, 1)) +
-                     mesh.vertices.row(mesh.faces(f, 2))) /
-                    3;
-  }
-  return result;
-}
-
 /// Regions, and which of them are images of which.
 class Completion {
  public:

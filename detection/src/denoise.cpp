@@ -77,16 +77,6 @@ Vector3d place_of(const PreparedMesh& prepared, int group) {
   return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(group)]);
 }
 
-Points centroids_of(const Mesh& mesh) {
-  Points result(mesh.faces.rows(), 3);
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    result.row(f) = (mesh.vertices.row(mesh.faces(f, 0)) + mesh.vertices.row(mesh.faces(f, 1)) +
-                     mesh.vertices.row(mesh.faces(f, 2))) /
-                    3;
-  }
-  return result;
-}
-
 // One round of bilateral averaging of the normals.
 Points filtered(const PreparedMesh& prepared, const Lists& around, const Points& centroids, const Points& normals,
                 double distance, double difference, const RunContext& context) {
@@ -153,7 +143,7 @@ void denoise(PreparedMesh& prepared, double sigma, const RunContext& context) {
   // The noisier, the more rounds and the more unlike normals may be.
   std::vector<double> steps;
   std::vector<double> lengths;
-  const Points centroids = centroids_of(mesh);
+  const Points centroids = face_centroids(mesh);
   for (std::size_t f = 0; f < around.size(); f += 7) {
     const auto row = static_cast<Eigen::Index>(f);
     for (auto other = around.begin_of(f); other != around.end_of(f); ++other) {
@@ -168,12 +158,12 @@ void denoise(PreparedMesh& prepared, double sigma, const RunContext& context) {
   for (int pass = 0; pass < outer; ++pass) {
     context.check();
     Points normals = prepared.normals;
-    Points middles = centroids_of(mesh);
+    Points middles = face_centroids(mesh);
     for (int round = 0; round < rounds; ++round) {
       normals = filtered(prepared, around, middles, normals, distance, difference, context);
     }
     for (int round = 0; round < kVertexRounds; ++round) {
-      middles = centroids_of(mesh);
+      middles = face_centroids(mesh);
       std::vector<Vector3d> moved(prepared.faces_of_vertex.size(), Vector3d::Zero());
       for (std::size_t g = 0; g < moved.size(); ++g) {
         const Vector3d here = place_of(prepared, static_cast<int>(g));

@@ -16,9 +16,10 @@
 #include "orbifit/detection/featureless.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
-#include "orbifit/detection/revolution.h"
 #include "orbifit/detection/symmetry_lines.h"
 #include "orbifit/detection/verification.h"
+
+#include "chance_symmetry.h"
 
 namespace orbifit {
 
@@ -30,7 +31,6 @@ using Family = PointGroup::Family;
 constexpr int kPartSamples = 700;
 constexpr std::size_t kMostPartRegions = 200;
 constexpr int kHighestOrder = 72;
-constexpr double kTurned = 0.95;  // share of the normals that meet the axis of a turned surface
 
 struct Found {
   GroupPlacement placement;
@@ -133,25 +133,10 @@ class Search {
     return d[2] - d[0] < 0.05 * d[2];
   }
 
-  bool flat(const SurfaceMoments& moments) const {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
-    return solver.eigenvalues()[0] < std::pow(0.25 * options_.tolerance * std::min(1.0, 4 * moments.diagonal), 2);
-  }
-
   // Whether only the borders of pieces of larger surfaces give them the group.
   bool mere_border(const GroupPlacement& placement, const std::vector<int>& parts) const {
-    if (!options_.pieces) return false;
-    if (flat(moments_of(parts))) return true;
-    if (placement.group.continuous()) return false;
-    constexpr int kSamples = 300;
-    const SurfacePatch patch = sample_patch(prepared_, faces_of(parts), kSamples, options_.tolerance, context_, "slip");
-    const std::optional<RevolutionFit> fit = revolution_of(patch);
-    return fit && (fit->planar || fit->inliers > kTurned);
-  }
-
-  static std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {
-    constexpr double kAngle = 0.1;  // radians
-    return fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
+    return options_.pieces &&
+           orbifit::mere_border(prepared_, faces_of(parts), moments_of(parts), placement, options_.tolerance, context_);
   }
 
   bool already_known(const GroupPlacement& placement, const std::vector<int>& parts) const {
@@ -184,7 +169,7 @@ class Search {
     for (const Found& each : groups) {
       if (late()) return;
       for (SubgroupRegion& region : mover_->subgroup_regions(each.placement, each.parts)) {
-        if (each.parts.size() == 1) drop_siblings(region.components, each.parts.front());
+        if (each.parts.size() == 1) drop_siblings(region.components, each.parts.front(), classes());
         const double area = area_of(region.components);
         if (area < kMaterial * each.area || already_known(region.placement, region.components)) continue;
         const bool holds = verified(region.placement, region.components);
@@ -220,7 +205,7 @@ class Search {
   void add(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& seed, double strictness) {
     if (already_known(placement, seed)) return note(stage, placement, seed, false, "known from a larger region");
     std::vector<int> grown = mover_->permuted(placement, seed, strictness);
-    if (seed.size() == 1 && !options_.pieces) drop_siblings(grown, seed.front());
+    if (seed.size() == 1 && !options_.pieces) drop_siblings(grown, seed.front(), classes());
     if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
     if (area < least_area()) return note(stage, placement, grown, false, "too small");
@@ -230,21 +215,12 @@ class Search {
     found_.push_back({placement, grown, area, false});
   }
 
-  // Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of
-  // symmetry.
-  void drop_siblings(std::vector<int>& grown, int part) const {
-    const auto kind = std::ranges::find_if(
-        classes(), [&](const CongruenceClass& each) { return std::ranges::binary_search(each.members, part); });
-    if (kind == classes().end()) return;
-    std::erase_if(grown, [&](int c) { return c != part && std::ranges::binary_search(kind->members, c); });
-  }
-
   void find_part_groups(std::size_t number) {
     const CongruenceClass& kind = classes()[number];
     const int first = kind.members.front();
     const SurfaceMoments& mine = moments(first);
     if (mine.area * static_cast<double>(kind.members.size()) < least_area()) return;
-    const bool sheet = flat(mine);
+    const bool sheet = flat(mine, options_.tolerance);
     const SurfacePatch patch = make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(first)],
                                           kPartSamples, options_.tolerance, context_, "part");
     bool screen = needs_screen(mine);
@@ -252,13 +228,13 @@ class Search {
     if (options_.pieces) {
       // A piece of a plane or a turned surface is as symmetric as that, or by its border only.
       const std::optional<RevolutionFit> fit = revolution_of(patch);
-      if (sheet || (fit && (fit->planar || fit->spherical || fit->inliers > kTurned))) screen = false;
+      if (sheet || (fit && (fit->planar || fit->spherical || turned(*fit)))) screen = false;
       if (fit && !fit->planar && !fit->spherical) axes.push_back(fit->axis.direction);
     }
     const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
     if (!group) return note("parts", {}, {first}, false, "no group of its own");
     result_.own_groups[number] = group->placement;
-    if (flat_mirror_only(mine, group->placement)) return;
+    if (flat_mirror_only(mine, group->placement, options_.tolerance)) return;
     if (options_.pieces && (sheet || mere_border(group->placement, {first}))) {
       return note("parts", group->placement, {first}, false, "only its border gives it the group");
     }
@@ -268,25 +244,10 @@ class Search {
     }
   }
 
-  // Every flat sheet has the mirror in its own plane.
-  bool flat_mirror_only(const SurfaceMoments& moments, const GroupPlacement& placement) const {
-    if (placement.group.family != Family::Cs) return false;
-    const Vector3d normal = placement.frame.col(2);
-    return normal.dot(moments.covariance * normal) < std::pow(0.5 * options_.tolerance * moments.diagonal, 2);
-  }
-
-  // Any two copies of a symmetric part are symmetric together, wherever they are: of more than two, a pair says
-  // nothing.
-  bool mere_pair(const std::vector<int>& parts) const {
-    if (parts.size() != 2) return false;
-    return std::ranges::any_of(classes(), [&](const CongruenceClass& kind) {
-      return kind.members.size() > 2 && std::ranges::includes(kind.members, parts);
-    });
-  }
-
   // The own group of several parts together. Whether there is one.
   bool find_set_group(const std::vector<int>& members, const std::vector<Vector3d>& axes) {
-    if (area_of(members) < least_area() || mere_pair(members) || !tried_.insert(members).second) return false;
+    if (area_of(members) < least_area() || mere_pair(members, classes()) || !tried_.insert(members).second)
+      return false;
     const SurfacePatch patch = patch_of(members, "set");
     const bool screen = axes.empty() && needs_screen(patch.moments);
     const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
@@ -363,7 +324,7 @@ class Search {
         std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));
         if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, {line.direction});
       }
-      if (!mere_pair(turned) && !already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
+      if (!mere_pair(turned, classes()) && !already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
         const SurfacePatch patch = patch_of(turned, "axis");
         const GroupPlacement placement = refine(patch, turn);
         if (verified(placement, patch)) add("axes", placement, turned, strictness(placement, patch));
@@ -376,7 +337,7 @@ class Search {
     GroupPlacement placement{{Family::Cs, 1}, frame_about(line.direction), line.point};
     const std::vector<int> parts = mover_->permuted(placement, {});
     if (parts.size() < 2 || area_of(parts) < least_area() || already_known(placement, parts)) return;
-    if (mere_pair(parts) || !tried_.insert(parts).second) return;
+    if (mere_pair(parts, classes()) || !tried_.insert(parts).second) return;
     const SurfacePatch patch = patch_of(parts, "mirror");
     placement = refine(patch, placement);
     if (verified(placement, patch)) add("planes", placement, parts, strictness(placement, patch));

@@ -73,28 +73,6 @@ std::vector<std::vector<char>> subgroups_within(const std::vector<Matrix3d>& lin
   return found;
 }
 
-// Whether the element is one of the continuous group about the axis, to an angle.
-bool member(const Matrix3d& linear, const PointGroup& group, const Vector3d& axis, double angle) {
-  const bool proper = linear.determinant() > 0;
-  if (group.family == Family::Kh) return true;
-  if (group.family == Family::K) return proper;
-  const Vector3d image = linear * axis;
-  if (image.cross(axis).norm() > angle) return false;
-  const bool up = image.dot(axis) > 0;
-  switch (group.family) {
-    case Family::Cinf:
-      return proper && up;
-    case Family::Cinfv:
-      return up;
-    case Family::Cinfh:
-      return proper == up;
-    case Family::Dinf:
-      return proper;
-    default:
-      return true;
-  }
-}
-
 }  // namespace
 
 bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, const Vector3d& centre, double reach,
@@ -111,7 +89,7 @@ bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, co
   const std::vector<Motion> wanted = judged_motions(inner.group, inner.frame, inner.centre);
   if (outer.group.continuous()) {
     return std::ranges::all_of(wanted, [&](const Motion& motion) {
-      if (!member(motion.linear, outer.group, outer.frame.col(2), angle)) return false;
+      if (!belongs_to_continuous(motion.linear, outer.group, outer.frame.col(2), angle)) return false;
       // The element must also leave the outer group's fixed set in place.
       Vector3d moved = motion(outer.centre) - outer.centre;
       const bool slides = outer.group.family == Family::Cinf || outer.group.family == Family::Cinfv;

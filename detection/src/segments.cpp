@@ -6,36 +6,13 @@
 #include <iterator>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <vector>
+
+#include "orbifit/model/disjoint_sets.h"
 
 namespace orbifit {
 
 namespace {
-
-// Union-find whose roots are the lowest members.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int root(int member) {
-    while (parent_[static_cast<std::size_t>(member)] != member) {
-      int& parent = parent_[static_cast<std::size_t>(member)];
-      parent = parent_[static_cast<std::size_t>(parent)];
-      member = parent;
-    }
-    return member;
-  }
-
-  void unite(int a, int b) {
-    const int first = root(a);
-    const int second = root(b);
-    parent_[static_cast<std::size_t>(std::max(first, second))] = std::min(first, second);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 // Where one end of the edge is.
 Eigen::Vector3d end_of(const PreparedMesh& prepared, const Edge& edge, std::size_t k) {
@@ -86,7 +63,7 @@ std::array<int, 3> corners_of(const PreparedMesh& prepared, int face) {
 
 // Joins each face without area to one neighbour, and no more, so that none bridges a crease. What has the same corners
 // as an earlier face joins it: the sheet goes on on both.
-void join_without_area(const PreparedMesh& prepared, const std::vector<Edge>& edges, Sets& sets) {
+void join_without_area(const PreparedMesh& prepared, const std::vector<Edge>& edges, DisjointSets& sets) {
   const auto count = static_cast<int>(prepared.mesh.faces.rows());
   std::vector<char> joined(static_cast<std::size_t>(count), 0);
   std::map<std::array<int, 3>, int> first_with;
@@ -125,7 +102,8 @@ void join_without_area(const PreparedMesh& prepared, const std::vector<Edge>& ed
 }
 
 // Segments too small to say anything join the neighbour along the longest common border, smallest first.
-void absorb_slivers(const PreparedMesh& prepared, const std::vector<Edge>& edges, double least_area, Sets& sets) {
+void absorb_slivers(const PreparedMesh& prepared, const std::vector<Edge>& edges, double least_area,
+                    DisjointSets& sets) {
   constexpr int kRounds = 4;
   const auto faces = static_cast<std::size_t>(prepared.mesh.faces.rows());
   for (int round = 0; round < kRounds; ++round) {
@@ -160,7 +138,7 @@ Components smooth_segments(const PreparedMesh& prepared, const SegmentOptions& o
   const auto count = static_cast<std::size_t>(prepared.mesh.faces.rows());
   const double cosine = std::cos(options.crease * std::numbers::pi / 180);
   const std::vector<Edge> edges = welded_edges(prepared.mesh, prepared.weld);
-  Sets sets(count);
+  DisjointSets sets(count);
   std::vector<char> joined(count, 0);
   join_without_area(prepared, edges, sets);
   for (const Edge& edge : edges) {

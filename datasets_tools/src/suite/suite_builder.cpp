@@ -27,27 +27,6 @@ constexpr double kSmallestShare = 0.0025;
 constexpr double kInside = 0.95;
 constexpr double kNoLarger = 1.02;
 
-bool holds_linear(const Region& region, const Matrix3d& linear) {
-  const bool proper = linear.determinant() > 0;
-  if (region.group.family == Family::Kh) return true;
-  if (region.group.family == Family::K) return proper;
-  const Vector3d image = linear * region.axis;
-  const bool up = image.dot(region.axis) > 0;
-  if ((image - (up ? 1 : -1) * region.axis).norm() > kSame) return false;
-  switch (region.group.family) {
-    case Family::Cinf:
-      return proper && up;
-    case Family::Cinfv:
-      return up;
-    case Family::Cinfh:
-      return proper == up;
-    case Family::Dinf:
-      return proper;
-    default:
-      return true;
-  }
-}
-
 // A point that all of the motions leave fixed, nearest to `near`.
 Vector3d fixed_point(const std::vector<Motion>& motions, const Vector3d& near) {
   Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(motions.size()), 3);
@@ -94,7 +73,7 @@ double shared_area(const std::vector<int>& a, const std::vector<int>& b, const E
 
 bool holds(const Region& region, const Motion& motion, double length) {
   if ((motion(region.centre) - region.centre).norm() > kSame * length) return false;
-  if (region.group.continuous()) return holds_linear(region, motion.linear);
+  if (region.group.continuous()) return belongs_to_continuous(motion.linear, region.group, region.axis, kSame);
   if (region.group.family == Family::C1) return motion.linear.isIdentity(kSame);
   return std::ranges::any_of(region.elements, [&](const Motion& element) {
     return (element.linear - motion.linear).cwiseAbs().maxCoeff() < kSame;

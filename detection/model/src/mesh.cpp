@@ -43,6 +43,14 @@ Eigen::VectorXd face_areas(const Mesh& mesh) {
   return areas;
 }
 
+Points face_centroids(const Mesh& mesh) {
+  Points result(mesh.faces.rows(), 3);
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+    result.row(f) = mesh.vertices(mesh.faces.row(f).transpose(), Eigen::all).colwise().mean();
+  }
+  return result;
+}
+
 Points vertex_normals(const Mesh& mesh) {
   Points normals = Points::Zero(mesh.vertices.rows(), 3);
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {

@@ -300,6 +300,29 @@ bool PointGroup::has_axis() const {
   }
 }
 
+bool belongs_to_continuous(const Eigen::Matrix3d& linear, const PointGroup& group, const Eigen::Vector3d& axis,
+                           double angle) {
+  using Family = PointGroup::Family;
+  const bool proper = linear.determinant() > 0;
+  if (group.family == Family::Kh) return true;
+  if (group.family == Family::K) return proper;
+  const Eigen::Vector3d image = linear * axis;
+  if (image.cross(axis).norm() > angle) return false;
+  const bool up = image.dot(axis) > 0;
+  switch (group.family) {
+    case Family::Cinf:
+      return proper && up;
+    case Family::Cinfv:
+      return up;
+    case Family::Cinfh:
+      return proper == up;
+    case Family::Dinf:
+      return proper;
+    default:
+      return true;
+  }
+}
+
 bool PointGroup::proper() const {
   switch (family) {
     case Family::C1:

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
+
+#include "orbifit/model/disjoint_sets.h"
 
 namespace orbifit {
 
@@ -119,30 +120,6 @@ std::vector<EdgeUse> edge_uses(const Mesh& mesh, const Weld& weld, bool of_colla
   std::sort(uses.begin(), uses.end());
   return uses;
 }
-
-// Union-find whose roots are the lowest members.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int root(int member) {
-    while (parent_[static_cast<std::size_t>(member)] != member) {
-      int& parent = parent_[static_cast<std::size_t>(member)];
-      parent = parent_[static_cast<std::size_t>(parent)];
-      member = parent;
-    }
-    return member;
-  }
-
-  void unite(int a, int b) {
-    const int root_a = root(a);
-    const int root_b = root(b);
-    parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 // Whether the face runs from the edge's first to its second vertex.
 bool runs_upwards(const std::array<int, 3>& corners, const std::array<int, 2>& edge) {

@@ -37,6 +37,9 @@ Points face_normals(const Mesh& mesh);
 /// Area of each triangle, #F.
 Eigen::VectorXd face_areas(const Mesh& mesh);
 
+/// Mean of each triangle's corners, #F by 3.
+Points face_centroids(const Mesh& mesh);
+
 /// Area-weighted unit normal at each vertex, #V by 3; zero where no face of positive area meets.
 Points vertex_normals(const Mesh& mesh);
 

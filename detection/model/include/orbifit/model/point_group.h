@@ -63,6 +63,12 @@ using GroupFrame = Eigen::Matrix3d;
 /// The order of the elements is a function of the group alone. \pre !group.continuous()
 std::vector<Eigen::Matrix3d> elements(const PointGroup& group, const GroupFrame& frame = GroupFrame::Identity());
 
+/// Whether the orthogonal map belongs to the group about the unit axis (of no effect for K and Kh): it keeps the axis,
+/// as a line, to `angle` in radians, and its orientation and the axis' sense agree with the family.
+/// \pre group.continuous()
+bool belongs_to_continuous(const Eigen::Matrix3d& linear, const PointGroup& group, const Eigen::Vector3d& axis,
+                           double angle);
+
 /// A small set that generates elements(group, frame); for a continuous group the discrete cosets' representatives
 /// and one rotation by 1 radian about each generating axis.
 std::vector<Eigen::Matrix3d> generators(const PointGroup& group, const GroupFrame& frame = GroupFrame::Identity());

@@ -1,0 +1,55 @@
+#include "chance_symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace orbifit {
+
+bool flat(const SurfaceMoments& moments, double tolerance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0] < std::pow(0.25 * tolerance * std::min(1.0, 4 * moments.diagonal), 2);
+}
+
+bool flat_mirror_only(const SurfaceMoments& moments, const GroupPlacement& placement, double tolerance) {
+  if (placement.group.family != PointGroup::Family::Cs) return false;
+  const Eigen::Vector3d normal = placement.frame.col(2);
+  return normal.dot(moments.covariance * normal) < std::pow(0.5 * tolerance * moments.diagonal, 2);
+}
+
+bool mere_pair(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds) {
+  if (parts.size() != 2) return false;
+  return std::ranges::any_of(kinds, [&](const CongruenceClass& kind) {
+    return kind.members.size() > 2 && std::ranges::includes(kind.members, parts);
+  });
+}
+
+std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {
+  constexpr double kAngle = 0.1;  // radians
+  return fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
+}
+
+bool turned(const RevolutionFit& fit) {
+  constexpr double kTurned = 0.95;
+  return fit.inliers > kTurned;
+}
+
+bool mere_border(const PreparedMesh& prepared, const std::vector<int>& faces, const SurfaceMoments& moments,
+                 const GroupPlacement& placement, double tolerance, const RunContext& context) {
+  if (flat(moments, tolerance)) return true;
+  if (placement.group.continuous()) return false;
+  constexpr int kSamples = 300;
+  const std::optional<RevolutionFit> fit =
+      revolution_of(sample_patch(prepared, faces, kSamples, tolerance, context, "slip"));
+  return fit && (fit->planar || turned(*fit));
+}
+
+void drop_siblings(std::vector<int>& parts, int part, const std::vector<CongruenceClass>& kinds) {
+  const auto kind = std::ranges::find_if(
+      kinds, [&](const CongruenceClass& each) { return std::ranges::binary_search(each.members, part); });
+  if (kind == kinds.end()) return;
+  std::erase_if(parts, [&](int c) { return c != part && std::ranges::binary_search(kind->members, c); });
+}
+
+}  // namespace orbifit

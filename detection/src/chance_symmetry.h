@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "orbifit/detection/components.h"
+#include "orbifit/detection/own_group.h"
+#include "orbifit/detection/revolution.h"
+#include "orbifit/detection/surface_patch.h"
+
+namespace orbifit {
+
+// Groups that a set of parts has for reasons that say nothing about the shape. Lengths in the prepared mesh's units;
+// `tolerance` is a fraction of the mesh's diagonal.
+
+/// Whether the parts are a flat sheet.
+bool flat(const SurfaceMoments& moments, double tolerance);
+
+/// Whether the group is the mirror in a flat sheet's own plane.
+bool flat_mirror_only(const SurfaceMoments& moments, const GroupPlacement& placement, double tolerance);
+
+/// Whether two parts of a kind with more than two members are all there is: any two copies of a symmetric part are
+/// symmetric together, wherever they are.
+bool mere_pair(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds);
+
+/// The fit of an axis of revolution to the patch's samples.
+std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch);
+
+/// Whether pieces of a larger surface have the group by where they end only: a piece of a plane, or a finite group of
+/// a surface of revolution.
+/// \param moments of the faces
+bool mere_border(const PreparedMesh& prepared, const std::vector<int>& faces, const SurfaceMoments& moments,
+                 const GroupPlacement& placement, double tolerance, const RunContext& context);
+
+/// Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of symmetry:
+/// takes all of the part's kind but itself out of `parts`.
+void drop_siblings(std::vector<int>& parts, int part, const std::vector<CongruenceClass>& kinds);
+
+/// Whether enough of the surface's normals meet the axis for a surface of revolution.
+bool turned(const RevolutionFit& fit);
+
+}  // namespace orbifit
