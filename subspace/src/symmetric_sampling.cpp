@@ -13,6 +13,8 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
 
+#include "border_points.h"
+
 namespace orbifit {
 
 namespace {
@@ -27,6 +29,8 @@ constexpr int kFewestCopies = 6;
 constexpr int kCandidatesPerDisc = 30;
 constexpr int kMostCandidates = 400000;
 constexpr int kCandidatesPerPlace = 24;
+constexpr double kBorderSpacing = 0.125;  // of r, between candidates on borders
+constexpr double kOnBorder = 0.02;        // of r: images on borders may be this far off
 
 // Samples in cells as wide as the largest disc.
 class DiscGrid {
@@ -81,6 +85,8 @@ class DiscGrid {
 struct Candidate {
   Vector3d position;
   int face;
+  int set;
+  bool border;
   int rank;  // drawn earlier: features, then points of many places, whose samples serve their surroundings too
 };
 
@@ -88,13 +94,22 @@ void append(std::vector<Candidate>& candidates, const SurfaceSamples& samples, c
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const int face = samples.faces[static_cast<std::size_t>(i)];
     const int places = static_cast<int>(regions.regions_of_face(face).size());
-    candidates.push_back({samples.points.row(i).transpose(), face, 2 * places + (first ? 1 : 0)});
+    candidates.push_back(
+        {samples.points.row(i).transpose(), face, regions.set_of_face(face), false, 2 * places + (first ? 1 : 0)});
+  }
+}
+
+// Those on borders come before all from the borders' sides, since they lie in more places.
+void append(std::vector<Candidate>& candidates, const std::vector<BorderPoint>& points, const RegionMap& regions) {
+  for (const BorderPoint& point : points) {
+    const int places = static_cast<int>(regions.set_places(point.set).size());
+    candidates.push_back({point.position, point.face, point.set, true, 2 * places + 1});
   }
 }
 
 // In the order in which they are drawn.
-std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& regions, const SamplingOptions& options,
-                                       double least_radius, const RunContext& context) {
+std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& regions, const AbuttingPlaces& borders,
+                                       const SamplingOptions& options, double least_radius, const RunContext& context) {
   Random random(context.seed, "symmetric sampling");
   const Eigen::VectorXd areas = face_areas(mesh);
   const double discs = areas.sum() / (std::numbers::pi / 4 * least_radius * least_radius);
@@ -118,6 +133,7 @@ std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& region
   for (const std::vector<int>& faces : missed) {
     if (!faces.empty()) append(candidates, sample_surface(mesh, kCandidatesPerPlace, random, faces), regions, false);
   }
+  if (!borders.empty()) append(candidates, borders.points(kBorderSpacing * least_radius), regions);
   for (std::size_t i = candidates.size(); i > 1; --i) std::swap(candidates[i - 1], candidates[random.below(i)]);
   std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) { return a.rank > b.rank; });
   return candidates;
@@ -206,7 +222,8 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
   const bool field = options.radius_field.size() == mesh.vertices.rows() && options.radius_field.size() > 0;
   const double least = field ? options.radius_field.minCoeff() : options.radius;
   const double largest = field ? options.radius_field.maxCoeff() : options.radius;
-  const std::vector<Candidate> candidates = draw_candidates(mesh, regions, options, least, context);
+  const AbuttingPlaces borders(mesh, regions);
+  const std::vector<Candidate> candidates = draw_candidates(mesh, regions, borders, options, least, context);
 
   SymmetricSampling sampling;
   sampling.radius = options.radius;
@@ -219,18 +236,24 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
   std::size_t done = 0;
   for (const Candidate& candidate : candidates) {
     if (++done % 256 == 0) context.progress("sampling", double(done) / static_cast<double>(candidates.size()));
-    const int set = regions.set_of_face(candidate.face);
+    const int set = candidate.set;
     double radius = options.radius;
     if (field) radius = options.radius_field(mesh.faces.row(candidate.face).transpose()).mean();
     if (grid.covered(candidate.position, set, radius)) continue;
     closure.snap = kCrowded * radius;
     closure.normal = face_normal(mesh, candidate.face);
+    closure.set_at = nullptr;
+    double off_border = kOnBorder * radius;
+    if (candidate.border) {
+      closure.set_at = [&](const Vector3d& image, int carried) { return borders.set_at(image, carried, off_border); };
+    }
     Orbit orbit = orbit_of(candidate.position, set, regions, words, closure);
     if (!orbit.stabilisers.empty()) {
       const Vector3d start = orbit.points.front().position;
       const Vector3d fixed = fixed_point(start, orbit.stabilisers);
       // Motions without a common fixed point nearby crowd the seed by accident; it stays where it is.
       if ((fixed - start).norm() < radius) {
+        off_border += (fixed - start).norm();
         ClosureOptions exact = closure;
         exact.snap = 0;
         exact.normal.setZero();  // between faces, off the surface

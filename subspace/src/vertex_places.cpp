@@ -11,20 +11,6 @@ namespace {
 
 constexpr double kWeld = 1e-9;  // of the diagonal
 
-// The smallest index of a vertex at the same position.
-std::vector<int> welded(const Points& vertices) {
-  const double tolerance = kWeld * diagonal(vertices);
-  std::vector<int> result(static_cast<std::size_t>(vertices.rows()));
-  std::iota(result.begin(), result.end(), 0);
-  if (!(tolerance > 0)) return result;
-  const VertexGrid grid(vertices, tolerance);
-  for (std::size_t v = 0; v < result.size(); ++v) {
-    grid.visit(vertices.row(static_cast<Eigen::Index>(v)).transpose(),
-               [&](int other) { result[v] = std::min(result[v], other); });
-  }
-  return result;
-}
-
 int root(std::vector<int>& parents, int v) {
   while (parents[static_cast<std::size_t>(v)] != v) {
     int& parent = parents[static_cast<std::size_t>(v)];
@@ -76,6 +62,19 @@ std::vector<int> linked(const Mesh& mesh, const std::vector<int>& weld) {
 
 }  // namespace
 
+std::vector<int> welded_vertices(const Points& vertices) {
+  const double tolerance = kWeld * diagonal(vertices);
+  std::vector<int> result(static_cast<std::size_t>(vertices.rows()));
+  std::iota(result.begin(), result.end(), 0);
+  if (!(tolerance > 0)) return result;
+  const VertexGrid grid(vertices, tolerance);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    grid.visit(vertices.row(static_cast<Eigen::Index>(v)).transpose(),
+               [&](int other) { result[v] = std::min(result[v], other); });
+  }
+  return result;
+}
+
 std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions) {
   std::vector<int> sets(static_cast<std::size_t>(mesh.vertices.rows()), 0);
   const auto add = [&](int vertex, int set) {
@@ -86,7 +85,7 @@ std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions) {
     for (const int vertex : mesh.faces.row(face)) add(vertex, regions.set_of_face(static_cast<int>(face)));
   }
   if (regions.places() == 0) return sets;
-  const std::vector<int> weld = welded(mesh.vertices);
+  const std::vector<int> weld = welded_vertices(mesh.vertices);
   bool doubled = false;
   for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
   if (!doubled) return sets;

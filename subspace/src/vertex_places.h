@@ -9,6 +9,9 @@
 
 namespace orbifit {
 
+/// Of each vertex, the smallest index of a vertex at the same position.
+std::vector<int> welded_vertices(const Points& vertices);
+
 /// The set of places of each vertex: those of all faces around it, also of those that share its position and an edge
 /// with them without sharing vertices, as in soups. Parts that merely touch keep places of their own.
 std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions);
