@@ -1,9 +1,10 @@
 #include "border_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <map>
+#include <set>
 #include <utility>
 
 #include "vertex_places.h"
@@ -12,53 +13,68 @@ namespace orbifit {
 
 namespace {
 
-struct Sides {
-  int first = -1, second = -1;  // faces
-  int count = 0;
+// A face's side: its welded ends, ascending.
+struct Side {
+  std::array<int, 2> ends;
+  int face;
 };
+
+// Sides with the same ends follow one another, in the order of the faces.
+std::vector<Side> sorted_sides(const Mesh& mesh, const std::vector<int>& weld) {
+  std::vector<Side> sides;
+  sides.reserve(static_cast<std::size_t>(3 * mesh.faces.rows()));
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (int k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax<int>({weld[static_cast<std::size_t>(mesh.faces(face, k))],
+                                            weld[static_cast<std::size_t>(mesh.faces(face, (k + 1) % 3))]});
+      if (a != b) sides.push_back({{a, b}, static_cast<int>(face)});
+    }
+  }
+  std::ranges::sort(sides,
+                    [](const Side& a, const Side& b) { return a.ends != b.ends ? a.ends < b.ends : a.face < b.face; });
+  return sides;
+}
 
 }  // namespace
 
 AbuttingPlaces::AbuttingPlaces(const Mesh& mesh, const RegionMap& regions) : regions_(regions) {
   if (regions.places() < 2) return;
-  const auto set_of = [&](Eigen::Index face) { return regions.set_of_face(static_cast<int>(face)); };
   const std::vector<int> weld = welded_vertices(mesh.vertices);
-  std::map<std::pair<int, int>, Sides> edges;
+  const std::vector<int> vertex_sets = sets_of_vertices(mesh, regions);
+  // Whether a face or a line there has all places of the vertex; corners are the others.
+  std::vector<char> covered(weld.size(), 0);
+  const auto cover = [&](int vertex, int set) {
+    const auto v = static_cast<std::size_t>(vertex);
+    if (covered[v] == 0 && regions.contains(set, vertex_sets[v])) covered[v] = 1;
+  };
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = weld[static_cast<std::size_t>(mesh.faces(face, k))];
-      const int b = weld[static_cast<std::size_t>(mesh.faces(face, (k + 1) % 3))];
-      if (a == b) continue;
-      Sides& sides = edges[std::minmax(a, b)];
-      (sides.count++ == 0 ? sides.first : sides.second) = static_cast<int>(face);
-    }
+    for (const int vertex : mesh.faces.row(face)) cover(vertex, regions.set_of_face(static_cast<int>(face)));
   }
-  // What is known around each vertex: a corner has places that no face and no line there has together.
-  std::vector<std::vector<int>> around(weld.size());
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    for (const int vertex : mesh.faces.row(face)) around[static_cast<std::size_t>(vertex)].push_back(set_of(face));
-  }
-  for (const auto& [ends, sides] : edges) {
-    if (sides.count != 2 || regions.comparable(set_of(sides.first), set_of(sides.second))) continue;
-    const int set = regions.joined(set_of(sides.first), set_of(sides.second));
-    lines_.push_back(
-        {mesh.vertices.row(ends.first).transpose(), mesh.vertices.row(ends.second).transpose(), sides.first, set});
-    for (const int face : {sides.first, sides.second}) {
+  const std::vector<Side> sides = sorted_sides(mesh, weld);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    const std::array<int, 2> faces{sides[i].face, sides[end - 1].face};
+    const std::array<int, 2> sets{regions.set_of_face(faces[0]), regions.set_of_face(faces[1])};
+    const std::array<int, 2> ends = sides[i].ends;
+    const bool two = end == i + 2;
+    i = end;
+    if (!two || regions.comparable(sets[0], sets[1])) continue;
+    const int set = regions.joined(sets[0], sets[1]);
+    lines_.push_back({mesh.vertices.row(ends[0]).transpose(), mesh.vertices.row(ends[1]).transpose(), faces[0], set});
+    for (const int face : faces) {
       for (const int vertex : mesh.faces.row(face)) {
         const int place = weld[static_cast<std::size_t>(vertex)];
-        if (place == ends.first || place == ends.second) around[static_cast<std::size_t>(vertex)].push_back(set);
+        if (place == ends[0] || place == ends[1]) cover(vertex, set);
       }
     }
   }
-  const std::vector<int> vertex_sets = sets_of_vertices(mesh, regions);
-  std::map<std::pair<int, int>, bool> seen;
+  std::set<std::pair<int, int>> seen;
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
     for (const int vertex : mesh.faces.row(face)) {
       const auto v = static_cast<std::size_t>(vertex);
-      const int set = vertex_sets[v];
-      if (std::ranges::any_of(around[v], [&](int other) { return regions.contains(other, set); })) continue;
-      if (!seen.try_emplace({weld[v], set}, true).second) continue;
-      corners_.push_back({mesh.vertices.row(vertex).transpose(), static_cast<int>(face), set});
+      if (covered[v] != 0 || !seen.emplace(weld[v], vertex_sets[v]).second) continue;
+      corners_.push_back({mesh.vertices.row(vertex).transpose(), static_cast<int>(face), vertex_sets[v]});
     }
   }
   for (const BorderPoint& corner : corners_) sets_.push_back(corner.set);

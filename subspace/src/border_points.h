@@ -25,7 +25,7 @@ class AbuttingPlaces {
 
   bool empty() const { return corners_.empty() && lines_.empty(); }
 
-  /// The corners, then points on the lines at most `spacing` apart, in the order of the mesh's faces.
+  /// The corners, then points on the lines at most `spacing` apart; the same for the same mesh.
   std::vector<BorderPoint> points(double spacing) const;
 
   /// The places around an image, which motions carry `carried` to, of a point on a border: those of a border through

@@ -10,7 +10,10 @@
 namespace orbifit {
 
 /// The displacement field at any points in space, #P by 3: the orbit average is taken anew at each point, without the
-/// baked lift.
+/// baked lift. Symmetric in every place, and continuous, also where one place ends inside another or at one that it
+/// does not overlap, but for the thousandth of a Gaussian at which it is cut, and for borders that a group takes to
+/// where no place ends: there continuity would ask for the border's symmetry around its images, which lie in no such
+/// place, so the field jumps at the border or at its images (docs/architecture.md).
 /// \param sets the places that each point counts to, #P (see RegionMap)
 Points displacement_field(const Subspace& subspace, const SubspaceState& state, const Points& points,
                           const std::vector<int>& sets, const RunContext& context);
