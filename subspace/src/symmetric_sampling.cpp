@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -233,10 +234,12 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
   DiscGrid grid(largest, regions);
   ClosureOptions closure;
   closure.doublet = kDoublet * diagonal(mesh.vertices);
+  std::set<int> unclosed;  // sets of borders
   std::size_t done = 0;
   for (const Candidate& candidate : candidates) {
     if (++done % 256 == 0) context.progress("sampling", double(done) / static_cast<double>(candidates.size()));
     const int set = candidate.set;
+    if (candidate.border && unclosed.contains(set)) continue;
     double radius = options.radius;
     if (field) radius = options.radius_field(mesh.faces.row(candidate.face).transpose()).mean();
     if (grid.covered(candidate.position, set, radius)) continue;
@@ -247,18 +250,26 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
     if (candidate.border) {
       closure.set_at = [&](const Vector3d& image, int carried) { return borders.set_at(image, carried, off_border); };
     }
-    Orbit orbit = orbit_of(candidate.position, set, regions, words, closure);
-    if (!orbit.stabilisers.empty()) {
+    const auto follow = [&] {
+      Orbit orbit = orbit_of(candidate.position, set, regions, words, closure);
+      if (orbit.stabilisers.empty()) return orbit;
       const Vector3d start = orbit.points.front().position;
       const Vector3d fixed = fixed_point(start, orbit.stabilisers);
       // Motions without a common fixed point nearby crowd the seed by accident; it stays where it is.
-      if ((fixed - start).norm() < radius) {
-        off_border += (fixed - start).norm();
-        ClosureOptions exact = closure;
-        exact.snap = 0;
-        exact.normal.setZero();  // between faces, off the surface
-        orbit = orbit_of(fixed, orbit.points.front().set, regions, words, exact);
-      }
+      if (!((fixed - start).norm() < radius)) return orbit;
+      off_border += (fixed - start).norm();
+      ClosureOptions exact = closure;
+      exact.snap = 0;
+      exact.normal.setZero();  // between faces, off the surface
+      return orbit_of(fixed, orbit.points.front().set, regions, words, exact);
+    };
+    Orbit orbit;
+    try {
+      orbit = follow();
+    } catch (const InputError&) {  // groups that close on either side of a border need not do so on it
+      if (!candidate.border) throw;
+      unclosed.insert(set);
+      continue;
     }
     const std::size_t before = points.size();
     append(sampling, orbit, regions, radius, points, radii);
