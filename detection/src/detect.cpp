@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "orbifit/detection/axis_regions.h"
 #include "orbifit/detection/candidates.h"
 #include "orbifit/detection/completion.h"
 #include "orbifit/detection/components.h"
@@ -18,9 +19,11 @@
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/part_regions.h"
 #include "orbifit/detection/patterns.h"
+#include "orbifit/detection/plane_regions.h"
 #include "orbifit/detection/revolution_regions.h"
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/surface_patch.h"
+#include "orbifit/detection/symmetry_lines.h"
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/errors.h"
 
@@ -32,8 +35,11 @@ using Eigen::Vector3d;
 
 constexpr double kLeastShare = 0.002;  // of the mesh's area: smaller regions and patterns say little
 constexpr std::size_t kMostRegions = 300;
-constexpr double kLeastNoise = 3e-4;  // of the diagonal
+constexpr double kLeastNoise = 3e-4;     // of the diagonal
+constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
+constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
 constexpr int kScreenDirections = 2500;
+constexpr int kScreenSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
 /// One run of the detector on a normalised mesh.
@@ -118,17 +124,51 @@ class Detector {
     partition.components = smooth_segments(prepared_);
     const std::size_t count = partition.components.faces.size();
     if (count > kMostSegments) return;
-    if (count == prepared_.components.faces.size()) return find_turned(partition);
-    for (FoundRegion& region : find_in_parts(partition, true).regions) {
+    PartRegions parts;
+    if (count != prepared_.components.faces.size()) parts = find_in_parts(partition, true);
+    add_of_pieces(parts.regions);
+    find_turned(partition);
+    if (one_surface()) find_about_lines(partition, parts.survey);
+  }
+
+  // Whether nearly all is one component: where parts are modelled as such, they and their pieces say all there is.
+  bool one_surface() const {
+    constexpr double kNearlyAll = 0.8;  // of the area
+    return std::ranges::any_of(prepared_.components.faces, [&](const std::vector<int>& faces) {
+      return area_of(faces) > kNearlyAll * prepared_.area;
+    });
+  }
+
+  void add_of_pieces(std::vector<FoundRegion> found) {
+    for (FoundRegion& region : found) {
       region.of_pieces = true;
       regions_.push_back(std::move(region));
     }
-    find_turned(partition);
   }
 
-  // Turned regions that end within a piece.
-  void find_turned(const PreparedMesh& partition) {
+  // What turns and mirrors into itself about axes and planes that pieces suggest, wherever it ends.
+  void find_about_lines(const PreparedMesh& partition, const ComponentSurvey& survey) {
     if (late()) return;
+    context_.progress("axes", 0);
+    const ScreenedSurface surface(partition, options_.tolerance, kScreenSamples, context_);
+    const SymmetryLines lines = find_symmetry_lines(partition, survey, options_.tolerance);
+    std::vector<Line> axes = axes_of_regions();
+    for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
+    const std::vector<Line> fitted = revolution_axes(partition, options_.tolerance, context_);
+    axes.insert(axes.end(), fitted.begin(), fitted.end());
+    LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }};
+    axes = distinct_lines(axes);
+    const std::vector<Line> turning = turning_axes(surface, axes, context_);
+    add_of_pieces(find_axis_regions(surface, *whole_index_, axes, turning, regions_, options, context_));
+    if (late()) return;
+    options.least_share = kLeastMirrored;
+    std::vector<CandidateLine> planes = mirror_planes(surface, turning, options.least_share, context_);
+    planes.insert(planes.end(), lines.planes.begin(), lines.planes.end());
+    add_of_pieces(find_plane_regions(surface, *whole_index_, planes, turning, regions_, options, context_));
+  }
+
+  // Of regions that turn by a third or less.
+  std::vector<Line> axes_of_regions() const {
     std::vector<Line> axes;
     for (const FoundRegion& region : regions_) {
       const PointGroup& group = region.placement.group;
@@ -137,22 +177,30 @@ class Detector {
                              : group.order() >= 3;
       if (turns) axes.push_back({region.placement.centre, region.placement.frame.col(2)});
     }
-    const std::vector<Line> fitted = revolution_axes(partition, options_.tolerance, context_);
-    axes.insert(axes.end(), fitted.begin(), fitted.end());
+    return axes;
+  }
+
+  std::vector<Line> distinct_lines(const std::vector<Line>& lines) const {
     std::vector<Line> distinct;
-    for (const Line& line : axes) {
+    for (const Line& line : lines) {
       const bool known = std::ranges::any_of(distinct, [&](const Line& other) {
         return line.direction.cross(other.direction).norm() < 0.01 &&
                (line.point - other.point).cross(other.direction).norm() < 0.3 * options_.tolerance;
       });
       if (!known) distinct.push_back(line);
     }
+    return distinct;
+  }
+
+  // Turned regions that end within a piece.
+  void find_turned(const PreparedMesh& partition) {
+    if (late()) return;
+    std::vector<Line> axes = axes_of_regions();
+    const std::vector<Line> fitted = revolution_axes(partition, options_.tolerance, context_);
+    axes.insert(axes.end(), fitted.begin(), fitted.end());
+    const std::vector<Line> distinct = distinct_lines(axes);
     RevolutionRegionOptions turned{options_.tolerance, kLeastShare, options_.explanation, [this] { return late(); }};
-    for (FoundRegion& region :
-         find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_)) {
-      region.of_pieces = true;
-      regions_.push_back(std::move(region));
-    }
+    add_of_pieces(find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_));
   }
 
   // Whether some region's group carries the first member of the class onto each of the others.

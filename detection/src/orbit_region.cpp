@@ -10,6 +10,7 @@
 #include "orbifit/model/topology.h"
 
 #include "creases.h"
+#include "face_points.h"
 
 namespace orbifit {
 
@@ -23,23 +24,6 @@ constexpr int kMostCuts = 8;                        // of each edge
 constexpr double kCreaseReach = 3;                  // tolerances, as in verification
 constexpr double kMostOff = 0.03;                   // of a face's points, off the surface
 constexpr double kMostAstray = 0.5;                 // of a face's points, on faces that are out
-
-// Centroids of the k^2 equal triangles into which k cuts of each edge divide the face.
-void face_points(const PreparedMesh& prepared, int face, double spacing, std::vector<Vector3d>& points) {
-  points.clear();
-  const auto corner = [&](int k) -> Vector3d { return prepared.mesh.vertices.row(prepared.mesh.faces(face, k)); };
-  const Vector3d a = corner(0);
-  const Vector3d u = corner(1) - a;
-  const Vector3d v = corner(2) - a;
-  const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
-  const int cuts = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, static_cast<double>(kMostCuts)));
-  for (int i = 0; i < cuts; ++i) {
-    for (int j = 0; i + j < cuts; ++j) {
-      points.emplace_back(a + ((i + 1.0 / 3) * u + (j + 1.0 / 3) * v) / cuts);
-      if (i + j + 1 < cuts) points.emplace_back(a + ((i + 2.0 / 3) * u + (j + 2.0 / 3) * v) / cuts);
-    }
-  }
-}
 
 /// Asks whether motions keep faces on a surface.
 class OrbitTest {
@@ -56,7 +40,7 @@ class OrbitTest {
   bool stays(const SurfaceIndex& surface, int face, double most_off, std::vector<Vector3d>& points,
              std::vector<int>& images) const {
     images.clear();
-    face_points(prepared_, face, kSpacing * tolerance_, points);
+    face_points(prepared_, face, kSpacing * tolerance_, kMostCuts, points);
     const auto allowed = static_cast<std::size_t>(most_off * static_cast<double>(points.size()));
     const bool kept = std::ranges::all_of(motions_, [&](const Motion& motion) {
       std::size_t off = 0;
@@ -227,7 +211,7 @@ std::vector<int> connected_orbit(const PreparedMesh& prepared, const GroupPlacem
       context.check();
       std::map<int, double> received;  // by piece: the area that falls on it
       for (const int face : pieces.faces[piece]) {
-        face_points(prepared, face, kSpacing * tolerance, points);
+        face_points(prepared, face, kSpacing * tolerance, kMostCuts, points);
         const double share = prepared.areas[face] / static_cast<double>(points.size());
         for (const Vector3d& point : points) {
           const int image = test.image(inside, motion, face, point);

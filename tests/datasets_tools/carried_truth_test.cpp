@@ -20,6 +20,11 @@
 namespace orbifit {
 namespace {
 
+Eigen::Vector3d corner_heights(const Mesh& mesh, int face) {
+  const auto height = [&](int k) { return mesh.vertices(mesh.faces(face, k), 2); };
+  return {height(0), height(1), height(2)};
+}
+
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
@@ -181,7 +186,7 @@ TEST_F(RoundBar, LosesTheImagesOfWhatIsCutAway) {
   ASSERT_FALSE(faces.empty());
   double lowest = 0;
   for (const int face : faces) {
-    lowest = std::min(lowest, rest.mesh.vertices(rest.mesh.faces.row(face), 2).minCoeff());
+    lowest = std::min(lowest, corner_heights(rest.mesh, face).minCoeff());
   }
   EXPECT_GT(lowest, -2.3);
   EXPECT_LT(lowest, -1.8);
@@ -297,7 +302,7 @@ TEST(CarriedTruth, KeepsOfAPatternWhatAllInstancesShow) {
     EXPECT_NEAR(area_of(remeshed.mesh, instance.faces), 4 * 2.3 + 1, 0.4);
     double lowest = 3;
     for (const int face : instance.faces) {
-      lowest = std::min(lowest, remeshed.mesh.vertices(remeshed.mesh.faces.row(face), 2).maxCoeff());
+      lowest = std::min(lowest, corner_heights(remeshed.mesh, face).maxCoeff());
     }
     EXPECT_GT(lowest, 0.55);
   }

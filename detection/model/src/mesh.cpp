@@ -46,7 +46,9 @@ Eigen::VectorXd face_areas(const Mesh& mesh) {
 Points face_centroids(const Mesh& mesh) {
   Points result(mesh.faces.rows(), 3);
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    result.row(f) = mesh.vertices(mesh.faces.row(f).transpose(), Eigen::all).colwise().mean();
+    result.row(f) = (mesh.vertices.row(mesh.faces(f, 0)) + mesh.vertices.row(mesh.faces(f, 1)) +
+                     mesh.vertices.row(mesh.faces(f, 2))) /
+                    3;
   }
   return result;
 }

@@ -1,0 +1,165 @@
+#include "axial_groups.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "orbifit/detection/verification.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+constexpr int kMostAngles = 200;
+constexpr int kMostHeights = 800;
+constexpr std::size_t kLooks = 160;  // samples that judge an angle or a height
+constexpr std::size_t kAngles = 2;
+constexpr std::size_t kHeights = 2;
+
+class Search {
+ public:
+  Search(const ScreenedSurface& surface, const Line& axis, int n, const std::vector<int>& samples, double least_share)
+      : surface_(surface),
+        n_(n),
+        samples_(samples),
+        least_(least_share * static_cast<double>(surface.samples.faces.size())),
+        frame_(frame_about(axis.direction)),
+        foot_(axis.point) {
+    for (const int i : samples) {
+      const Vector3d from = surface.samples.points.row(i).transpose() - foot_;
+      const double height = from.dot(frame_.col(2));
+      low_ = std::min(low_, height);
+      high_ = std::max(high_, height);
+      reach_ = std::max(reach_, (from - height * frame_.col(2)).norm());
+    }
+  }
+
+  std::vector<AxialGroup> run() {
+    if (static_cast<double>(samples_.size()) < least_) return {};
+    // Mirrors whose planes hold the axis: their angles repeat after half of 1/n of a turn.
+    const double period = std::numbers::pi / n_;
+    const std::vector<double> angles =
+        best(0, period, true, surface_.tolerance / std::max(reach_, 1e-9), kMostAngles, kAngles,
+             [&](double angle) { return Motion::about(mirror(across(angle)), foot_); });
+    std::vector<GroupPlacement> placements;
+    for (const double angle : angles) placements.push_back({{Family::Cnv, n_}, frame(across(angle)), foot_});
+    const Matrix3d flip = mirror(frame_.col(2));
+    for (const double height : heights(flip)) {
+      const Vector3d middle = foot_ + height * frame_.col(2);
+      placements.push_back({{Family::Cnh, n_}, frame_, middle});
+      for (const double angle : angles) placements.push_back({{Family::Dnh, n_}, frame(along(angle)), middle});
+    }
+    const Matrix3d improper = flip * axis_rotation(frame_.col(2), period);
+    for (const double height : heights(improper)) {
+      const Vector3d middle = foot_ + height * frame_.col(2);
+      for (const double angle : angles) {
+        placements.push_back({{Family::Dnd, n_}, frame(along(angle + 0.5 * period)), middle});
+      }
+    }
+    std::vector<AxialGroup> result;
+    for (const GroupPlacement& placement : placements) {
+      const int kept = kept_by(judged_motions(placement.group, placement.frame, placement.centre));
+      if (kept >= least_) result.push_back({placement, kept});
+    }
+    std::ranges::stable_sort(result, [](const AxialGroup& a, const AxialGroup& b) {
+      const int order_a = a.placement.group.order();
+      const int order_b = b.placement.group.order();
+      return order_a != order_b ? order_a > order_b : a.kept > b.kept;
+    });
+    return result;
+  }
+
+  // Places on the axis across which samples are mirrored.
+  std::vector<Vector3d> middles() const {
+    std::vector<Vector3d> result;
+    if (static_cast<double>(samples_.size()) < least_) return result;
+    for (const double height : heights(mirror(frame_.col(2)))) result.emplace_back(foot_ + height * frame_.col(2));
+    return result;
+  }
+
+ private:
+  static Matrix3d mirror(const Vector3d& normal) { return Matrix3d::Identity() - 2 * normal * normal.transpose(); }
+
+  Vector3d along(double angle) const { return std::cos(angle) * frame_.col(0) + std::sin(angle) * frame_.col(1); }
+  Vector3d across(double angle) const { return along(angle + 0.5 * std::numbers::pi); }
+  GroupFrame frame(const Vector3d& first) const { return frame_about(frame_.col(2), first); }
+
+  std::vector<double> heights(const Matrix3d& linear) const {
+    return best(low_, high_, false, surface_.tolerance, kMostHeights, kHeights,
+                [&](double height) { return Motion::about(linear, foot_ + height * frame_.col(2)); });
+  }
+
+  bool holds(int i, const Motion& motion) const {
+    const Vector3d normal = surface_.samples.normals.row(i);
+    return surface_.grid.holds(motion(Vector3d(surface_.samples.points.row(i))), motion.linear * normal);
+  }
+
+  int kept_by(const std::vector<Motion>& motions) const {
+    return static_cast<int>(std::ranges::count_if(samples_, [&](int i) {
+      return std::ranges::all_of(motions, [&](const Motion& motion) { return holds(i, motion); });
+    }));
+  }
+
+  // Parameters at which most samples are kept, the best first, none next to a better one.
+  template <typename MotionAt>
+  std::vector<double> best(double from, double to, bool periodic, double step, int most_steps, std::size_t most,
+                           const MotionAt& motion_at) const {
+    const int steps = std::clamp(static_cast<int>(std::ceil((to - from) / step)), 4, most_steps);
+    const std::size_t looks = std::min(samples_.size(), kLooks);
+    std::vector<int> counts;
+    for (int k = 0; k < steps; ++k) {
+      const Motion motion = motion_at(from + (to - from) * k / steps);
+      int count = 0;
+      for (std::size_t i = 0; i < looks; ++i) count += holds(samples_[i * samples_.size() / looks], motion) ? 1 : 0;
+      counts.push_back(count);
+    }
+    const auto at = [&](int k) {
+      if (periodic) return counts[static_cast<std::size_t>((k + steps) % steps)];
+      return k < 0 || k >= steps ? 0 : counts[static_cast<std::size_t>(k)];
+    };
+    const double least = 0.7 * least_ * static_cast<double>(looks) / static_cast<double>(samples_.size());
+    std::vector<std::pair<int, double>> peaks;
+    for (int k = 0; k < steps; ++k) {
+      if (at(k) < least || at(k) < at(k - 1) || at(k) <= at(k + 1)) continue;
+      int first = k;  // of a plateau its middle
+      while (k - first < steps && at(first - 1) == at(k)) --first;
+      peaks.emplace_back(at(k), from + (to - from) * 0.5 * (first + k) / steps);
+    }
+    std::ranges::stable_sort(peaks, std::greater<>(), &std::pair<int, double>::first);
+    std::vector<double> result;
+    for (const auto& [count, value] : peaks) {
+      if (result.size() < most) result.push_back(value);
+    }
+    return result;
+  }
+
+  const ScreenedSurface& surface_;
+  int n_;
+  const std::vector<int>& samples_;
+  double least_;
+  GroupFrame frame_;
+  Vector3d foot_;
+  double low_ = 1e9, high_ = -1e9, reach_ = 0;
+};
+
+}  // namespace
+
+std::vector<AxialGroup> larger_groups(const ScreenedSurface& surface, const Line& axis, int n,
+                                      const std::vector<int>& samples, double least_share) {
+  return Search(surface, axis, n, samples, least_share).run();
+}
+
+std::vector<GroupPlacement> groups_with_middle(const ScreenedSurface& surface, const Line& axis,
+                                               const std::vector<int>& samples, double least_share) {
+  std::vector<GroupPlacement> result;
+  for (const Vector3d& middle : Search(surface, axis, 1, samples, least_share).middles()) {
+    result.push_back({{Family::Dinfh, 1}, frame_about(axis.direction), middle});
+  }
+  return result;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,298 @@
+#include "orbifit/detection/axis_regions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "orbifit/detection/verification.h"
+
+#include "axial_groups.h"
+#include "line_region_search.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+constexpr int kHighestOrder = 72;
+constexpr std::array<int, 20> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71};
+constexpr int kIrrational = 11;   // rotations that stand for all
+constexpr double kSlides = 0.2;   // sine of the angle between a normal and the axis's half-plane
+constexpr double kLeastStep = 5;  // tolerances: shorter steps are not told from none
+constexpr double kOnAxis = 2;     // tolerances: what lies nearer turns with everything
+constexpr double kWholePiece = 0.9;
+constexpr double kFlatPiece = 0.7;  // of a flat piece that must turn for any of it to speak
+constexpr double kTurnedPiece = 0.1;
+
+/// What turns about one axis, by samples.
+class Turns {
+ public:
+  Turns(const ScreenedSurface& surface, const Line& axis) : surface_(surface), axis_(axis) {
+    const Eigen::Index count = surface.samples.points.rows();
+    turned_of_piece_.resize(surface.piece_areas.size(), 0);
+    samples_of_piece_.resize(surface.piece_areas.size(), 0);
+    const std::vector<Motion> all = rotations_by(irrational_turns());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto piece = static_cast<std::size_t>(surface.piece_of_sample[static_cast<std::size_t>(i)]);
+      ++samples_of_piece_[piece];
+      const Vector3d from = surface.samples.points.row(i).transpose() - axis.point;
+      const Vector3d around = axis.direction.cross(from);
+      const double radius = around.norm();
+      if (radius < kOnAxis * surface.tolerance) continue;
+      const bool slides = std::abs(around.dot(surface.samples.normals.row(i))) <= kSlides * radius;
+      if (slides && holds(i, all)) {
+        ++turned_of_piece_[piece];
+        if (surface.piece_flat[piece] == 0) turned_.push_back(static_cast<int>(i));
+        continue;
+      }
+      open_.push_back({static_cast<int>(i), radius, slides});
+    }
+  }
+
+  // Samples that the rotation by 1/n of a turn and its powers keep, among some that those by 1/m do, m a divisor.
+  std::vector<std::size_t> kept(const std::vector<std::size_t>& among, int n, int m) const {
+    std::vector<double> turns;
+    for (int k = 1; k < n; ++k) {
+      if (k % (n / m) != 0) turns.push_back(static_cast<double>(k) / n);
+    }
+    const std::vector<Motion> motions = rotations_by(turns);
+    std::vector<std::size_t> result;
+    for (const std::size_t i : among) {
+      if (2 * std::numbers::pi * open_[i].radius / n < kLeastStep * surface_.tolerance) continue;
+      if (holds(open_[i].sample, motions)) result.push_back(i);
+    }
+    return result;
+  }
+
+  const Line& axis() const { return axis_; }
+
+  // Samples that all rotations keep, without those of planes: a disc of a plane is no part of anything.
+  const std::vector<int>& turned() const { return turned_; }
+
+  std::vector<std::size_t> all() const {
+    std::vector<std::size_t> result(open_.size());
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = i;
+    return result;
+  }
+
+  // The share of the surface that speaks for a rotation which keeps `kept`, without the samples marked.
+  double evidence(const std::vector<std::size_t>& kept, const std::vector<char>& explained) const {
+    const auto count = std::ranges::count_if(
+        speaking(kept), [&](std::size_t i) { return explained[static_cast<std::size_t>(open_[i].sample)] == 0; });
+    return static_cast<double>(count) / static_cast<double>(surface_.samples.points.rows());
+  }
+
+  std::vector<int> samples(const std::vector<std::size_t>& of) const {
+    std::vector<int> result;
+    for (const std::size_t i : of) result.push_back(open_[i].sample);
+    return result;
+  }
+
+  // Those that speak for an order, see evidence().
+  std::vector<std::size_t> speaking(const std::vector<std::size_t>& kept) const {
+    std::map<std::size_t, int> of_piece;
+    for (const std::size_t i : kept) ++of_piece[piece_of(i)];
+    std::vector<std::size_t> result;
+    std::ranges::copy_if(kept, std::back_inserter(result), [&](std::size_t i) {
+      const std::size_t piece = piece_of(i);
+      const auto samples = static_cast<double>(samples_of_piece_[piece]);
+      const auto mine = static_cast<double>(of_piece[piece]);
+      if (surface_.piece_flat[piece] != 0 && mine < kFlatPiece * samples) return false;
+      return !open_[i].slides || (mine >= kWholePiece * samples && turned_of_piece_[piece] <= kTurnedPiece * samples);
+    });
+    return result;
+  }
+
+  // Those of them that a group keeps as well.
+  std::vector<std::size_t> kept_by(const std::vector<std::size_t>& among, const GroupPlacement& placement) const {
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    std::vector<std::size_t> result;
+    std::ranges::copy_if(among, std::back_inserter(result),
+                         [&](std::size_t i) { return holds(open_[i].sample, motions); });
+    return result;
+  }
+
+ private:
+  struct Open {
+    int sample;
+    double radius;
+    bool slides;
+  };
+
+  static std::vector<double> irrational_turns() {
+    std::vector<double> turns;
+    for (int k = 1; k <= kIrrational; ++k) turns.push_back(k / std::numbers::phi - std::floor(k / std::numbers::phi));
+    return turns;
+  }
+
+  std::vector<Motion> rotations_by(const std::vector<double>& turns) const {
+    std::vector<Motion> result;
+    for (const double turn : turns) {
+      result.push_back(Motion::rotation(axis_.direction, 2 * std::numbers::pi * turn, axis_.point));
+    }
+    return result;
+  }
+
+  bool holds(Eigen::Index i, const std::vector<Motion>& motions) const {
+    const Vector3d point = surface_.samples.points.row(i);
+    const Vector3d normal = surface_.samples.normals.row(i);
+    return std::ranges::all_of(
+        motions, [&](const Motion& motion) { return surface_.grid.holds(motion(point), motion.linear * normal); });
+  }
+
+  std::size_t piece_of(std::size_t i) const {
+    return static_cast<std::size_t>(surface_.piece_of_sample[static_cast<std::size_t>(open_[i].sample)]);
+  }
+
+  const ScreenedSurface& surface_;
+  Line axis_;
+  std::vector<Open> open_;  // samples off the axis that some rotation may not keep
+  std::vector<int> turned_;
+  std::vector<int> turned_of_piece_, samples_of_piece_;
+};
+
+/// An order that something turns by about an axis.
+struct Order {
+  std::size_t axis;
+  int n;
+  std::vector<std::size_t> kept;  // of the axis's open samples
+  double evidence = 0;
+};
+
+class AxisSearch {
+ public:
+  AxisSearch(const ScreenedSurface& surface, const SurfaceIndex& whole, const std::vector<Line>& axes,
+             const std::vector<Line>& turning, const std::vector<FoundRegion>& known, const LineRegionOptions& options,
+             const RunContext& context)
+      : surface_(surface),
+        axes_(axes),
+        options_(options),
+        context_(context),
+        search_(surface, whole, known, options, context) {
+    for (const Line& axis : turning) search_.add_turning_axis(axis);
+  }
+
+  std::vector<FoundRegion> run() {
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      if (late()) return {};
+      context_.progress("axes", 0.5 * static_cast<double>(a) / static_cast<double>(axes_.size()));
+      turns_.emplace_back(surface_, axes_[a]);
+      look_for_middle(turns_[a]);
+      climb(a);
+    }
+    // High orders first: what they explain, such as the half-turns of a dihedral group, is not looked at again.
+    std::ranges::stable_sort(orders_, [](const Order& x, const Order& y) {
+      return (x.n > 2) != (y.n > 2) ? x.n > 2 : x.n * x.evidence > y.n * y.evidence;
+    });
+    for (std::size_t i = 0; i < orders_.size() && !late(); ++i) {
+      context_.progress("axes", 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(orders_.size()));
+      look_at(orders_[i]);
+    }
+    return search_.take();
+  }
+
+ private:
+  bool late() const { return options_.late && options_.late(); }
+
+  void climb(std::size_t axis) {
+    const Turns& turns = turns_[axis];
+    std::map<int, std::vector<std::size_t>> kept;  // by order
+    kept[1] = turns.all();
+    const std::vector<char> none(surface_.samples.faces.size(), 0);
+    for (auto at = kept.begin(); at != kept.end(); ++at) {  // grows ahead of itself
+      const auto& [m, samples] = *at;
+      for (const int p : kPrimes) {
+        const int n = m * p;
+        if (n > kHighestOrder) break;
+        if (kept.contains(n)) continue;
+        std::vector<std::size_t> stay = turns.kept(samples, n, m);
+        const double evidence = turns.evidence(stay, none);
+        if (evidence < options_.least_share) continue;
+        orders_.push_back({axis, n, stay, evidence});
+        kept.emplace(n, std::move(stay));
+      }
+    }
+  }
+
+  // Of what turns by any angle, what is mirrored across the axis as well.
+  void look_for_middle(const Turns& turns) {
+    constexpr double kLeast = 0.05;         // of the surface
+    constexpr double kLeastOfTurned = 0.4;  // any cylinder by itself has a middle
+    const auto count = static_cast<double>(surface_.samples.faces.size());
+    const double share = std::max(kLeast, kLeastOfTurned * static_cast<double>(turns.turned().size()) / count);
+    if (static_cast<double>(turns.turned().size()) < kLeast * count) return;
+    for (const GroupPlacement& placement : groups_with_middle(surface_, turns.axis(), turns.turned(), share)) {
+      search_.settle("axes", placement, false);
+    }
+  }
+
+  void look_at(const Order& order) {
+    const Turns& turns = turns_[order.axis];
+    const Line& axis = axes_[order.axis];
+    const GroupPlacement turn{{Family::Cn, order.n}, frame_about(axis.direction), axis.point};
+    const double least = order.n > 2 ? options_.least_share : kLeastOfHalfTurns;
+    if (order.evidence < least) return;
+    const auto fresh = [&](const GroupPlacement& placement, const std::vector<std::size_t>& kept) {
+      std::vector<char> explained = search_.explained(placement);
+      // What was tried for a multiple of the order and failed is not tried again.
+      for (const auto& [of, samples] : tried_) {
+        if (of.first != order.axis || of.second % order.n != 0) continue;
+        for (const int sample : samples) explained[static_cast<std::size_t>(sample)] = 1;
+      }
+      return turns.evidence(kept, explained) >= least;
+    };
+    if (!fresh(turn, order.kept)) return;
+    // Half-turns are many; what more there is to theirs, mirrors will say.
+    if (order.n > 2) {
+      const std::vector<std::size_t> spoken = turns.speaking(order.kept);
+      for (const AxialGroup& group : larger_groups(surface_, axis, order.n, turns.samples(spoken), least)) {
+        if (fresh(group.placement, turns.kept_by(order.kept, group.placement))) {
+          search_.settle("axes", group.placement, false);
+        }
+      }
+    }
+    if (fresh(turn, order.kept)) search_.settle("axes", turn, true);
+    tried_.push_back({{order.axis, order.n}, turns.samples(order.kept)});
+  }
+
+  static constexpr double kLeastOfHalfTurns = 0.03;  // of the surface: any few things have one
+
+  const ScreenedSurface& surface_;
+  const std::vector<Line>& axes_;
+  const LineRegionOptions& options_;
+  const RunContext& context_;
+  LineRegionSearch search_;
+  std::vector<Turns> turns_;
+  std::vector<Order> orders_;
+  std::vector<std::pair<std::pair<std::size_t, int>, std::vector<int>>> tried_;  // axis, order, samples
+};
+
+}  // namespace
+
+std::vector<Line> turning_axes(const ScreenedSurface& surface, const std::vector<Line>& axes,
+                               const RunContext& context) {
+  constexpr double kLeast = 0.01;  // of the surface
+  std::vector<Line> result;
+  for (const Line& axis : axes) {
+    context.check();
+    const Turns turns(surface, axis);
+    const auto share = static_cast<double>(turns.turned().size()) / static_cast<double>(surface.samples.faces.size());
+    if (share >= kLeast) result.push_back(axis);
+  }
+  return result;
+}
+
+std::vector<FoundRegion> find_axis_regions(const ScreenedSurface& surface, const SurfaceIndex& whole,
+                                           const std::vector<Line>& axes, const std::vector<Line>& turning,
+                                           const std::vector<FoundRegion>& known, const LineRegionOptions& options,
+                                           const RunContext& context) {
+  return AxisSearch(surface, whole, axes, turning, known, options, context).run();
+}
+
+}  // namespace orbifit

@@ -1,0 +1,27 @@
+#include "face_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orbifit {
+
+void face_points(const PreparedMesh& prepared, int face, double spacing, int most_cuts,
+                 std::vector<Eigen::Vector3d>& points) {
+  points.clear();
+  const auto corner = [&](int k) -> Eigen::Vector3d {
+    return prepared.mesh.vertices.row(prepared.mesh.faces(face, k));
+  };
+  const Eigen::Vector3d a = corner(0);
+  const Eigen::Vector3d u = corner(1) - a;
+  const Eigen::Vector3d v = corner(2) - a;
+  const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+  const int cuts = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, static_cast<double>(most_cuts)));
+  for (int i = 0; i < cuts; ++i) {
+    for (int j = 0; i + j < cuts; ++j) {
+      points.emplace_back(a + ((i + 1.0 / 3) * u + (j + 1.0 / 3) * v) / cuts);
+      if (i + j + 1 < cuts) points.emplace_back(a + ((i + 2.0 / 3) * u + (j + 2.0 / 3) * v) / cuts);
+    }
+  }
+}
+
+}  // namespace orbifit

@@ -1,0 +1,137 @@
+#include "orbifit/detection/grid_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "orbifit/detection/verification.h"
+
+#include "face_points.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFlat = 0.999;        // length of the mean normal of a flat piece
+constexpr double kMostOff = 0.1;       // of a face's points
+constexpr double kMostAstray = 0.5;    // of a face's points, on faces that are out
+constexpr double kMostCut = 0.3;       // of the border of what is taken of a flat piece, within the piece
+constexpr double kNearlyWhole = 0.97;  // of a piece
+constexpr double kSpacing = 4;         // of a face's points, tolerances
+constexpr int kMostCuts = 6;           // of an edge
+
+std::vector<int> with_area(const PreparedMesh& prepared) {
+  std::vector<int> faces;
+  for (Eigen::Index f = 0; f < prepared.mesh.faces.rows(); ++f) {
+    if (prepared.areas[f] > 0) faces.push_back(static_cast<int>(f));
+  }
+  return faces;
+}
+
+std::vector<int> kept_faces(const ScreenedSurface& surface, const SurfaceGrid& grid, const std::vector<int>& faces,
+                            const std::vector<Motion>& motions, double most_off, const RunContext& context) {
+  std::vector<char> kept(faces.size(), 0);
+  parallel_for(context, faces.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<Vector3d> points;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i % 256 == 0) context.check();
+      face_points(surface.prepared, faces[i], kSpacing * surface.tolerance, kMostCuts, points);
+      const Vector3d normal = surface.prepared.normals.row(faces[i]);
+      const auto allowed = static_cast<std::size_t>(most_off * static_cast<double>(points.size()));
+      kept[i] = std::ranges::all_of(motions, [&](const Motion& motion) {
+        const Vector3d turned = motion.linear * normal;
+        std::size_t off = 0;
+        return std::ranges::all_of(
+            points, [&](const Vector3d& point) { return grid.holds(motion(point), turned) || ++off <= allowed; });
+      });
+    }
+  });
+  std::vector<int> result;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (kept[i] != 0) result.push_back(faces[i]);
+  }
+  return result;
+}
+
+// What to take of the pieces.
+std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int>& faces) {
+  const Components& pieces = surface.prepared.components;
+  const auto piece_of = [&](int face) {
+    return static_cast<std::size_t>(pieces.component_of_face[static_cast<std::size_t>(face)]);
+  };
+  std::vector<double> in(pieces.faces.size(), 0);
+  std::vector<char> taken(static_cast<std::size_t>(surface.prepared.mesh.faces.rows()), 0);
+  for (const int f : faces) {
+    in[piece_of(f)] += surface.prepared.areas[f];
+    taken[static_cast<std::size_t>(f)] = 1;
+  }
+  // Of what belongs of flat pieces: the length of its border, and of that within the piece.
+  std::vector<double> border(pieces.faces.size(), 0);
+  std::vector<double> cut(pieces.faces.size(), 0);
+  for (const ScreenedSurface::FlatEdge& edge : surface.flat_edges) {
+    if (taken[static_cast<std::size_t>(edge.face)] == 0) continue;
+    if (edge.other >= 0 && taken[static_cast<std::size_t>(edge.other)] != 0) continue;
+    border[piece_of(edge.face)] += edge.length;
+    if (edge.other >= 0) cut[piece_of(edge.face)] += edge.length;
+  }
+  std::vector<int> result;
+  for (std::size_t piece = 0; piece < pieces.faces.size(); ++piece) {
+    if (in[piece] <= 0) continue;
+    const bool whole = in[piece] >= kNearlyWhole * surface.piece_areas[piece];
+    if (!whole && surface.piece_flat[piece] != 0 && cut[piece] > kMostCut * border[piece]) continue;
+    std::ranges::copy_if(pieces.faces[piece], std::back_inserter(result),
+                         [&](int f) { return whole || taken[static_cast<std::size_t>(f)] != 0; });
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+}  // namespace
+
+ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_tolerance, int sample_count,
+                                 const RunContext& context)
+    : prepared(mesh), tolerance(detector_tolerance), grid(mesh, with_area(mesh), detector_tolerance) {
+  faces = with_area(mesh);
+  Random random(context.seed, "screen");
+  samples = sample_surface(mesh.mesh, sample_count, random, faces);
+  for (const int face : samples.faces) {
+    piece_of_sample.push_back(mesh.components.component_of_face[static_cast<std::size_t>(face)]);
+  }
+  for (const std::vector<int>& piece : mesh.components.faces) {
+    Vector3d sum = Vector3d::Zero();
+    double area = 0;
+    for (const int f : piece) {
+      sum += mesh.areas[f] * mesh.normals.row(f).transpose();
+      area += mesh.areas[f];
+    }
+    piece_areas.push_back(area);
+    piece_flat.push_back(area > 0 && sum.norm() > kFlat * area ? 1 : 0);
+  }
+  for (const Edge& edge : welded_edges(mesh.mesh, mesh.weld)) {
+    const auto end = [&](std::size_t k) -> Vector3d {
+      return mesh.mesh.vertices.row(mesh.weld.representative[static_cast<std::size_t>(edge.vertices[k])]);
+    };
+    for (const int f : edge.faces) {
+      const int piece = mesh.components.component_of_face[static_cast<std::size_t>(f)];
+      if (mesh.areas[f] <= 0 || piece_flat[static_cast<std::size_t>(piece)] == 0) continue;
+      const auto other = std::ranges::find_if(edge.faces, [&](int g) {
+        return g != f && mesh.areas[g] > 0 && mesh.components.component_of_face[static_cast<std::size_t>(g)] == piece;
+      });
+      flat_edges.push_back({f, other == edge.faces.end() ? -1 : *other, (end(1) - end(0)).norm()});
+    }
+  }
+}
+
+std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacement& placement, bool thin_out,
+                             const RunContext& context) {
+  const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+  const std::vector<int> first = kept_faces(surface, surface.grid, surface.faces, motions, kMostOff, context);
+  std::vector<int> result = by_pieces(surface, first);
+  if (!thin_out || result.empty() || result.size() == first.size()) return result;
+  const SurfaceGrid inside(surface.prepared, result, surface.tolerance);
+  return by_pieces(surface, kept_faces(surface, inside, result, motions, kMostAstray, context));
+}
+
+}  // namespace orbifit

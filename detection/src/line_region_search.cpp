@@ -1,0 +1,141 @@
+#include "line_region_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/featureless.h"
+#include "orbifit/detection/own_group.h"
+#include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/verification.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr int kPatchSamples = 1000;
+constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
+
+}  // namespace
+
+LineRegionSearch::LineRegionSearch(const ScreenedSurface& surface, const SurfaceIndex& whole,
+                                   const std::vector<FoundRegion>& known, const LineRegionOptions& options,
+                                   const RunContext& context)
+    : surface_(surface), whole_(whole), known_(known), options_(options), context_(context) {
+  for (const FoundRegion& region : known) said_.push_back(said_of(region));
+}
+
+LineRegionSearch::Said LineRegionSearch::said_of(const FoundRegion& region) const {
+  Said said{surface_moments(surface_.prepared, region.faces), {}};
+  for (const int face : surface_.samples.faces) {
+    said.holds.push_back(std::ranges::binary_search(region.faces, face) ? 1 : 0);
+  }
+  return said;
+}
+
+std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) const {
+  std::vector<char> result(surface_.samples.faces.size(), 0);
+  // Mirrors and half-turns, of which there are many, are to be farther from the known ones to be worth a look.
+  const double near = (placement.group.order() > 2 ? 2 : 5) * surface_.tolerance;
+  for (std::size_t r = 0; r < said_.size(); ++r) {
+    const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
+    const SurfaceMoments& moments = said_[r].moments;
+    if (!contains_group(region.placement, placement, moments.centroid, moments.radius, near)) continue;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] != 0 || said_[r].holds[i] != 0 ? 1 : 0;
+  }
+  for (const TurningAxis& axis : turning_) {
+    if (!leaves(placement, axis.line)) continue;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] != 0 || axis.slides[i] != 0 ? 1 : 0;
+  }
+  return result;
+}
+
+void LineRegionSearch::add_turning_axis(const Line& axis) {
+  constexpr double kSlides = 0.2;  // sine of the angle between a normal and the axis's half-plane
+  TurningAxis turning{axis, {}};
+  for (Eigen::Index i = 0; i < surface_.samples.points.rows(); ++i) {
+    const Eigen::Vector3d around = axis.direction.cross(Eigen::Vector3d(surface_.samples.points.row(i)) - axis.point);
+    const double off = std::abs(around.dot(surface_.samples.normals.row(i)));
+    turning.slides.push_back(off <= kSlides * around.norm() ? 1 : 0);
+  }
+  turning_.push_back(std::move(turning));
+}
+
+// Whether a mirror or half-turn, or a rotation about another line, leaves the axis where it is. What turns about the
+// axis itself is judged by whole pieces.
+bool LineRegionSearch::leaves(const GroupPlacement& placement, const Line& axis) const {
+  constexpr double kAngle = 0.03;  // radians
+  const Eigen::Vector3d line = placement.frame.col(2);
+  const bool mirror = placement.group.family == PointGroup::Family::Cs;
+  const bool along = line.cross(axis.direction).norm() < kAngle;
+  if (!mirror && along) return false;
+  const double far = 2 * surface_.tolerance;
+  return std::ranges::all_of(judged_motions(placement.group, placement.frame, placement.centre), [&](const Motion& g) {
+    return (g.linear * axis.direction).cross(axis.direction).norm() < kAngle &&
+           (g(axis.point) - axis.point).cross(axis.direction).norm() < far;
+  });
+}
+
+void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& start, bool enlarge) {
+  FoundRegion region{start, grid_region(surface_, start, false, context_), 0, "turns or mirrors into itself"};
+  const double least = options_.least_share * surface_.prepared.area;
+  const auto measure = [&] {
+    region.area = 0;
+    for (const int f : region.faces) region.area += surface_.prepared.areas[f];
+    return region.area >= least;
+  };
+  if (!measure()) return note(stage, region, false, "too small");
+  SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
+  region.placement = refine(patch, start);
+  if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
+  std::vector<int> again = grid_region(surface_, region.placement, true, context_);
+  if (again != region.faces) {
+    region.faces = std::move(again);
+    if (!measure()) return note(stage, region, false, "too small once refined");
+    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
+    region.placement = refine(patch, region.placement);
+  }
+  if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
+  if (!holds(region.placement, patch)) return note(stage, region, false, "not verified");
+  std::optional<OwnGroup> own;
+  if (enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
+  if (own && contains_group(own->placement, region.placement, patch.moments.centroid, patch.moments.radius,
+                            2 * patch.tolerance)) {
+    region.placement = own->placement;
+    if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
+  }
+  if (featureless(patch, region.placement, whole_, patch.tolerance, context_)) {
+    return note(stage, region, false, "other motions keep it as well");
+  }
+  note(stage, region, true, "verified");
+  said_.push_back(said_of(region));
+  found_.push_back(std::move(region));
+}
+
+bool LineRegionSearch::holds(const GroupPlacement& placement, const SurfacePatch& patch) const {
+  const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
+  return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
+                       VerificationLimits{}.joint, context_));
+}
+
+bool LineRegionSearch::says_nothing_new(const FoundRegion& region) const {
+  const SurfaceMoments moments = surface_moments(surface_.prepared, region.faces);
+  const double reach = surface_.tolerance * std::min(1.0, 4 * moments.diagonal);
+  const auto says = [&](const FoundRegion& other) {
+    return area_outside(surface_.prepared, region.faces, other.faces) <= kNothingNew * region.area &&
+           contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
+  };
+  return std::ranges::any_of(known_, says) || std::ranges::any_of(found_, says);
+}
+
+void LineRegionSearch::note(std::string_view stage, const FoundRegion& region, bool kept,
+                            std::string_view reason) const {
+  if (options_.explanation == nullptr) return;
+  options_.explanation->notes.push_back(
+      {std::string(stage), region.placement.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces",
+       kept, std::string(reason)});
+}
+
+}  // namespace orbifit

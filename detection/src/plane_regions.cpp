@@ -1,0 +1,184 @@
+#include "orbifit/detection/plane_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "line_region_search.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+constexpr double kSlides = 0.2;  // sine of the angle between a normal and the mirror plane
+constexpr Eigen::Index kVoters = 700;
+constexpr double kNormals = 0.15;  // by how much mirrored normals may differ
+constexpr Eigen::Index kFirstLook = 64;
+constexpr Eigen::Index kSecondLook = 400;
+constexpr std::size_t kMostFound = 400;
+constexpr std::size_t kMostClimbed = 100;
+constexpr std::size_t kMostPlanes = 24;
+constexpr double kSameDirection = 0.03;  // radians
+constexpr double kSamePlace = 1.5;       // tolerances
+
+/// The share of some samples that speak for a mirror.
+class Mirrored {
+ public:
+  explicit Mirrored(const ScreenedSurface& surface) : surface_(surface) {}
+
+  bool keeps(Eigen::Index i, const Line& plane, bool& slides) const {
+    const Vector3d point = surface_.samples.points.row(i);
+    const Vector3d normal = surface_.samples.normals.row(i);
+    const double across = plane.direction.dot(normal);
+    slides = std::abs(across) <= kSlides;
+    const Vector3d image = point - 2 * plane.direction.dot(point - plane.point) * plane.direction;
+    return surface_.grid.holds(image, normal - 2 * across * plane.direction);
+  }
+
+  // Spread evenly over the samples; gives up where the share cannot be reached any more.
+  double share(const Line& plane, Eigen::Index looks, double least) const {
+    const Eigen::Index count = surface_.samples.points.rows();
+    looks = std::min(looks, count);
+    Eigen::Index kept = 0;
+    for (Eigen::Index k = 0; k < looks; ++k) {
+      bool slides = false;
+      if (keeps(k * count / looks, plane, slides) && !slides) ++kept;
+      if (static_cast<double>(kept + looks - k - 1) < least * static_cast<double>(looks)) return 0;
+    }
+    return static_cast<double>(kept) / static_cast<double>(looks);
+  }
+
+  // How many of some samples the mirror keeps, whether they speak for it or not.
+  int kept(const Line& plane, Eigen::Index looks) const {
+    const Eigen::Index count = surface_.samples.points.rows();
+    looks = std::min(looks, count);
+    int result = 0;
+    for (Eigen::Index k = 0; k < looks; ++k) {
+      bool slides = false;
+      result += keeps(k * count / looks, plane, slides) ? 1 : 0;
+    }
+    return result;
+  }
+
+ private:
+  const ScreenedSurface& surface_;
+};
+
+// Whether the plane holds the axis, about which the surface turns at the point: no news.
+bool holds(const Line& plane, const Line& axis, const Vector3d& normal, const Vector3d& point, double tolerance) {
+  constexpr double kAngle = 0.03;  // radians
+  if (std::abs(plane.direction.dot(axis.direction)) > kAngle) return false;
+  if (std::abs(plane.direction.dot(axis.point - plane.point)) > 2 * tolerance) return false;
+  const Vector3d around = axis.direction.cross(point - axis.point);
+  return std::abs(around.dot(normal)) <= kSlides * around.norm();
+}
+
+// Tilts and shifts the plane a little wherever that keeps more of the samples, by smaller and smaller steps.
+Line climbed(const Mirrored& mirrored, Line plane, double tolerance) {
+  int best = mirrored.kept(plane, kSecondLook);
+  for (double step = 3 * tolerance; step >= 0.4 * tolerance; step *= 0.5) {
+    for (bool better = true; better;) {
+      better = false;
+      const GroupFrame frame = frame_about(plane.direction);
+      for (const Vector3d& way : {Vector3d(0, 0, step), Vector3d(0, 0, -step), Vector3d(2 * step, 0, 0),
+                                  Vector3d(-2 * step, 0, 0), Vector3d(0, 2 * step, 0), Vector3d(0, -2 * step, 0)}) {
+        const Vector3d direction = (frame * Vector3d(way[0], way[1], 1)).normalized();
+        const Line next{plane.point + way[2] * plane.direction, direction};
+        const int kept = mirrored.kept(next, kSecondLook);
+        if (kept <= best) continue;
+        best = kept;
+        plane = next;
+        better = true;
+        break;
+      }
+    }
+  }
+  return plane;
+}
+
+bool same_plane(const Line& a, const Line& b, double tolerance) {
+  return a.direction.cross(b.direction).norm() < kSameDirection &&
+         std::abs((a.point - b.point).dot(b.direction)) < kSamePlace * tolerance;
+}
+
+}  // namespace
+
+std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const std::vector<Line>& turning,
+                                         double least_share, const RunContext& context) {
+  const Eigen::Index count = surface.samples.points.rows();
+  const Eigen::Index voters = std::min(kVoters, count);
+  const Mirrored mirrored(surface);
+  std::vector<CandidateLine> found;
+  for (Eigen::Index a = 0; a < voters; ++a) {
+    context.check();
+    const Vector3d p = surface.samples.points.row(a * count / voters);
+    const Vector3d m = surface.samples.normals.row(a * count / voters);
+    for (Eigen::Index b = a + 1; b < voters; ++b) {
+      const Vector3d apart = surface.samples.points.row(b * count / voters).transpose() - p;
+      const double distance = apart.norm();
+      if (distance < 10 * surface.tolerance) continue;
+      const Vector3d normal = apart / distance;
+      const double across = normal.dot(m);
+      if (std::abs(across) <= kSlides) continue;
+      const Vector3d other = surface.samples.normals.row(b * count / voters);
+      if ((m - 2 * across * normal - other).squaredNorm() > kNormals * kNormals) continue;
+      const Line plane{p + 0.5 * apart, normal};
+      if (std::ranges::any_of(turning, [&](const Line& axis) { return holds(plane, axis, m, p, surface.tolerance); })) {
+        continue;
+      }
+      if (mirrored.share(plane, kFirstLook, least_share) <= 0) continue;
+      if (found.size() >= kMostFound || std::ranges::any_of(found, [&](const CandidateLine& known) {
+            return same_plane(plane, known.line, surface.tolerance);
+          })) {
+        continue;
+      }
+      const double share = mirrored.share(plane, kSecondLook, least_share);
+      if (share >= least_share) found.push_back({plane, share * surface.prepared.area});
+    }
+  }
+  std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
+  if (found.size() > kMostClimbed) found.resize(kMostClimbed);
+  for (CandidateLine& plane : found) {
+    plane.line = climbed(mirrored, plane.line, surface.tolerance);
+    plane.weight = mirrored.share(plane.line, kSecondLook, 0) * surface.prepared.area;
+  }
+  std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
+  std::vector<CandidateLine> distinct;
+  for (const CandidateLine& plane : found) {
+    if (distinct.size() >= kMostPlanes) break;
+    const bool known = std::ranges::any_of(distinct, [&](const CandidateLine& other) {
+      return same_plane(plane.line, other.line, 2 * surface.tolerance);
+    });
+    if (!known) distinct.push_back(plane);
+  }
+  return distinct;
+}
+
+std::vector<FoundRegion> find_plane_regions(const ScreenedSurface& surface, const SurfaceIndex& whole,
+                                            const std::vector<CandidateLine>& planes, const std::vector<Line>& turning,
+                                            const std::vector<FoundRegion>& known, const LineRegionOptions& options,
+                                            const RunContext& context) {
+  LineRegionSearch search(surface, whole, known, options, context);
+  for (const Line& axis : turning) search.add_turning_axis(axis);
+  const Mirrored mirrored(surface);
+  const Eigen::Index count = surface.samples.points.rows();
+  for (std::size_t k = 0; k < planes.size() && !(options.late && options.late()); ++k) {
+    context.progress("planes", static_cast<double>(k) / static_cast<double>(planes.size()));
+    const Line& plane = planes[k].line;
+    const GroupPlacement mirror{{Family::Cs, 1}, frame_about(plane.direction), plane.point};
+    const std::vector<char> explained = search.explained(mirror);
+    Eigen::Index evidence = 0;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      bool slides = false;
+      if (explained[static_cast<std::size_t>(i)] == 0 && mirrored.keeps(i, plane, slides) && !slides) ++evidence;
+    }
+    if (static_cast<double>(evidence) < options.least_share * static_cast<double>(count)) continue;
+    search.settle("planes", mirror, true);
+  }
+  return search.take();
+}
+
+}  // namespace orbifit
