@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Geometry>
 
@@ -87,6 +88,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     return region.area >= least;
   };
   if (!measure()) return note(stage, region, false, "too small");
+  if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
   region.placement = refine(patch, start);
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
@@ -97,6 +99,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
     region.placement = refine(patch, region.placement);
   }
+  if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
   if (!holds(region.placement, patch)) return note(stage, region, false, "not verified");
   std::optional<OwnGroup> own;
@@ -112,6 +115,20 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   note(stage, region, true, "verified");
   said_.push_back(said_of(region));
   found_.push_back(std::move(region));
+}
+
+// Whether the faces lie in a few planes only: any two plates are mirror images, and so are two walls with floor and
+// ceiling.
+bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
+  constexpr std::size_t kMany = 5;
+  std::set<int> pieces;
+  for (const int f : faces) {
+    const int piece = surface_.prepared.components.component_of_face[static_cast<std::size_t>(f)];
+    if (surface_.piece_flat[static_cast<std::size_t>(piece)] == 0) return false;
+    pieces.insert(piece);
+    if (pieces.size() >= kMany) return false;
+  }
+  return true;
 }
 
 bool LineRegionSearch::holds(const GroupPlacement& placement, const SurfacePatch& patch) const {

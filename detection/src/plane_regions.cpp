@@ -13,7 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kSlides = 0.2;  // sine of the angle between a normal and the mirror plane
+constexpr double kSlides = 0.2;          // sine of the angle between a normal and the mirror plane
+constexpr double kLeastSpeaking = 0.05;  // of what a mirror keeps: else the mirror may be anywhere
 constexpr Eigen::Index kVoters = 700;
 constexpr double kNormals = 0.15;  // by how much mirrored normals may differ
 constexpr Eigen::Index kFirstLook = 64;
@@ -171,11 +172,18 @@ std::vector<FoundRegion> find_plane_regions(const ScreenedSurface& surface, cons
     const GroupPlacement mirror{{Family::Cs, 1}, frame_about(plane.direction), plane.point};
     const std::vector<char> explained = search.explained(mirror);
     Eigen::Index evidence = 0;
+    Eigen::Index speaking = 0;
+    Eigen::Index kept = 0;
     for (Eigen::Index i = 0; i < count; ++i) {
       bool slides = false;
-      if (explained[static_cast<std::size_t>(i)] == 0 && mirrored.keeps(i, plane, slides) && !slides) ++evidence;
+      if (!mirrored.keeps(i, plane, slides)) continue;
+      ++kept;
+      if (slides) continue;
+      ++speaking;
+      if (explained[static_cast<std::size_t>(i)] == 0) ++evidence;
     }
     if (static_cast<double>(evidence) < options.least_share * static_cast<double>(count)) continue;
+    if (static_cast<double>(speaking) < kLeastSpeaking * static_cast<double>(kept)) continue;
     search.settle("planes", mirror, true);
   }
   return search.take();

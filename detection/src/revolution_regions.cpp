@@ -80,11 +80,6 @@ double planarity(const PreparedMesh& prepared, const std::vector<int>& faces) {
   return area > 0 ? sum.norm() / area : 0;
 }
 
-bool same_axis(const Line& a, const Line& b, double tolerance) {
-  return a.direction.cross(b.direction).norm() < 0.02 &&
-         (b.point - a.point).cross(a.direction).norm() < 0.5 * tolerance;
-}
-
 class Search {
  public:
   Search(const PreparedMesh& prepared, const SurfaceIndex& whole, const std::vector<FoundRegion>& known,
@@ -98,28 +93,15 @@ class Search {
     }
   }
 
-  void look_at(const Line& start) {
-    Line axis = start;
-    const auto turned_about = [&] {
-      const GroupPlacement turn{{Family::Cinf, 1}, frame_about(axis.direction), axis.point};
-      FoundRegion region{turn, faces_about(axis), 0, "turned about an axis"};
-      for (const int f : region.faces) region.area += prepared_.areas[f];
-      return region;
-    };
-    FoundRegion region = turned_about();
-    const double least = options_.least_share * prepared_.area;
-    if (region.area < least || says_nothing_new(region)) return;
-    const auto patch_of = [&] {
-      return make_patch(prepared_, region.faces, kPatchSamples, options_.tolerance, context_, "turned");
-    };
-    SurfacePatch patch = patch_of();
-    const GroupPlacement better = refine(patch, region.placement);
-    axis = {better.centre, better.frame.col(2)};
-    if (!same_axis(axis, start, 0.1 * options_.tolerance)) {
-      region = turned_about();
-      if (region.area < least || says_nothing_new(region)) return;
-      patch = patch_of();
-    }
+  void look_at(const Line& axis) {
+    const std::vector<int> faces = faces_about(axis);
+    double area = 0;
+    for (const int f : faces) area += prepared_.areas[f];
+    if (area < options_.least_share * prepared_.area) return;
+    const GroupPlacement turn{{Family::Cinf, 1}, frame_about(axis.direction), axis.point};
+    FoundRegion region{turn, faces, area, "turned about an axis"};
+    if (says_nothing_new(region)) return;
+    const SurfacePatch patch = make_patch(prepared_, faces, kPatchSamples, options_.tolerance, context_, "turned");
     if (!continuous_about(patch, axis.direction, axis.point)) {
       return note(region, false, "does not turn into itself closely enough");
     }
@@ -224,6 +206,11 @@ Oriented oriented_points(const PreparedMesh& prepared, const std::vector<int>& f
     result.weights[row] = prepared.areas[f];
   }
   return result;
+}
+
+bool same_axis(const Line& a, const Line& b, double tolerance) {
+  return a.direction.cross(b.direction).norm() < 0.02 &&
+         (b.point - a.point).cross(a.direction).norm() < 0.5 * tolerance;
 }
 
 }  // namespace
