@@ -73,6 +73,14 @@ class Search {
     return result;
   }
 
+  // Places on the axis across which samples are mirrored.
+  std::vector<Vector3d> middles() const {
+    std::vector<Vector3d> result;
+    if (static_cast<double>(samples_.size()) < least_) return result;
+    for (const double height : heights(mirror(frame_.col(2)))) result.emplace_back(foot_ + height * frame_.col(2));
+    return result;
+  }
+
  private:
   static Matrix3d mirror(const Vector3d& normal) { return Matrix3d::Identity() - 2 * normal * normal.transpose(); }
 
@@ -143,6 +151,15 @@ class Search {
 std::vector<AxialGroup> larger_groups(const ScreenedSurface& surface, const Line& axis, int n,
                                       const std::vector<int>& samples, double least_share) {
   return Search(surface, axis, n, samples, least_share).run();
+}
+
+std::vector<GroupPlacement> groups_with_middle(const ScreenedSurface& surface, const Line& axis,
+                                               const std::vector<int>& samples, double least_share) {
+  std::vector<GroupPlacement> result;
+  for (const Vector3d& middle : Search(surface, axis, 1, samples, least_share).middles()) {
+    result.push_back({{Family::Dinfh, 1}, frame_about(axis.direction), middle});
+  }
+  return result;
 }
 
 }  // namespace orbifit

@@ -21,4 +21,9 @@ struct AxialGroup {
 std::vector<AxialGroup> larger_groups(const ScreenedSurface& surface, const Line& axis, int n,
                                       const std::vector<int>& samples, double least_share);
 
+/// Dinfh at the heights across which most of some samples are mirrored.
+/// \param samples those that all rotations about the axis keep \param least_share of all the surface's samples
+std::vector<GroupPlacement> groups_with_middle(const ScreenedSurface& surface, const Line& axis,
+                                               const std::vector<int>& samples, double least_share);
+
 }  // namespace orbifit

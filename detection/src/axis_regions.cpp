@@ -70,6 +70,8 @@ class Turns {
     return result;
   }
 
+  const Line& axis() const { return axis_; }
+
   // Samples that all rotations keep, without those of planes: a disc of a plane is no part of anything.
   const std::vector<int>& turned() const { return turned_; }
 
@@ -181,6 +183,7 @@ class AxisSearch {
       if (late()) return {};
       context_.progress("axes", 0.5 * static_cast<double>(a) / static_cast<double>(axes_.size()));
       turns_.emplace_back(surface_, axes_[a]);
+      look_for_middle(turns_[a]);
       climb(a);
     }
     // High orders first: what they explain, such as the half-turns of a dihedral group, is not looked at again.
@@ -214,6 +217,18 @@ class AxisSearch {
         orders_.push_back({axis, n, stay, evidence});
         kept.emplace(n, std::move(stay));
       }
+    }
+  }
+
+  // Of what turns by any angle, what is mirrored across the axis as well.
+  void look_for_middle(const Turns& turns) {
+    constexpr double kLeast = 0.1;          // of the surface
+    constexpr double kLeastOfTurned = 0.6;  // any cylinder by itself has a middle
+    const auto count = static_cast<double>(surface_.samples.faces.size());
+    const double share = std::max(kLeast, kLeastOfTurned * static_cast<double>(turns.turned().size()) / count);
+    if (static_cast<double>(turns.turned().size()) < kLeast * count) return;
+    for (const GroupPlacement& placement : groups_with_middle(surface_, turns.axis(), turns.turned(), share)) {
+      search_.settle("axes", placement, false);
     }
   }
 

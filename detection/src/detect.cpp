@@ -124,19 +124,35 @@ class Detector {
     partition.components = smooth_segments(prepared_);
     const std::size_t count = partition.components.faces.size();
     if (count > kMostSegments) return;
-    PartRegions parts;
-    if (count != prepared_.components.faces.size()) parts = find_in_parts(partition, true);
-    add_of_pieces(parts.regions);
-    find_turned(partition);
-    if (one_surface()) find_about_lines(partition, parts.survey);
+    // Of one surface what lines say is asked first: pieces have little to add to it.
+    const bool fine = one_fine_surface();
+    if (fine) {
+      find_turned(partition);
+      find_about_lines(partition);
+    }
+    if (count != prepared_.components.faces.size()) add_of_pieces(find_in_parts(partition, true).regions);
+    if (!fine) find_turned(partition);
   }
 
-  // Whether nearly all is one component: where parts are modelled as such, they and their pieces say all there is.
-  bool one_surface() const {
+  // Whether nearly all is one component of small triangles, of which creases tell little. Where parts are modelled as
+  // such, they and their pieces say all there is; and where triangles are large the pieces are exact.
+  bool one_fine_surface() const {
     constexpr double kNearlyAll = 0.8;  // of the area
-    return std::ranges::any_of(prepared_.components.faces, [&](const std::vector<int>& faces) {
-      return area_of(faces) > kNearlyAll * prepared_.area;
-    });
+    constexpr double kFine = 5;         // mean length of the triangles' longest edges, tolerances
+    double lengths = 0;
+    for (Eigen::Index f = 0; f < prepared_.mesh.faces.rows(); ++f) {
+      double longest = 0;
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d edge = prepared_.mesh.vertices.row(prepared_.mesh.faces(f, k)) -
+                              prepared_.mesh.vertices.row(prepared_.mesh.faces(f, (k + 1) % 3));
+        longest = std::max(longest, edge.norm());
+      }
+      lengths += prepared_.areas[f] * longest;
+    }
+    return lengths < kFine * options_.tolerance * prepared_.area &&
+           std::ranges::any_of(prepared_.components.faces, [&](const std::vector<int>& faces) {
+             return area_of(faces) > kNearlyAll * prepared_.area;
+           });
   }
 
   void add_of_pieces(std::vector<FoundRegion> found) {
@@ -147,10 +163,11 @@ class Detector {
   }
 
   // What turns and mirrors into itself about axes and planes that pieces suggest, wherever it ends.
-  void find_about_lines(const PreparedMesh& partition, const ComponentSurvey& survey) {
+  void find_about_lines(const PreparedMesh& partition) {
     if (late()) return;
     context_.progress("axes", 0);
     const ScreenedSurface surface(partition, options_.tolerance, kScreenSamples, context_);
+    const ComponentSurvey survey = survey_components(partition, options_.tolerance, kLeastShare, context_);
     const SymmetryLines lines = find_symmetry_lines(partition, survey, options_.tolerance);
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
