@@ -46,6 +46,7 @@ class Search {
         best(0, period, true, surface_.tolerance / std::max(reach_, 1e-9), kMostAngles, kAngles,
              [&](double angle) { return Motion::about(mirror(across(angle)), foot_); });
     std::vector<GroupPlacement> placements;
+    placements.reserve(angles.size());
     for (const double angle : angles) placements.push_back({{Family::Cnv, n_}, frame(across(angle)), foot_});
     const Matrix3d flip = mirror(frame_.col(2));
     for (const double height : heights(flip)) {

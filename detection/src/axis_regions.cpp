@@ -90,6 +90,7 @@ class Turns {
 
   std::vector<int> samples(const std::vector<std::size_t>& of) const {
     std::vector<int> result;
+    result.reserve(of.size());
     for (const std::size_t i : of) result.push_back(open_[i].sample);
     return result;
   }
@@ -133,6 +134,7 @@ class Turns {
 
   std::vector<Motion> rotations_by(const std::vector<double>& turns) const {
     std::vector<Motion> result;
+    result.reserve(turns.size());
     for (const double turn : turns) {
       result.push_back(Motion::rotation(axis_.direction, 2 * std::numbers::pi * turn, axis_.point));
     }

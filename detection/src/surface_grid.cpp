@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastReach = 1.0 / 800;
+constexpr double kLeastReach = 1.0 / 400;  // smaller cells take too much memory
 constexpr double kCellsInReach = 2;
 constexpr double kSpacing = 1.6;  // of the points that stand for a face, cells
 
@@ -76,11 +76,11 @@ SurfaceGrid::SurfaceGrid(const PreparedMesh& prepared, const std::vector<int>& f
 void SurfaceGrid::make_stencils() {
   constexpr double kWithin = 1.15 * kCellsInReach;
   constexpr int kAround = static_cast<int>(kWithin) + 1;
-  stencils_.resize(static_cast<std::size_t>(kPlaces * kPlaces * kPlaces));
+  stencils_.resize(number({kPlaces - 1, kPlaces - 1, kPlaces - 1}, kPlaces, kPlaces) + 1);
   for (std::size_t place = 0; place < stencils_.size(); ++place) {
-    const auto number = static_cast<int>(place);
-    const Vector3d inside(number / (kPlaces * kPlaces), number / kPlaces % kPlaces, number % kPlaces);
-    const Vector3d point = (inside.array() + 0.5) / kPlaces;
+    const auto rest = static_cast<int>(place);
+    const Eigen::Vector3i inside(rest / (kPlaces * kPlaces), rest / kPlaces % kPlaces, rest % kPlaces);
+    const Vector3d point = (inside.cast<double>().array() + 0.5) / kPlaces;
     for (int x = -kAround; x <= kAround; ++x) {
       for (int y = -kAround; y <= kAround; ++y) {
         for (int z = -kAround; z <= kAround; ++z) {
@@ -96,11 +96,9 @@ void SurfaceGrid::add(const Vector3d& point, std::uint64_t mask) {
   const Vector3d at = (point - origin_) * per_cell_;
   const Eigen::Vector3i own = at.cast<int>();
   const Eigen::Vector3i place = ((at - own.cast<double>()) * kPlaces).cast<int>();
-  for (const Eigen::Vector3i& step :
-       stencils_[static_cast<std::size_t>((place[0] * kPlaces + place[1]) * kPlaces + place[2])]) {
+  for (const Eigen::Vector3i& step : stencils_[number(place, kPlaces, kPlaces)]) {
     const Eigen::Vector3i cell = own + step;
-    int& block =
-        blocks_[static_cast<std::size_t>(((cell[0] >> 3) * counts_[1] + (cell[1] >> 3)) * counts_[2] + (cell[2] >> 3))];
+    int& block = blocks_[number({cell[0] >> 3, cell[1] >> 3, cell[2] >> 3}, counts_[1], counts_[2])];
     if (block < 0) {
       block = static_cast<int>(masks_.size());
       masks_.emplace_back();
@@ -118,7 +116,7 @@ void SurfaceGrid::make_directions() {
     const double radius = std::sqrt(1 - z * z);
     directions_.row(d) << radius * std::cos(angle), radius * std::sin(angle), z;
   }
-  nearest_.resize(static_cast<std::size_t>(3 * kTable * kTable));
+  nearest_.resize(number({2, kTable - 1, kTable - 1}, kTable, kTable) + 1);
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < kTable; ++i) {
       for (int j = 0; j < kTable; ++j) {
@@ -128,7 +126,7 @@ void SurfaceGrid::make_directions() {
         at[(axis + 2) % 3] = 2 * (j + 0.5) / kTable - 1;
         int best = 0;
         (directions_ * at).cwiseAbs().maxCoeff(&best);
-        nearest_[static_cast<std::size_t>((axis * kTable + i) * kTable + j)] = static_cast<unsigned char>(best);
+        nearest_[number({axis, i, j}, kTable, kTable)] = static_cast<unsigned char>(best);
       }
     }
   }
@@ -146,7 +144,7 @@ unsigned SurfaceGrid::direction(const Vector3d& normal) const {
   };
   const int i = place(normal[(axis + 1) % 3]);
   const int j = place(normal[(axis + 2) % 3]);
-  return nearest_[static_cast<std::size_t>((axis * kTable + i) * kTable + j)];
+  return nearest_[number({axis, i, j}, kTable, kTable)];
 }
 
 }  // namespace orbifit

@@ -18,7 +18,7 @@ namespace orbifit {
 class SurfaceGrid {
  public:
   /// \param faces those that make up the surface, of the normalised mesh; ones without area are skipped
-  /// \param reach a length; raised to 1/800 of the mesh's diagonal where it is less
+  /// \param reach a length; raised to 1/400 of the mesh's diagonal where it is less
   SurfaceGrid(const PreparedMesh& prepared, const std::vector<int>& faces, double reach);
 
   /// \param normal unit
@@ -27,8 +27,7 @@ class SurfaceGrid {
     if (!(cell.minCoeff() >= 0) || !(cell.maxCoeff() < kMost)) return false;
     const Eigen::Vector3i at = cell.cast<int>();
     if ((at.array() >= cells_.array()).any()) return false;
-    const int block =
-        blocks_[static_cast<std::size_t>(((at[0] >> 3) * counts_[1] + (at[1] >> 3)) * counts_[2] + (at[2] >> 3))];
+    const int block = blocks_[number({at[0] >> 3, at[1] >> 3, at[2] >> 3}, counts_[1], counts_[2])];
     if (block < 0) return false;
     const auto inside = static_cast<std::size_t>(((at[0] & 7) << 6) | ((at[1] & 7) << 3) | (at[2] & 7));
     return (masks_[static_cast<std::size_t>(block)][inside] >> direction(normal) & 1U) != 0;
@@ -40,6 +39,11 @@ class SurfaceGrid {
   static constexpr int kDirections = 64;  // on a half-sphere
   static constexpr int kTable = 24;       // of directions: cells along an edge of a cube's face
 
+  // Of the place in an array, the last index running fastest.
+  static std::size_t number(const Eigen::Vector3i& at, int second, int third) {
+    const auto size = [](int value) { return static_cast<std::size_t>(value); };
+    return (size(at[0]) * size(second) + size(at[1])) * size(third) + size(at[2]);
+  }
   unsigned direction(const Eigen::Vector3d& normal) const;
   void make_directions();
   void make_stencils();
