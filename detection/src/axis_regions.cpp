@@ -181,8 +181,7 @@ class AxisSearch {
   }
 
   std::vector<FoundRegion> run() {
-    for (std::size_t a = 0; a < axes_.size(); ++a) {
-      if (late()) return {};
+    for (std::size_t a = 0; a < axes_.size() && !late(); ++a) {
       context_.progress("axes", 0.5 * static_cast<double>(a) / static_cast<double>(axes_.size()));
       turns_.emplace_back(surface_, axes_[a]);
       look_for_middle(turns_[a]);

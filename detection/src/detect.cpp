@@ -171,8 +171,7 @@ class Detector {
     const SymmetryLines lines = find_symmetry_lines(partition, survey, options_.tolerance);
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
-    const std::vector<Line> fitted = revolution_axes(partition, options_.tolerance, context_);
-    axes.insert(axes.end(), fitted.begin(), fitted.end());
+    axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }};
     axes = distinct_lines(axes);
     const std::vector<Line> turning = turning_axes(surface, axes, context_);
@@ -213,8 +212,8 @@ class Detector {
   void find_turned(const PreparedMesh& partition) {
     if (late()) return;
     std::vector<Line> axes = axes_of_regions();
-    const std::vector<Line> fitted = revolution_axes(partition, options_.tolerance, context_);
-    axes.insert(axes.end(), fitted.begin(), fitted.end());
+    fitted_axes_ = revolution_axes(partition, options_.tolerance, context_);
+    axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
     RevolutionRegionOptions turned{options_.tolerance, kLeastShare, options_.explanation, [this] { return late(); }};
     add_of_pieces(find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_));
@@ -342,6 +341,7 @@ class Detector {
   DirectionSet screen_;
   std::shared_ptr<const SurfaceIndex> whole_index_;
   std::vector<FoundRegion> regions_;
+  std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
 };
 
 }  // namespace

@@ -39,7 +39,8 @@ LineRegionSearch::Said LineRegionSearch::said_of(const FoundRegion& region) cons
 std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) const {
   std::vector<char> result(surface_.samples.faces.size(), 0);
   // Mirrors and half-turns, of which there are many, are to be farther from the known ones to be worth a look.
-  const double near = (placement.group.order() > 2 ? 2 : 5) * surface_.tolerance;
+  const bool many = !placement.group.continuous() && placement.group.order() == 2;
+  const double near = (many ? 5 : 2) * surface_.tolerance;
   for (std::size_t r = 0; r < said_.size(); ++r) {
     const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
     const SurfaceMoments& moments = said_[r].moments;
@@ -109,7 +110,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     region.placement = own->placement;
     if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
   }
-  if (featureless(patch, region.placement, whole_, patch.tolerance, context_)) {
+  if (featureless(patch, region.placement, whole_, surface_.tolerance, context_)) {
     return note(stage, region, false, "other motions keep it as well");
   }
   note(stage, region, true, "verified");

@@ -127,8 +127,8 @@ TEST(GridRegion, TakesNoDiscOutOfAPlane) {
   EXPECT_NEAR(box.share_of(grid_region(box.surface(), box.placement("C4v"), true, {})), 1, 1e-9);
 }
 
-TEST(GridRegion, ThinsOutWhatFollowsFromNothing) {
-  // Two blocks at the same distance on either side of a third that a mirror keeps; one of the two is missing.
+TEST(GridRegion, LeavesOutWhatHasNoImage) {
+  // A block at a distance from a plane, without its like on the other side.
   const Mesh middle = test::box(1, 1, 1);
   const Mesh side = test::moved(test::box(0.5, 0.5, 0.5), {Eigen::Matrix3d::Identity(), {0, 0, 2}});
   const Screened both(test::joined({middle, side}));
