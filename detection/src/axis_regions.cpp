@@ -23,7 +23,6 @@ using Family = PointGroup::Family;
 constexpr int kHighestOrder = 72;
 constexpr std::array<int, 20> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71};
 constexpr int kIrrational = 11;   // rotations that stand for all
-constexpr double kSlides = 0.2;   // sine of the angle between a normal and the axis's half-plane
 constexpr double kLeastStep = 5;  // tolerances: shorter steps are not told from none
 constexpr double kOnAxis = 2;     // tolerances: what lies nearer turns with everything
 constexpr double kWholePiece = 0.9;
@@ -41,11 +40,10 @@ class Turns {
     for (Eigen::Index i = 0; i < count; ++i) {
       const auto piece = static_cast<std::size_t>(surface.piece_of_sample[static_cast<std::size_t>(i)]);
       ++samples_of_piece_[piece];
-      const Vector3d from = surface.samples.points.row(i).transpose() - axis.point;
-      const Vector3d around = axis.direction.cross(from);
-      const double radius = around.norm();
+      const Vector3d point = surface.samples.points.row(i);
+      const double radius = axis.direction.cross(point - axis.point).norm();
       if (radius < kOnAxis * surface.tolerance) continue;
-      const bool slides = std::abs(around.dot(surface.samples.normals.row(i))) <= kSlides * radius;
+      const bool slides = meets(axis, point, surface.samples.normals.row(i));
       if (slides && holds(i, all)) {
         ++turned_of_piece_[piece];
         if (surface.piece_flat[piece] == 0) turned_.push_back(static_cast<int>(i));
@@ -170,20 +168,19 @@ struct Order {
 class AxisSearch {
  public:
   AxisSearch(const ScreenedSurface& surface, const SurfaceIndex& whole, const std::vector<Line>& axes,
-             const std::vector<Line>& turning, const std::vector<FoundRegion>& known, const LineRegionOptions& options,
-             const RunContext& context)
+             const std::vector<FoundRegion>& known, const LineRegionOptions& options, const RunContext& context)
       : surface_(surface),
         axes_(axes),
         options_(options),
         context_(context),
-        search_(surface, whole, known, options, context) {
-    for (const Line& axis : turning) search_.add_turning_axis(axis);
-  }
+        search_(surface, whole, known, options, context) {}
 
-  std::vector<FoundRegion> run() {
-    for (std::size_t a = 0; a < axes_.size() && !late(); ++a) {
+  AxisRegions run() {
+    AxisRegions result;
+    result.turning = find_turns();
+    for (const Line& axis : result.turning) search_.add_turning_axis(axis);
+    for (std::size_t a = 0; a < turns_.size() && !late(); ++a) {
       context_.progress("axes", 0.5 * static_cast<double>(a) / static_cast<double>(axes_.size()));
-      turns_.emplace_back(surface_, axes_[a]);
       look_for_middle(turns_[a]);
       climb(a);
     }
@@ -195,11 +192,25 @@ class AxisSearch {
       context_.progress("axes", 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(orders_.size()));
       look_at(orders_[i]);
     }
-    return search_.take();
+    result.regions = search_.take();
+    return result;
   }
 
  private:
   bool late() const { return options_.late && options_.late(); }
+
+  // Returns the axes about which more than a little turns.
+  std::vector<Line> find_turns() {
+    constexpr double kLeast = 0.01;  // of the surface
+    std::vector<Line> turning;
+    for (std::size_t a = 0; a < axes_.size() && !late(); ++a) {
+      context_.check();
+      turns_.emplace_back(surface_, axes_[a]);
+      const auto turned = static_cast<double>(turns_[a].turned().size());
+      if (turned >= kLeast * static_cast<double>(surface_.samples.faces.size())) turning.push_back(axes_[a]);
+    }
+    return turning;
+  }
 
   void climb(std::size_t axis) {
     const Turns& turns = turns_[axis];
@@ -276,24 +287,10 @@ class AxisSearch {
 
 }  // namespace
 
-std::vector<Line> turning_axes(const ScreenedSurface& surface, const std::vector<Line>& axes,
-                               const RunContext& context) {
-  constexpr double kLeast = 0.01;  // of the surface
-  std::vector<Line> result;
-  for (const Line& axis : axes) {
-    context.check();
-    const Turns turns(surface, axis);
-    const auto share = static_cast<double>(turns.turned().size()) / static_cast<double>(surface.samples.faces.size());
-    if (share >= kLeast) result.push_back(axis);
-  }
-  return result;
-}
-
-std::vector<FoundRegion> find_axis_regions(const ScreenedSurface& surface, const SurfaceIndex& whole,
-                                           const std::vector<Line>& axes, const std::vector<Line>& turning,
-                                           const std::vector<FoundRegion>& known, const LineRegionOptions& options,
-                                           const RunContext& context) {
-  return AxisSearch(surface, whole, axes, turning, known, options, context).run();
+AxisRegions find_axis_regions(const ScreenedSurface& surface, const SurfaceIndex& whole, const std::vector<Line>& axes,
+                              const std::vector<FoundRegion>& known, const LineRegionOptions& options,
+                              const RunContext& context) {
+  return AxisSearch(surface, whole, axes, known, options, context).run();
 }
 
 }  // namespace orbifit

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/point_index.h"
@@ -197,13 +198,8 @@ class Completion {
   }
 
   bool holds(const GroupPlacement& placement, const std::vector<int>& faces) const {
-    return holds(placement, make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion"));
-  }
-
-  bool holds(const GroupPlacement& placement, const SurfacePatch& patch) const {
-    const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-    return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
-                         VerificationLimits{}.joint, context_));
+    return verified(make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion"), placement,
+                    context_);
   }
 
   // Moves the region's placement to the mean of its images under motions that keep the region.
@@ -228,7 +224,7 @@ class Completion {
         const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
         return measure_residual(patch, motions, context_, kQueries).rms;
       };
-      if (fit(goal) > kAsWell * fit(now.placement) + kNothing || !holds(goal, patch)) return;
+      if (fit(goal) > kAsWell * fit(now.placement) + kNothing || !verified(patch, goal, context_)) return;
     }
     regions_[region].placement = goal;
   }

@@ -174,13 +174,13 @@ class Detector {
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }};
     axes = distinct_lines(axes);
-    const std::vector<Line> turning = turning_axes(surface, axes, context_);
-    add_of_pieces(find_axis_regions(surface, *whole_index_, axes, turning, regions_, options, context_));
+    AxisRegions about = find_axis_regions(surface, *whole_index_, axes, regions_, options, context_);
+    add_of_pieces(std::move(about.regions));
     if (late()) return;
     options.least_share = kLeastMirrored;
-    std::vector<CandidateLine> planes = mirror_planes(surface, turning, options.least_share, context_);
+    std::vector<CandidateLine> planes = mirror_planes(surface, about.turning, options.least_share, context_);
     planes.insert(planes.end(), lines.planes.begin(), lines.planes.end());
-    add_of_pieces(find_plane_regions(surface, *whole_index_, planes, turning, regions_, options, context_));
+    add_of_pieces(find_plane_regions(surface, *whole_index_, planes, about.turning, regions_, options, context_));
   }
 
   // Of regions that turn by a third or less.

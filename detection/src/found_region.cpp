@@ -65,6 +65,16 @@ bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundR
   return area_outside(prepared, inner.faces, outer.faces) <= std::min(0.05 * inner.area, kSliver * prepared.area);
 }
 
+bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<FoundRegion>& others,
+                             const FoundRegion& region, double tolerance, double outside) {
+  const SurfaceMoments moments = surface_moments(prepared, region.faces);
+  const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
+  return std::ranges::any_of(others, [&](const FoundRegion& other) {
+    return area_outside(prepared, region.faces, other.faces) <= outside * region.area &&
+           contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
+  });
+}
+
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation) {
   std::vector<FoundRegion> kept;

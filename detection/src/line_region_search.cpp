@@ -6,10 +6,10 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/detection/axis_orders.h"
 #include "orbifit/detection/featureless.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/revolution.h"
 #include "orbifit/detection/verification.h"
 
 namespace orbifit {
@@ -55,12 +55,9 @@ std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) c
 }
 
 void LineRegionSearch::add_turning_axis(const Line& axis) {
-  constexpr double kSlides = 0.2;  // sine of the angle between a normal and the axis's half-plane
   TurningAxis turning{axis, {}};
   for (Eigen::Index i = 0; i < surface_.samples.points.rows(); ++i) {
-    const Eigen::Vector3d around = axis.direction.cross(Eigen::Vector3d(surface_.samples.points.row(i)) - axis.point);
-    const double off = std::abs(around.dot(surface_.samples.normals.row(i)));
-    turning.slides.push_back(off <= kSlides * around.norm() ? 1 : 0);
+    turning.slides.push_back(meets(axis, surface_.samples.points.row(i), surface_.samples.normals.row(i)) ? 1 : 0);
   }
   turning_.push_back(std::move(turning));
 }
@@ -102,7 +99,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   }
   if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-  if (!holds(region.placement, patch)) return note(stage, region, false, "not verified");
+  if (!verified(patch, region.placement, context_)) return note(stage, region, false, "not verified");
   std::optional<OwnGroup> own;
   if (enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
   if (own && contains_group(own->placement, region.placement, patch.moments.centroid, patch.moments.radius,
@@ -132,20 +129,9 @@ bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
   return true;
 }
 
-bool LineRegionSearch::holds(const GroupPlacement& placement, const SurfacePatch& patch) const {
-  const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-  return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
-                       VerificationLimits{}.joint, context_));
-}
-
 bool LineRegionSearch::says_nothing_new(const FoundRegion& region) const {
-  const SurfaceMoments moments = surface_moments(surface_.prepared, region.faces);
-  const double reach = surface_.tolerance * std::min(1.0, 4 * moments.diagonal);
-  const auto says = [&](const FoundRegion& other) {
-    return area_outside(surface_.prepared, region.faces, other.faces) <= kNothingNew * region.area &&
-           contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
-  };
-  return std::ranges::any_of(known_, says) || std::ranges::any_of(found_, says);
+  return says_nothing_new_beside(surface_.prepared, known_, region, surface_.tolerance, kNothingNew) ||
+         says_nothing_new_beside(surface_.prepared, found_, region, surface_.tolerance, kNothingNew);
 }
 
 void LineRegionSearch::note(std::string_view stage, const FoundRegion& region, bool kept,

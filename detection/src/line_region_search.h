@@ -38,7 +38,6 @@ class LineRegionSearch {
   bool leaves(const GroupPlacement& placement, const Line& axis) const;
   bool mere_plates(const std::vector<int>& faces) const;
   bool says_nothing_new(const FoundRegion& region) const;
-  bool holds(const GroupPlacement& placement, const SurfacePatch& patch) const;
   void note(std::string_view stage, const FoundRegion& region, bool kept, std::string_view reason) const;
 
   const ScreenedSurface& surface_;

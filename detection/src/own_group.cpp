@@ -360,6 +360,12 @@ class Search {
 
 }  // namespace
 
+bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context) {
+  const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
+  return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
+                       VerificationLimits{}.joint, context));
+}
+
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,
                                        const RunContext& context) {
   return Search(patch, context, false).run(screen, hints);

@@ -149,14 +149,9 @@ class Search {
   }
 
   bool verified(const GroupPlacement& placement, const std::vector<int>& parts) const {
-    return verified(placement,
-                    make_patch(prepared_, faces_of(parts), kPartSamples, options_.tolerance, context_, "grown"));
-  }
-
-  bool verified(const GroupPlacement& placement, const SurfacePatch& patch) const {
-    const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-    return passes(verify(patch, motions, tolerance, 0, VerificationLimits{}.joint, context_));
+    return orbifit::verified(
+        make_patch(prepared_, faces_of(parts), kPartSamples, options_.tolerance, context_, "grown"), placement,
+        context_);
   }
 
   // Smaller groups on more of the surface: a subgroup may permute parts that the group itself does not.
@@ -327,7 +322,7 @@ class Search {
       if (!mere_pair(turned, classes()) && !already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
         const SurfacePatch patch = patch_of(turned, "axis");
         const GroupPlacement placement = refine(patch, turn);
-        if (verified(placement, patch)) add("axes", placement, turned, strictness(placement, patch));
+        if (orbifit::verified(patch, placement, context_)) add("axes", placement, turned, strictness(placement, patch));
       }
       found.emplace_back(n, std::move(turned));
     }
@@ -340,7 +335,7 @@ class Search {
     if (mere_pair(parts, classes()) || !tried_.insert(parts).second) return;
     const SurfacePatch patch = patch_of(parts, "mirror");
     placement = refine(patch, placement);
-    if (verified(placement, patch)) add("planes", placement, parts, strictness(placement, patch));
+    if (orbifit::verified(patch, placement, context_)) add("planes", placement, parts, strictness(placement, patch));
   }
 
   const PreparedMesh& prepared_;

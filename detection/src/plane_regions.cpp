@@ -73,8 +73,7 @@ bool holds(const Line& plane, const Line& axis, const Vector3d& normal, const Ve
   constexpr double kAngle = 0.03;  // radians
   if (std::abs(plane.direction.dot(axis.direction)) > kAngle) return false;
   if (std::abs(plane.direction.dot(axis.point - plane.point)) > 2 * tolerance) return false;
-  const Vector3d around = axis.direction.cross(point - axis.point);
-  return std::abs(around.dot(normal)) <= kSlides * around.norm();
+  return meets(axis, point, normal);
 }
 
 // Tilts and shifts the plane a little wherever that keeps more of the samples, by smaller and smaller steps.

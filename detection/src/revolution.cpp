@@ -50,6 +50,13 @@ Moments accumulate(const Points& points, const Points& normals, const Eigen::Vec
 
 }  // namespace
 
+bool meets(const Line& axis, const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double near) {
+  constexpr double kSine = 0.2;
+  const Eigen::Vector3d around = axis.direction.cross(point - axis.point);
+  const double radius = around.norm();
+  return radius < near || std::abs(around.dot(normal)) <= kSine * radius;
+}
+
 std::optional<RevolutionFit> fit_axis_of_revolution(const Points& points, const Points& normals,
                                                     const Eigen::VectorXd& given, double angle) {
   const Eigen::Index count = points.rows();

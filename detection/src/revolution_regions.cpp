@@ -20,9 +20,9 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr int kAngles = 12;
-constexpr double kMeetsAxis = 0.2;                  // sine of the angle between a normal and the axis's half-plane
 constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr int kPatchSamples = 700;
+constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
 
 Vector3d centroid_of(const PreparedMesh& prepared, int face) {
   const Eigen::RowVector3i corners = prepared.mesh.faces.row(face);
@@ -46,11 +46,7 @@ class Turned {
 
   // Whether the normal meets the axis, as on every surface turned about it.
   bool may_turn(int face) const {
-    const Vector3d from = centroid_of(prepared_, face) - axis_.point;
-    const Vector3d around = axis_.direction.cross(from);
-    const double radius = around.norm();
-    if (radius < tolerance_) return true;
-    return std::abs(around.dot(prepared_.normals.row(face))) <= kMeetsAxis * radius;
+    return meets(axis_, centroid_of(prepared_, face), prepared_.normals.row(face), tolerance_);
   }
 
   // Whether the whole circle of the face's centroid lies on the surface.
@@ -120,14 +116,8 @@ class Search {
 
  private:
   bool says_nothing_new(const FoundRegion& region) const {
-    const SurfaceMoments moments = surface_moments(prepared_, region.faces);
-    const double reach = options_.tolerance * std::min(1.0, 4 * moments.diagonal);
-    const auto holds = [&](const FoundRegion& other) {
-      return other.placement.group.continuous() &&
-             area_outside(prepared_, region.faces, other.faces) <= 0.1 * region.area &&
-             contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
-    };
-    return std::ranges::any_of(known_, holds) || std::ranges::any_of(found_, holds);
+    return says_nothing_new_beside(prepared_, known_, region, options_.tolerance, kNothingNew) ||
+           says_nothing_new_beside(prepared_, found_, region, options_.tolerance, kNothingNew);
   }
 
   void note(const FoundRegion& region, bool kept, const std::string& reason) const {

@@ -1,6 +1,7 @@
 #include "orbifit/datasets_tools/detection_score.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -197,7 +198,10 @@ TEST_P(Overlap, IsMeasuredByArea) {
 INSTANTIATE_TEST_SUITE_P(Shares, Overlap,
                          testing::Values(std::pair{0.81, Found::strictly}, std::pair{0.79, Found::loosely},
                                          std::pair{0.61, Found::loosely}, std::pair{0.59, Found::missed},
-                                         std::pair{0.2, Found::missed}));
+                                         std::pair{0.2, Found::missed}),
+                         [](const auto& test) {
+                           return std::to_string(std::lround(100 * test.param.first)) + "Percent";
+                         });
 
 TEST(DetectionScore, AcceptsEveryFaceSetBetweenTheAcceptedOnes) {
   Scene scene = orbit_scene("C4", GroupFrame::Identity(), 3);

@@ -185,6 +185,7 @@ TEST(Generate, ListsItsModelsInOrderWithUsableDefaults) {
 }
 
 struct BadCase {
+  std::string name;
   std::string model;
   std::map<std::string, double> values;
   std::string message;
@@ -204,16 +205,22 @@ TEST_P(BadParameters, AreRefusedByName) {
 INSTANTIATE_TEST_SUITE_P(
     Generate, BadParameters,
     testing::Values(
-        BadCase{"sofa",
+        BadCase{"Model",
+                "sofa",
                 {},
                 "unknown model 'sofa'; there are armchair, bar, car, centre_piece, chair, desk_fan, fan, plane, table, "
                 "wheel, wind_mill, yard_tool"},
-        BadCase{"bar", {{"mass", 1}}, "bar: unknown parameter 'mass'; there are length, width, height, detail"},
-        BadCase{"chair", {{"slats", 0}}, "chair: slats = 0: must be from 1 to 12"},
-        BadCase{"chair", {{"slats", 2.5}}, "chair: slats = 2.5: must be a whole number"},
-        BadCase{"table",
+        BadCase{"Parameter",
+                "bar",
+                {{"mass", 1}},
+                "bar: unknown parameter 'mass'; there are length, width, height, detail"},
+        BadCase{"TooSmall", "chair", {{"slats", 0}}, "chair: slats = 0: must be from 1 to 12"},
+        BadCase{"Fraction", "chair", {{"slats", 2.5}}, "chair: slats = 2.5: must be a whole number"},
+        BadCase{"NotANumber",
+                "table",
                 {{"width", std::numeric_limits<double>::quiet_NaN()}},
-                "table: width = nan: must be from 0.5 to 1.6"}));
+                "table: width = nan: must be from 0.5 to 1.6"}),
+    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace orbifit

@@ -40,7 +40,7 @@ class Screened {
   std::vector<FoundRegion> turning(const Vector3d& centre = Vector3d::Zero(),
                                    const std::vector<FoundRegion>& known = {}) const {
     const Line axis{placement("C2", centre).centre, Vector3d::UnitZ()};
-    return find_axis_regions(surface_, whole_, {axis}, turning_axes(surface_, {axis}, {}), known, {}, {});
+    return find_axis_regions(surface_, whole_, {axis}, known, {}, {}).regions;
   }
 
   std::vector<FoundRegion> mirrored() const {

@@ -1,6 +1,5 @@
 #include "orbifit/fitting/landmarks.h"
 
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -8,13 +7,14 @@
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
 
+#include "temporary_folder.h"
+
 namespace orbifit {
 namespace {
 
 std::vector<Landmark> parse(const std::string& text) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "orbifit_landmarks_test.json";
-  std::ofstream(file) << text;
-  return read_landmarks(file, generate("bar").mesh);
+  const TemporaryFolder folder;
+  return read_landmarks(folder.write("landmarks_test.json", text), generate("bar").mesh);
 }
 
 TEST(Landmarks, AreRead) {
@@ -24,25 +24,33 @@ TEST(Landmarks, AreRead) {
   EXPECT_EQ(landmarks[0].target, Eigen::Vector3d(1, 2.5, -3));
 }
 
-class BrokenLandmarks : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+struct Broken {
+  const char* name;
+  const char* text;
+  const char* message;
+};
+
+class BrokenLandmarks : public testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenLandmarks, AreRefusedWithTheirKey) {
   try {
-    parse(GetParam().first);
-    FAIL() << "accepted: " << GetParam().first;
+    parse(GetParam().text);
+    FAIL() << "accepted: " << GetParam().text;
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(GetParam().second), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos) << error.what();
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, BrokenLandmarks,
-    testing::Values(std::pair{"{", "is not JSON"}, std::pair{"{}", "landmarks"},
-                    std::pair{R"({"landmarks": []})", "is empty"},
-                    std::pair{R"({"landmarks": [{"vertex": 1}]})", "landmarks[0]"},
-                    std::pair{R"({"landmarks": [{"vertex": 99999999, "target": [0, 0, 0]}]})", "landmarks[0].vertex"},
-                    std::pair{R"({"landmarks": [{"vertex": 1, "target": [0, 0]}]})", "landmarks[0].target"},
-                    std::pair{R"({"landmarks": [{"vertex": 1, "target": [0, "x", 0]}]})", "landmarks[0].target"}));
+    testing::Values(
+        Broken{"NotJson", "{", "is not JSON"}, Broken{"NoLandmarks", "{}", "landmarks"},
+        Broken{"Empty", R"({"landmarks": []})", "is empty"},
+        Broken{"NoTarget", R"({"landmarks": [{"vertex": 1}]})", "landmarks[0]"},
+        Broken{"VertexTooHigh", R"({"landmarks": [{"vertex": 99999999, "target": [0, 0, 0]}]})", "landmarks[0].vertex"},
+        Broken{"ShortTarget", R"({"landmarks": [{"vertex": 1, "target": [0, 0]}]})", "landmarks[0].target"},
+        Broken{"TargetIsText", R"({"landmarks": [{"vertex": 1, "target": [0, "x", 0]}]})", "landmarks[0].target"}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace orbifit

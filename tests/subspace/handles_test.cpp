@@ -1,11 +1,12 @@
 #include "orbifit/subspace/handles.h"
 
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
+
+#include "temporary_folder.h"
 
 namespace orbifit {
 namespace {
@@ -20,9 +21,8 @@ Mesh square() {
 }
 
 HandleSet parse(const std::string& text) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "orbifit_handles_test.json";
-  std::ofstream(file) << text;
-  return read_handles(file, square());
+  const TemporaryFolder folder;
+  return read_handles(folder.write("handles_test.json", text), square());
 }
 
 TEST(Handles, ReadsCentresVerticesAndMotions) {
@@ -45,6 +45,7 @@ TEST(Handles, TurnAboutTheirCentroidUnlessToldOtherwise) {
 }
 
 struct Broken {
+  const char* name;
   const char* text;
   const char* message;
 };
@@ -57,24 +58,27 @@ TEST_P(BrokenHandles, AreRefusedWithTheirKey) {
     FAIL() << "accepted: " << GetParam().text;
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find(GetParam().message), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("orbifit_handles_test.json"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("handles_test.json"), std::string::npos) << error.what();
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Cases, BrokenHandles,
-    testing::Values(Broken{"{", "is not JSON"}, Broken{"[]", "handles"}, Broken{R"({"handles": []})", "is empty"},
-                    Broken{R"({"handles": [3]})", "handles[0]"},
-                    Broken{R"({"handles": [{"centre": [9, 9, 9], "radius": 0.1}]})", "takes no vertex"},
-                    Broken{R"({"handles": [{"centre": [0, 0], "radius": 1}]})", "handles[0].centre"},
-                    Broken{R"({"handles": [{"centre": [0, 0, 0], "radius": 0}]})", "handles[0].radius"},
-                    Broken{R"({"handles": [{"vertices": [4]}]})", "no vertex of the mesh"},
-                    Broken{R"({"handles": [{"vertices": [-1]}]})", "no vertex of the mesh"},
-                    Broken{R"({"handles": [{"name": 3, "vertices": [1]}]})", "handles[0].name"},
-                    Broken{R"({"handles": [{"vertices": [1], "rotation": {"axis": [0, 0, 0], "degrees": 3}}]})",
+    testing::Values(Broken{"NotJson", "{", "is not JSON"}, Broken{"NoObject", "[]", "handles"},
+                    Broken{"NoHandles", R"({"handles": []})", "is empty"},
+                    Broken{"NoHandle", R"({"handles": [3]})", "handles[0]"},
+                    Broken{"FarAway", R"({"handles": [{"centre": [9, 9, 9], "radius": 0.1}]})", "takes no vertex"},
+                    Broken{"Centre", R"({"handles": [{"centre": [0, 0], "radius": 1}]})", "handles[0].centre"},
+                    Broken{"Radius", R"({"handles": [{"centre": [0, 0, 0], "radius": 0}]})", "handles[0].radius"},
+                    Broken{"VertexTooHigh", R"({"handles": [{"vertices": [4]}]})", "no vertex of the mesh"},
+                    Broken{"VertexNegative", R"({"handles": [{"vertices": [-1]}]})", "no vertex of the mesh"},
+                    Broken{"Name", R"({"handles": [{"name": 3, "vertices": [1]}]})", "handles[0].name"},
+                    Broken{"NoAxis",
+                           R"({"handles": [{"vertices": [1], "rotation": {"axis": [0, 0, 0], "degrees": 3}}]})",
                            "handles[0].rotation.axis"},
-                    Broken{R"({"alpha": 0, "handles": [{"vertices": [1]}]})", "alpha"},
-                    Broken{R"({"iterations": 1.5, "handles": [{"vertices": [1]}]})", "iterations"}));
+                    Broken{"Alpha", R"({"alpha": 0, "handles": [{"vertices": [1]}]})", "alpha"},
+                    Broken{"Iterations", R"({"iterations": 1.5, "handles": [{"vertices": [1]}]})", "iterations"}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace orbifit

@@ -17,20 +17,20 @@ struct LineRegionOptions {
   std::function<bool()> late;          ///< whether time is up; may be empty
 };
 
-/// Of these axes those about which at least 1 % of the surface turns by any angle.
-std::vector<Line> turning_axes(const ScreenedSurface& surface, const std::vector<Line>& axes,
-                               const RunContext& context);
+struct AxisRegions {
+  std::vector<FoundRegion> regions;
+  std::vector<Line> turning;  ///< the axes about which at least 1 % of the surface turns by any angle
+};
 
 /// Regions of finite rotation groups about given axes, by the orbit test on the surface itself: wherever a rotation by
 /// 1/n of a turn and its powers keep the surface, whatever pieces it is cut into. Orders are found by climbing from n
 /// to its multiples on samples; what all rotations keep speaks for no order, nor does what slides along itself unless a
 /// piece turns as a whole. Each region is refined, given the largest group that it has, and verified.
-/// \param turning see turning_axes(): what is shaped like that says nothing of motions that leave the axis in place
+/// What is shaped as turned about one of the axes says nothing of motions that leave that axis in place.
 /// \param whole index of the whole mesh \param known regions found before; what they say is not repeated
 /// Costs about 30 grid look-ups a sample and axis, then the search of an own group a region.
-std::vector<FoundRegion> find_axis_regions(const ScreenedSurface& surface, const SurfaceIndex& whole,
-                                           const std::vector<Line>& axes, const std::vector<Line>& turning,
-                                           const std::vector<FoundRegion>& known, const LineRegionOptions& options,
-                                           const RunContext& context);
+AxisRegions find_axis_regions(const ScreenedSurface& surface, const SurfaceIndex& whole, const std::vector<Line>& axes,
+                              const std::vector<FoundRegion>& known, const LineRegionOptions& options,
+                              const RunContext& context);
 
 }  // namespace orbifit

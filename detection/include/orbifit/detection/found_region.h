@@ -25,6 +25,12 @@ double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner,
 /// Whether `inner` lies in `outer` but for a sliver: a twentieth of it and 0.2 % of the mesh's area, whichever is less.
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner);
 
+/// Whether one of the others says what the region says: it holds all but `outside` of the region's area, and its group
+/// all elements of the region's, to twice the tolerance.
+/// \param tolerance of the detector, a fraction of the diagonal \param outside a fraction of the region's area
+bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<FoundRegion>& others,
+                             const FoundRegion& region, double tolerance, double outside);
+
 /// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the
 /// same of one another the earlier stays. A region of whole components stays beside one of pieces that fits far less
 /// well. \param tolerance of the detector, a fraction of the diagonal

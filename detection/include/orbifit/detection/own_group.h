@@ -24,6 +24,10 @@ struct OwnGroup {
   Verification verification;
 };
 
+/// Whether the group keeps the patch: verify() on all samples within the usual limits, at continuous_tolerance() for a
+/// continuous group and at the patch's own tolerance for a finite one.
+bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context);
+
 /// The largest point group that maps the patch to itself: candidates for mirrors and axes, the orders about each axis,
 /// whole group templates refined jointly and verified element by element, largest first. Nothing for an asymmetric
 /// patch. \param screen directions to search exhaustively; null: the principal axes only

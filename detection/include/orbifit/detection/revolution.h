@@ -14,6 +14,10 @@ struct Line {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
 };
 
+/// Whether the normal meets the axis, as on every surface turned about it: within asin(0.2) of the half-plane through
+/// the point. \param normal unit \param near a distance from the axis within which any normal does
+bool meets(const Line& axis, const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double near = 0);
+
 struct RevolutionFit {
   Line axis;
   double inliers = 0;      ///< share of the weight whose normals meet the axis within the angle asked for
