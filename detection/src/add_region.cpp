@@ -12,12 +12,6 @@ namespace orbifit {
 
 namespace {
 
-double area_of(const PreparedMesh& prepared, const std::vector<int>& faces) {
-  double area = 0;
-  for (const int face : faces) area += prepared.areas[face];
-  return area;
-}
-
 // An annotated region as the detector sees it; nothing where its elements form no group.
 std::optional<FoundRegion> as_found(const PreparedMesh& prepared, const Region& region) {
   FoundRegion result;

@@ -23,7 +23,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kNormalCosine = 0.8;  // 37 degrees: the images of coarse triangles
+constexpr double kNormalCosine = 0.64;  // 50 degrees: the facets of small round parts differ by more than 25
 constexpr int kMostElements = 120;
 constexpr int kSamples = 500;
 

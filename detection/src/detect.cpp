@@ -18,7 +18,7 @@
 #include "orbifit/detection/found_region.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/part_regions.h"
-#include "orbifit/detection/patterns.h"
+#include "orbifit/detection/pattern_search.h"
 #include "orbifit/detection/plane_regions.h"
 #include "orbifit/detection/revolution_regions.h"
 #include "orbifit/detection/segments.h"
@@ -60,7 +60,7 @@ class Detector {
       const PartRegions parts = find_in_parts(prepared_, false);
       for (const FoundRegion& region : parts.regions) regions_.push_back(region);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
-      find_patterns(parts, annotation);
+      add_patterns(prepared_, parts, false);
     }
     find_in_segments();
     if (!late()) {
@@ -71,6 +71,7 @@ class Detector {
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
     write_regions(annotation);
+    annotation.patterns = std::move(patterns_);
     context_.progress("regions", 1);
     return annotation;
   }
@@ -130,7 +131,11 @@ class Detector {
       find_turned(partition);
       find_about_lines(partition);
     }
-    if (count != prepared_.components.faces.size()) add_of_pieces(find_in_parts(partition, true).regions);
+    if (count != prepared_.components.faces.size()) {
+      PartRegions parts = find_in_parts(partition, true);
+      add_of_pieces(std::move(parts.regions));
+      if (fine) add_patterns(partition, parts, true);
+    }
     if (!fine) find_turned(partition);
   }
 
@@ -151,7 +156,7 @@ class Detector {
     }
     return lengths < kFine * options_.tolerance * prepared_.area &&
            std::ranges::any_of(prepared_.components.faces, [&](const std::vector<int>& faces) {
-             return area_of(faces) > kNearlyAll * prepared_.area;
+             return area_of(prepared_, faces) > kNearlyAll * prepared_.area;
            });
   }
 
@@ -219,74 +224,12 @@ class Detector {
     add_of_pieces(find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_));
   }
 
-  // Whether some region's group carries the first member of the class onto each of the others.
-  bool related_by_a_region(const ComponentSurvey& survey, const CongruenceClass& kind) const {
-    std::vector<int> faces;
-    for (const int c : kind.members) {
-      const std::vector<int>& part = prepared_.components.faces[static_cast<std::size_t>(c)];
-      faces.insert(faces.end(), part.begin(), part.end());
-    }
-    std::ranges::sort(faces);
-    return std::ranges::any_of(regions_, [&](const FoundRegion& region) {
-      if (region.placement.group.continuous()) return false;
-      if (!std::ranges::includes(region.faces, faces)) return false;
-      const std::vector<Motion> motions =
-          judged_motions(region.placement.group, region.placement.frame, region.placement.centre);
-      const Vector3d start = survey.moments[static_cast<std::size_t>(kind.members.front())].centroid;
-      return std::ranges::all_of(kind.members, [&](int c) {
-        const Vector3d goal = survey.moments[static_cast<std::size_t>(c)].centroid;
-        return c == kind.members.front() || std::ranges::any_of(motions, [&](const Motion& m) {
-                 return (m(start) - goal).norm() < 2 * options_.tolerance;
-               });
-      });
-    });
-  }
-
-  void find_patterns(const PartRegions& parts, SymmetryAnnotation& annotation) const {
-    const ComponentSurvey& survey = parts.survey;
-    for (std::size_t c = 0; c < survey.classes.size() && !late(); ++c) {
-      const CongruenceClass& kind = survey.classes[c];
-      double area = 0;
-      for (const int member : kind.members) area += survey.moments[static_cast<std::size_t>(member)].area;
-      if (kind.members.size() < 2 || area < kLeastShare * prepared_.area) continue;
-      const SurfaceMoments& moments = survey.moments[static_cast<std::size_t>(kind.members.front())];
-      const double tolerance = options_.tolerance * std::min(1.0, 4 * moments.diagonal);
-      const GroupPlacement* own = parts.own_groups[c] ? &*parts.own_groups[c] : nullptr;
-      const Arrangement arrangement = arrange(kind.motions, own, moments.centroid, moments.radius, tolerance);
-      // A group says more than a pattern, unless the pattern is a true row or grid.
-      const bool lattice = arrangement.kind != Pattern::Kind::congruent &&
-                           arrangement.kind != Pattern::Kind::rotation &&
-                           kind.members.size() > (std::size_t{1} << arrangement.generators.size());
-      if (!lattice && related_by_a_region(survey, kind)) continue;
-      Pattern pattern;
-      pattern.id = static_cast<int>(annotation.patterns.size());
-      pattern.name = name_of_parts(kind.members);
-      pattern.kind = arrangement.kind;
-      for (const Motion& step : arrangement.generators) {
-        pattern.generators.push_back(conjugate(prepared_.input_of_normalised, step));
-      }
-      const SurfacePatch patch =
-          make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(kind.members.front())], 200,
-                     options_.tolerance, context_, "pattern");
-      double square = 0;
-      int count = 0;
-      for (std::size_t i = 0; i < kind.members.size(); ++i) {
-        const std::vector<int>& faces = prepared_.components.faces[static_cast<std::size_t>(kind.members[i])];
-        pattern.instances.push_back({conjugate(prepared_.input_of_normalised, arrangement.motions[i]), faces});
-        if (i == 0) {
-          pattern.instances.front().motion = Motion{};
-          continue;
-        }
-        const SurfaceIndex target(prepared_.mesh, faces);
-        for (Eigen::Index s = 0; s < patch.samples.points.rows(); ++s) {
-          const double distance = target.nearest(arrangement.motions[i](patch.samples.points.row(s))).distance;
-          square += distance * distance;
-          pattern.residual.max = std::max(pattern.residual.max, distance);
-          ++count;
-        }
-      }
-      pattern.residual.rms = std::sqrt(square / std::max(count, 1));
-      annotation.patterns.push_back(std::move(pattern));
+  void add_patterns(const PreparedMesh& partition, const PartRegions& parts, bool pieces) {
+    const PatternSearchOptions options{options_.tolerance, kLeastShare, pieces, options_.explanation,
+                                       [this] { return late(); }};
+    for (Pattern& pattern : find_patterns(partition, parts, regions_, options, context_)) {
+      pattern.id = static_cast<int>(patterns_.size());
+      patterns_.push_back(std::move(pattern));
     }
   }
 
@@ -306,24 +249,14 @@ class Detector {
     set_parents(annotation.regions);
   }
 
-  double area_of(const std::vector<int>& faces) const {
-    double area = 0;
-    for (const int f : faces) area += prepared_.areas[f];
-    return area;
-  }
-
-  // A region that is far less exact than one that contains it is symmetric by coincidence: the shape around it shows
-  // how exact this mesh is. Kept, its group would also clash with the exact ones. A turned part's residual is that of
-  // its facets and says nothing.
   void drop_coincidences(std::vector<Region>& regions) const {
-    constexpr double kFarLess = 20;
-    constexpr double kMost = 0.5;  // of what is around: the larger part of a shape is no coincidence
-    const double least = 0.01 * options_.tolerance;
     const std::vector<Region> all = regions;
     std::erase_if(regions, [&](const Region& region) {
+      const double area = area_of(prepared_, region.faces);
       const bool coincidence = !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
-        return around.faces.size() > region.faces.size() && area_of(region.faces) < kMost * area_of(around.faces) &&
-               region.residual.max > kFarLess * std::max(around.residual.max, least) &&
+        return around.faces.size() > region.faces.size() &&
+               by_coincidence(area, region.residual.max, area_of(prepared_, around.faces), around.residual.max,
+                              options_.tolerance) &&
                std::ranges::includes(around.faces, region.faces);
       });
       if (coincidence && options_.explanation != nullptr) {
@@ -341,6 +274,7 @@ class Detector {
   DirectionSet screen_;
   std::shared_ptr<const SurfaceIndex> whole_index_;
   std::vector<FoundRegion> regions_;
+  std::vector<Pattern> patterns_;
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
 };
 

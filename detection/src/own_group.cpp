@@ -23,6 +23,7 @@ constexpr int kScreenSamples = 96;
 constexpr double kSameDirection = 0.03;     // radians
 constexpr std::size_t kMostRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
 constexpr double kClassifyTolerance = 0.02;
+constexpr double kNothing = 0.02;  // tolerances: misfits below are none
 
 Matrix3d mirror(const Vector3d& normal) {
   return Matrix3d::Identity() - 2 * normal * normal.transpose();
@@ -40,11 +41,48 @@ bool same_line(const Vector3d& a, const Vector3d& b) {
   return a.cross(b).norm() < kSameDirection;
 }
 
+double misfit(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context) {
+  constexpr std::size_t kQueries = 4000;
+  return measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context, kQueries)
+      .rms;
+}
+
+// How far facets of a surface turned about the axis lie inside it, at most, rms over the patch: the sagitta
+// R (1 - cos(phi / 2)) of the longest chord of each face, at the distance R, across the angle phi.
+double sagitta(const SurfacePatch& patch, const GroupPlacement& placement) {
+  const PreparedMesh& prepared = *patch.prepared;
+  const bool round = !placement.group.has_axis();
+  double square = 0;
+  double area = 0;
+  for (const int face : patch.faces) {
+    std::array<Vector3d, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int vertex = prepared.mesh.faces(face, static_cast<Eigen::Index>(k));
+      corners[k] = prepared.mesh.vertices.row(vertex).transpose() - placement.centre;
+      const Vector3d axis = placement.frame.col(2);
+      if (!round) corners[k] -= axis.dot(corners[k]) * axis;
+    }
+    double most = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d& a = corners[k];
+      const Vector3d& b = corners[(k + 1) % 3];
+      const double product = a.norm() * b.norm();
+      if (product <= 0) continue;
+      const double cosine = std::clamp(a.dot(b) / product, -1.0, 1.0);
+      most = std::max(most, std::max(a.norm(), b.norm()) * (1 - std::sqrt(0.5 * (1 + cosine))));
+    }
+    square += prepared.areas[face] * most * most;
+    area += prepared.areas[face];
+  }
+  return std::sqrt(square / std::max(area, 1e-300));
+}
+
 /// The search for one patch: directions found so far, and the best group.
 class Search {
  public:
-  Search(const SurfacePatch& patch, const RunContext& context, bool thorough)
-      : patch_(patch), context_(context), thorough_(thorough), centre_(patch.moments.centroid) {}
+  /// \param thorough every attempt on all samples \param finite no continuous groups
+  Search(const SurfacePatch& patch, const RunContext& context, bool thorough, bool finite)
+      : patch_(patch), context_(context), thorough_(thorough), finite_(finite), centre_(patch.moments.centroid) {}
 
   std::optional<OwnGroup> run(const DirectionSet* screen, const GroupHints& hints) {
     const CandidateDirections candidates = find_candidates(patch_, screen, context_);
@@ -60,10 +98,11 @@ class Search {
         if (!best_) try_simple();
       }
     }
-    if (!best_ || polish()) return best_;
+    if (!best_) return best_;
+    if (polish()) return continuous() ? no_treads(screen, hints) : best_;
     if (thorough_) return std::nullopt;
     // The quick look was deceived: every attempt again, on all samples.
-    return Search(patch_, context_, true).run(screen, hints);
+    return Search(patch_, context_, true, finite_).run(screen, hints);
   }
 
  private:
@@ -71,6 +110,16 @@ class Search {
     Vector3d axis;
     int order;
   };
+
+  // What turns by any angle to the tolerance may have a tread that turns exactly by some. Facets are no treads.
+  std::optional<OwnGroup> no_treads(const DirectionSet* screen, const GroupHints& hints) {
+    constexpr double kFarLess = 0.1;
+    constexpr double kFacets = 1.5;
+    const double any = misfit(patch_, best_->placement, context_);
+    if (any < kFacets * sagitta(patch_, best_->placement) + kNothing * patch_.tolerance) return best_;
+    const std::optional<OwnGroup> some = Search(patch_, context_, thorough_, true).run(screen, hints);
+    return some && misfit(patch_, some->placement, context_) < kFarLess * any ? some : best_;
+  }
 
   bool continuous() const { return best_ && best_->placement.group.continuous(); }
 
@@ -163,7 +212,7 @@ class Search {
 
   bool try_sphere(const CandidateDirections& candidates) {
     const auto [low, high] = std::ranges::minmax(candidates.variances);
-    if (high <= 0 || std::sqrt(high) - std::sqrt(std::max(low, 0.0)) > patch_.tolerance) return false;
+    if (finite_ || high <= 0 || std::sqrt(high) - std::sqrt(std::max(low, 0.0)) > patch_.tolerance) return false;
     return attempt({Family::Kh, 1}, GroupFrame::Identity());
   }
 
@@ -207,7 +256,7 @@ class Search {
 
   void find_rotations(const Vector3d& axis) {
     context_.check();
-    if (continuous_about(patch_, axis, centre_)) {
+    if (!finite_ && continuous_about(patch_, axis, centre_)) {
       const GroupFrame frame = frame_about(axis);
       if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
     }
@@ -351,6 +400,7 @@ class Search {
   const SurfacePatch& patch_;
   const RunContext& context_;
   bool thorough_;
+  bool finite_;
   Vector3d centre_;
   std::vector<Vector3d> mirrors_;
   std::vector<Vector3d> axes_;
@@ -368,7 +418,7 @@ bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const 
 
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,
                                        const RunContext& context) {
-  return Search(patch, context, false).run(screen, hints);
+  return Search(patch, context, false, false).run(screen, hints);
 }
 
 }  // namespace orbifit

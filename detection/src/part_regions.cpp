@@ -37,6 +37,7 @@ struct Found {
   std::vector<int> parts;  // ascending; what the region covers
   double area = 0;
   bool known = false;  // found before
+  double misfit = 0;   // largest, a fraction of the diagonal
 };
 
 class Search {
@@ -104,7 +105,9 @@ class Search {
 
   // A region found before counts for the parts that lie in it.
   void take(const FoundRegion& region) {
-    Found found{region.placement, {}, region.area, true};
+    const SurfacePatch patch =
+        make_patch(prepared_, region.faces, kPartSamples, options_.tolerance, context_, "known region");
+    Found found{region.placement, {}, region.area, true, misfit(region.placement, patch)};
     std::vector<double> inside(survey().moments.size(), 0);
     for (const int face : region.faces) {
       inside[static_cast<std::size_t>(prepared_.components.component_of_face[static_cast<std::size_t>(face)])] +=
@@ -196,6 +199,20 @@ class Search {
                                            std::string(reason)});
   }
 
+  double misfit(const GroupPlacement& placement, const SurfacePatch& patch) const {
+    constexpr std::size_t kQueries = 1500;
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    return measure_residual(patch, motions, context_, kQueries).max;
+  }
+
+  // Whether the shape around the parts shows them to be symmetric by coincidence: it is far more exact.
+  bool coincidence(const GroupPlacement& placement, const std::vector<int>& parts, double area, double off) const {
+    return !placement.group.continuous() && std::ranges::any_of(found_, [&](const Found& around) {
+      return by_coincidence(area, off, around.area, around.misfit, options_.tolerance) &&
+             std::ranges::includes(around.parts, parts);
+    });
+  }
+
   // Adds a region for a group known on `seed`, grown to all parts that the group permutes.
   void add(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& seed, double strictness) {
     if (already_known(placement, seed)) return note(stage, placement, seed, false, "known from a larger region");
@@ -206,8 +223,11 @@ class Search {
     if (area < least_area()) return note(stage, placement, grown, false, "too small");
     if (mere_border(placement, grown))
       return note(stage, placement, grown, false, "only its border gives it the group");
+    const double off = misfit(placement, patch_of(grown, "misfit"));
+    if (coincidence(placement, grown, area, off))
+      return note(stage, placement, grown, false, "far less exact than a region around it");
     note(stage, placement, grown, true, grown.size() > seed.size() ? "grown and verified" : "verified");
-    found_.push_back({placement, grown, area, false});
+    found_.push_back({placement, grown, area, false, off});
   }
 
   void find_part_groups(std::size_t number) {

@@ -12,15 +12,9 @@
 
 namespace orbifit {
 
-namespace {
-
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kLeastInstances = 3;
-constexpr int kMostSteps = 400;
-
-// motion * (rotation of a continuous own group) that turns least.
 Motion straightened(const Motion& motion, const GroupPlacement& own) {
   const auto turn_of = [](const Motion& m) { return (m.linear - Matrix3d::Identity()).norm(); };
   if (own.group.family == PointGroup::Family::K || own.group.family == PointGroup::Family::Kh) {
@@ -60,6 +54,11 @@ Motion straightened(const Motion& motion, const GroupPlacement& own) {
   }
   return best;
 }
+
+namespace {
+
+constexpr int kLeastInstances = 3;
+constexpr int kMostSteps = 400;
 
 struct Lattice {
   std::vector<Vector3d> steps;
@@ -143,29 +142,72 @@ std::optional<Lattice> find_lattice(const std::vector<Vector3d>& offsets, double
   return std::nullopt;
 }
 
-// All motions powers of one rotation whose powers do not close within them.
-std::optional<Arrangement> find_arc(const std::vector<Motion>& motions, const Vector3d& centroid, double reach,
-                                    double tolerance) {
-  for (std::size_t first = 1; first < motions.size(); ++first) {
-    const AxisAngle turn = axis_angle(motions[first].linear);
-    if (turn.determinant < 0 || turn.angle < 0.02) continue;
-    if (std::abs(turn.axis.dot(motions[first].translation)) > tolerance) continue;
-    const Matrix3d singular = Matrix3d::Identity() - motions[first].linear;
-    const Vector3d centre = singular.completeOrthogonalDecomposition().solve(motions[first].translation);
+// A rotation with a rise along its axis, to any power.
+struct Screw {
+  Vector3d axis, centre;
+  double angle, rise;
+
+  Motion power(int k) const {
+    Motion motion = Motion::rotation(axis, k * angle, centre);
+    motion.translation += k * rise * axis;
+    return motion;
+  }
+};
+
+std::optional<Screw> screw_of(const Motion& motion) {
+  constexpr double kLeastTurn = 0.02;
+  const AxisAngle turn = axis_angle(motion.linear);
+  if (turn.determinant < 0 || turn.angle < kLeastTurn) return std::nullopt;
+  const double rise = turn.axis.dot(motion.translation);
+  const Matrix3d singular = Matrix3d::Identity() - motion.linear;
+  const Vector3d across = motion.translation - rise * turn.axis;
+  return Screw{turn.axis, singular.completeOrthogonalDecomposition().solve(across), turn.angle, rise};
+}
+
+// The powers of the step that the motions are, up to the own group; empty unless they all are, and fill half of what
+// they span.
+std::vector<int> powers_of(const Screw& step, const std::vector<Motion>& motions, const GroupPlacement* own,
+                           const Vector3d& centroid, double reach, double tolerance) {
+  const bool closes = std::abs(step.rise) <= tolerance;
+  const int most = closes ? static_cast<int>(2 * std::numbers::pi / step.angle) + 1 : kMostSteps;
+  std::vector<int> powers;
+  for (const Motion& motion : motions) {
+    const Vector3d goal = motion(centroid);
+    std::optional<int> found;
+    for (int i = 0; i <= 2 * std::min(most, kMostSteps) && !found; ++i) {
+      const int k = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
+      const Motion power = step.power(k);
+      if ((power(centroid) - goal).norm() > 3 * tolerance) continue;
+      Motion rest = inverse(power) * motion;
+      if (own != nullptr) rest = straightened(rest, *own);
+      if (motion_distance(rest, Motion{}, centroid, reach) <= 3 * tolerance) found = k;
+    }
+    if (!found || std::ranges::find(powers, *found) != powers.end()) return {};
+    powers.push_back(*found);
+  }
+  const auto [lowest, highest] = std::ranges::minmax(powers);
+  return 2 * powers.size() < static_cast<std::size_t>(highest - lowest + 1) ? std::vector<int>{} : powers;
+}
+
+// All motions powers of one rotation whose powers do not close within them, or of one screw.
+std::optional<Arrangement> find_arc(const std::vector<Motion>& motions, const GroupPlacement* own,
+                                    const Vector3d& centroid, double reach, double tolerance) {
+  constexpr std::size_t kTries = 6;
+  std::vector<Screw> screws;
+  for (std::size_t i = 1; i < motions.size(); ++i) {
+    if (const std::optional<Screw> screw = screw_of(motions[i])) screws.push_back(*screw);
+  }
+  std::ranges::stable_sort(screws, {}, &Screw::angle);
+  if (screws.size() > kTries) screws.resize(kTries);
+  for (const Screw& screw : screws) {
     for (const int divisor : {1, 2, 3}) {
-      const Motion step = Motion::rotation(turn.axis, turn.angle / divisor, centre);
-      Arrangement found{Pattern::Kind::rotation, {step}, {}};
-      const int reachable = static_cast<int>(2 * std::numbers::pi * divisor / turn.angle) + 1;
-      for (const Motion& motion : motions) {
-        for (int k = -reachable; k <= reachable && std::abs(k) < kMostSteps; ++k) {
-          const Motion power = Motion::rotation(turn.axis, k * turn.angle / divisor, centre);
-          if (motion_distance(power, motion, centroid, reach) > 3 * tolerance) continue;
-          found.motions.push_back(power);
-          break;
-        }
-        if (found.motions.empty()) break;
-      }
-      if (found.motions.size() == motions.size()) return found;
+      const Screw step{screw.axis, screw.centre, screw.angle / divisor, screw.rise / divisor};
+      const std::vector<int> powers = powers_of(step, motions, own, centroid, reach, tolerance);
+      if (powers.empty()) continue;
+      const bool level = std::abs(step.rise) <= tolerance;
+      Arrangement found{level ? Pattern::Kind::rotation : Pattern::Kind::screw, {step.power(1)}, {}};
+      for (const int k : powers) found.motions.push_back(step.power(k));
+      return found;
     }
   }
   return std::nullopt;
@@ -203,7 +245,7 @@ Arrangement arrange(const std::vector<Motion>& given, const GroupPlacement* own,
     }
     return result;
   }
-  if (std::optional<Arrangement> arc = find_arc(motions, centroid, reach, tolerance)) return *arc;
+  if (std::optional<Arrangement> arc = find_arc(motions, own, centroid, reach, tolerance)) return *arc;
   return result;
 }
 

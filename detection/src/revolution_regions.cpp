@@ -22,6 +22,7 @@ using Family = PointGroup::Family;
 constexpr int kAngles = 12;
 constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr int kPatchSamples = 700;
+constexpr double kSlack = 1.2;       // of the tolerance, for faces that are collected
 constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
 
 Vector3d centroid_of(const PreparedMesh& prepared, int face) {
@@ -35,8 +36,8 @@ Vector3d centroid_of(const PreparedMesh& prepared, int face) {
 /// The faces about one axis.
 class Turned {
  public:
-  Turned(const PreparedMesh& prepared, const SurfaceIndex& whole, const Line& axis, double tolerance)
-      : prepared_(prepared), whole_(whole), axis_(axis), tolerance_(tolerance) {
+  Turned(const PreparedMesh& prepared, const SurfaceIndex& surface, const Line& axis, double tolerance)
+      : prepared_(prepared), surface_(surface), axis_(axis), tolerance_(tolerance) {
     for (int k = 1; k < kAngles; ++k) {
       const double turns = k / std::numbers::phi;
       turns_.push_back(
@@ -54,13 +55,14 @@ class Turned {
     const Vector3d centroid = centroid_of(prepared_, face);
     const Vector3d normal = prepared_.normals.row(face);
     return std::ranges::all_of(turns_, [&](const Motion& motion) {
-      return whole_.nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_, true).face >= 0;
+      return surface_.nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_, true).face >=
+             0;
     });
   }
 
  private:
   const PreparedMesh& prepared_;
-  const SurfaceIndex& whole_;
+  const SurfaceIndex& surface_;
   Line axis_;
   double tolerance_;
   std::vector<Motion> turns_;
@@ -82,39 +84,45 @@ class Search {
          const RevolutionRegionOptions& options, const RunContext& context)
       : prepared_(prepared), whole_(whole), known_(known), options_(options), context_(context) {
     for (const std::vector<int>& faces : prepared.components.faces) {
-      double area = 0;
-      for (const int f : faces) area += prepared.areas[f];
-      areas_.push_back(area);
+      areas_.push_back(area_of(prepared, faces));
       flat_.push_back(planarity(prepared, faces) > 0.999 ? 1 : 0);
     }
   }
 
+  // Collects faces about the axis, fits it to them, and again with the better axis within what was collected, until
+  // what is left turns.
   void look_at(const Line& axis) {
-    const std::vector<int> faces = faces_about(axis);
-    double area = 0;
-    for (const int f : faces) area += prepared_.areas[f];
-    if (area < options_.least_share * prepared_.area) return;
-    const GroupPlacement turn{{Family::Cinf, 1}, frame_about(axis.direction), axis.point};
-    FoundRegion region{turn, faces, area, "turned about an axis"};
-    if (says_nothing_new(region)) return;
-    const SurfacePatch patch = make_patch(prepared_, faces, kPatchSamples, options_.tolerance, context_, "turned");
-    if (!continuous_about(patch, axis.direction, axis.point)) {
-      return note(region, false, "does not turn into itself closely enough");
+    constexpr int kRounds = 4;
+    GroupPlacement turn{{Family::Cinfv, 1}, frame_about(axis.direction), axis.point};
+    FoundRegion region{turn, faces_about(axis, whole_, kSlack * options_.tolerance), 0, "turned about an axis"};
+    for (int round = 0; round < kRounds; ++round) {
+      region.area = area_of(prepared_, region.faces);
+      if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
+      const SurfacePatch patch =
+          make_patch(prepared_, region.faces, kPatchSamples, options_.tolerance, context_, "turned");
+      if (round == 0 && !continuous_about(patch, axis.direction, axis.point)) break;
+      region.placement = refine(patch, region.placement);
+      if (verified(patch, region.placement, context_)) return add(patch, std::move(region));
+      const Line better{region.placement.centre, region.placement.frame.col(2)};
+      std::vector<int> fewer = faces_about(better, round == 0 ? whole_ : *patch.index, kSlack * continuous_tolerance(patch));
+      if (fewer == region.faces) break;
+      region.faces = std::move(fewer);
     }
-    const std::optional<OwnGroup> group = find_own_group(patch, nullptr, {{axis.direction}}, context_);
-    if (!group || !group->placement.group.continuous()) {
-      note(region, false, group ? "only a finite group holds" : "does not turn into itself closely enough");
-      return;
-    }
-    region.placement = group->placement;
-    if (says_nothing_new(region)) return;
-    note(region, true, "verified");
-    found_.push_back(std::move(region));
+    note(region, false, "does not turn into itself closely enough");
   }
 
   std::vector<FoundRegion> take() { return std::move(found_); }
 
  private:
+  // With the largest group that the region has.
+  void add(const SurfacePatch& patch, FoundRegion region) {
+    const std::optional<OwnGroup> group = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
+    if (group && group->placement.group.continuous()) region.placement = group->placement;
+    if (says_nothing_new(region)) return;
+    note(region, true, "verified");
+    found_.push_back(std::move(region));
+  }
+
   bool says_nothing_new(const FoundRegion& region) const {
     return says_nothing_new_beside(prepared_, known_, region, options_.tolerance, kNothingNew) ||
            says_nothing_new_beside(prepared_, found_, region, options_.tolerance, kNothingNew);
@@ -127,9 +135,9 @@ class Search {
          reason});
   }
 
-  std::vector<int> faces_about(const Line& axis) const {
-    const double tolerance = 1.2 * options_.tolerance;
-    const Turned turned(prepared_, whole_, axis, tolerance);
+  // Those whose circles lie on the surface to the tolerance.
+  std::vector<int> faces_about(const Line& axis, const SurfaceIndex& surface, double tolerance) const {
+    const Turned turned(prepared_, surface, axis, tolerance);
     std::vector<int> result;
     for (std::size_t s = 0; s < prepared_.components.faces.size(); ++s) {
       if (areas_[s] <= 0) continue;
@@ -221,8 +229,7 @@ std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance
   };
   for (const std::vector<int>& faces : prepared.components.faces) {
     context.check();
-    double area = 0;
-    for (const int f : faces) area += prepared.areas[f];
+    const double area = area_of(prepared, faces);
     if (area < kLeastShare * prepared.area) continue;
     const Oriented all = oriented_points(prepared, faces, 1500);
     const std::optional<RevolutionFit> fit = fit_axis_of_revolution(all.points, all.normals, all.weights, kAngle);

@@ -107,6 +107,12 @@ PreparedMesh prepare(const Mesh& mesh) {
   return result;
 }
 
+double area_of(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  double area = 0;
+  for (const int face : faces) area += prepared.areas[face];
+  return area;
+}
+
 SurfaceMoments surface_moments(const PreparedMesh& prepared, const std::vector<int>& faces) {
   SurfaceMoments result;
   Matrix3d second = Matrix3d::Zero();

@@ -215,7 +215,12 @@ std::optional<Region> image_of_earlier(const std::vector<Region>& regions,
 SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance) {
   constexpr double kMostTurn = 0.2;
   const double size = diagonal(mesh.vertices);
-  const double reach = tolerance * size;
+  // What fits exactly is not moved off its place: no further than it misses itself, and a little of its own size.
+  const auto reach_of = [&](const Region& region, const Placement& placement) {
+    constexpr double kOfSize = 0.002;
+    constexpr double kOfMisfit = 5;
+    return std::min(tolerance * size, kOfSize * placement.reach + kOfMisfit * region.residual.rms * size);
+  };
   // Larger regions first: what is around a region stands before the region itself.
   std::vector<std::size_t> order(annotation.regions.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -230,6 +235,7 @@ SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annota
     const std::optional<Placement> before = placement_of(mesh, region);
     placements.push_back(before);
     if (!before) continue;
+    const double reach = reach_of(region, *before);
     if (const auto image = image_of_earlier(regions, placements, b, *before, reach)) {
       region = *image;
     } else {

@@ -37,6 +37,12 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<Fou
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation = nullptr);
 
+/// Whether a region is symmetric by coincidence: another one, around it and at least twice as large, is far more exact
+/// and shows how exact this mesh is. Kept, its group would also clash with the exact ones. To be asked of finite groups
+/// only: a turned part's residual is that of its facets and says nothing.
+/// \param misfit, misfit_around largest residuals \param tolerance of the detector; all fractions of the diagonal
+bool by_coincidence(double area, double misfit, double area_around, double misfit_around, double tolerance);
+
 /// Drops regions of at most half the surface to which only their border gives a group: pieces of a larger plane,
 /// cylinder or sphere. \param whole index of the whole mesh
 void drop_featureless(const PreparedMesh& prepared, const SurfaceIndex& whole, double tolerance,

@@ -17,10 +17,13 @@ struct Arrangement {
 };
 
 /// Names the arrangement of copies placed by `motions` (the first is the identity): a lattice of translations of one to
-/// three generators, an arc of rotations, or none (`congruent`).
+/// three generators, an arc of rotations, a screw, or none (`congruent`).
 /// \param own group of the copy at the first place, by which a motion may be changed; null when it has none
 /// \param centroid of the first copy \param reach its radius \param tolerance how far a copy may be off its place
 Arrangement arrange(const std::vector<Motion>& motions, const GroupPlacement* own, const Eigen::Vector3d& centroid,
                     double reach, double tolerance);
+
+/// The motion that takes a copy to the same place as `motion` and turns least: motion g for g in the copy's own group.
+Motion straightened(const Motion& motion, const GroupPlacement& own);
 
 }  // namespace orbifit

@@ -30,6 +30,9 @@ struct PreparedMesh {
 /// \throw InputError when the mesh has no area or a coordinate is not finite
 PreparedMesh prepare(const Mesh& mesh);
 
+/// Of the faces that count, see PreparedMesh::areas.
+double area_of(const PreparedMesh& prepared, const std::vector<int>& faces);
+
 /// Area moments of some faces, exact integrals over the triangles.
 struct SurfaceMoments {
   double area = 0;

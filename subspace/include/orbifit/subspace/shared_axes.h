@@ -6,8 +6,9 @@
 namespace orbifit {
 
 /// Regions detected one by one share axes, planes and centres only up to the tolerance, and groups that miss each other
-/// by a little do not close (see closable.h). Here each region in turn, in the annotation's order, is moved by less
-/// than `tolerance` (fraction of the diagonal, on its own extent) so that
+/// by a little do not close (see closable.h). Here each region in turn, largest first, is moved by less than
+/// `tolerance` (fraction of the diagonal, on its own extent), and by little more than its residual where it fits
+/// closely, so that
 ///  - its centre is fixed exactly by the elements of earlier regions around it that fix it nearly, and its axes and
 ///    mirrors are theirs where they nearly are;
 ///  - it is the exact image of an earlier region of the same group wherever an element around both takes one to the

@@ -1,0 +1,234 @@
+#include "orbifit/detection/pattern_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/detection/patterns.h"
+#include "orbifit/detection/verification.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+class Search {
+ public:
+  Search(const PreparedMesh& prepared, const PartRegions& parts, const std::vector<FoundRegion>& regions,
+         const PatternSearchOptions& options, const RunContext& context)
+      : prepared_(prepared),
+        parts_(parts),
+        regions_(regions),
+        options_(options),
+        context_(context),
+        used_(prepared.components.faces.size(), 0),
+        boxes_(prepared.components.faces.size()) {
+    for (std::size_t c = 0; c < boxes_.size(); ++c) {
+      for (const int face : prepared.components.faces[c]) {
+        for (const int vertex : prepared.mesh.faces.row(face)) {
+          boxes_[c].extend(Vector3d(prepared.mesh.vertices.row(vertex)));
+        }
+      }
+    }
+  }
+
+  std::vector<Pattern> run() {
+    for (std::size_t k = 0; k < classes().size() && !late(); ++k) {
+      context_.check();
+      look_at(k);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  struct Instances {
+    Arrangement arrangement;
+    std::vector<std::vector<int>> parts;  // by instance
+  };
+
+  const std::vector<CongruenceClass>& classes() const { return parts_.survey.classes; }
+  const SurfaceMoments& moments(int part) const { return parts_.survey.moments[static_cast<std::size_t>(part)]; }
+  bool late() const { return options_.late && options_.late(); }
+
+  const GroupPlacement* own_group(std::size_t number) const {
+    return parts_.own_groups[number] ? &*parts_.own_groups[number] : nullptr;
+  }
+
+  double tolerance_of(int part) const { return options_.tolerance * std::min(1.0, 4 * moments(part).diagonal); }
+
+  bool is_used(int part) const { return used_[static_cast<std::size_t>(part)] != 0; }
+
+  void look_at(std::size_t number) {
+    const CongruenceClass& kind = classes()[number];
+    const int first = kind.members.front();
+    if (kind.members.size() < 2 || std::ranges::any_of(kind.members, [&](int c) { return is_used(c); })) return;
+    const double all = moments(first).area * static_cast<double>(kind.members.size());
+    if (all < options_.least_share * prepared_.area) return;
+    Instances instances{
+        arrange(kind.motions, own_group(number), moments(first).centroid, moments(first).radius, tolerance_of(first)),
+        {}};
+    const Arrangement& arrangement = instances.arrangement;
+    // A group says more than a pattern, unless the pattern is a true row or grid.
+    const bool ordered = arrangement.kind != Pattern::Kind::congruent;
+    const bool lattice = ordered && arrangement.kind != Pattern::Kind::rotation &&
+                         kind.members.size() > (std::size_t{1} << arrangement.generators.size());
+    if (options_.pieces && !lattice && (!ordered || kind.members.size() < 3)) return;
+    if (!lattice && related_by_a_region(kind)) return;
+    for (const int c : kind.members) instances.parts.push_back({c});
+    for (const int c : kind.members) used_[static_cast<std::size_t>(c)] = 1;
+    grow(instances);
+    note(instances);
+    add(instances);
+  }
+
+  // Adds to the instances the parts that touch them and that the same motions carry along, as long as there are any.
+  void grow(Instances& instances) {
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (std::size_t k = 0; k < classes().size(); ++k) {
+        const CongruenceClass& kind = classes()[k];
+        if (kind.members.size() < instances.parts.size()) continue;
+        for (std::size_t m = 0; m < kind.members.size(); ++m) {
+          if (is_used(kind.members[m]) || !touches(kind.members[m], instances.parts.front())) continue;
+          const std::vector<int> orbit = orbit_of(k, m, instances);
+          if (orbit.empty()) continue;
+          for (std::size_t i = 0; i < orbit.size(); ++i) {
+            instances.parts[i].push_back(orbit[i]);
+            used_[static_cast<std::size_t>(orbit[i])] = 1;
+          }
+          grown = true;
+        }
+      }
+    }
+  }
+
+  bool touches(int part, const std::vector<int>& others) const {
+    const Vector3d slack = Vector3d::Constant(0.5 * options_.tolerance);
+    const Eigen::AlignedBox3d& box = boxes_[static_cast<std::size_t>(part)];
+    const Eigen::AlignedBox3d wider(box.min() - slack, box.max() + slack);
+    return std::ranges::any_of(others,
+                               [&](int other) { return wider.intersects(boxes_[static_cast<std::size_t>(other)]); });
+  }
+
+  // The parts of class k, one an instance, onto which the arrangement's motions carry its m-th member; empty where
+  // there are none, or where they are in use.
+  std::vector<int> orbit_of(std::size_t k, std::size_t m, const Instances& instances) const {
+    const CongruenceClass& kind = classes()[k];
+    const SurfaceMoments& mine = moments(kind.members[m]);
+    const SurfaceMoments& first = moments(kind.members.front());
+    const double tolerance = 3 * tolerance_of(kind.members[m]);
+    std::vector<int> orbit;
+    for (const Motion& motion : instances.arrangement.motions) {
+      const Vector3d goal = motion(mine.centroid);
+      std::optional<int> image;
+      for (std::size_t j = 0; j < kind.members.size() && !image; ++j) {
+        const int part = kind.members[j];
+        if (is_used(part) || (moments(part).centroid - goal).norm() > tolerance) continue;
+        if (std::ranges::find(orbit, part) != orbit.end()) continue;
+        Motion rest = inverse(kind.motions[j]) * motion * kind.motions[m];
+        if (own_group(k) != nullptr) rest = straightened(rest, *own_group(k));
+        if (motion_distance(rest, Motion{}, first.centroid, first.radius) <= tolerance) image = part;
+      }
+      if (!image) return {};
+      orbit.push_back(*image);
+    }
+    return orbit;
+  }
+
+  // Whether some region's group carries the first member of the class onto each of the others.
+  bool related_by_a_region(const CongruenceClass& kind) const {
+    const std::vector<int> faces = faces_of(kind.members);
+    return std::ranges::any_of(regions_, [&](const FoundRegion& region) {
+      if (region.placement.group.continuous()) return false;
+      if (area_outside(prepared_, faces, region.faces) > kRelated * area_of(prepared_, faces)) return false;
+      const std::vector<Motion> motions =
+          judged_motions(region.placement.group, region.placement.frame, region.placement.centre);
+      const Vector3d start = moments(kind.members.front()).centroid;
+      return std::ranges::all_of(kind.members, [&](int c) {
+        const Vector3d goal = moments(c).centroid;
+        return c == kind.members.front() || std::ranges::any_of(motions, [&](const Motion& m) {
+                 return (m(start) - goal).norm() < 2 * options_.tolerance;
+               });
+      });
+    });
+  }
+
+  std::vector<int> faces_of(const std::vector<int>& parts) const {
+    std::vector<int> faces;
+    for (const int c : parts) {
+      std::ranges::copy(prepared_.components.faces[static_cast<std::size_t>(c)], std::back_inserter(faces));
+    }
+    std::ranges::sort(faces);
+    return faces;
+  }
+
+  void add(const Instances& instances) {
+    Pattern pattern;
+    pattern.id = static_cast<int>(found_.size());
+    std::vector<int> all;
+    for (const std::vector<int>& each : instances.parts) std::ranges::copy(each, std::back_inserter(all));
+    std::ranges::sort(all);
+    pattern.name = name_of_parts(all);
+    pattern.kind = instances.arrangement.kind;
+    for (const Motion& step : instances.arrangement.generators) {
+      pattern.generators.push_back(conjugate(prepared_.input_of_normalised, step));
+    }
+    const SurfacePatch patch =
+        make_patch(prepared_, faces_of(instances.parts.front()), 200, options_.tolerance, context_, "pattern");
+    double square = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < instances.parts.size(); ++i) {
+      const Motion& motion = instances.arrangement.motions[i];
+      const std::vector<int> faces = faces_of(instances.parts[i]);
+      pattern.instances.push_back({conjugate(prepared_.input_of_normalised, motion), faces});
+      if (i == 0) {
+        pattern.instances.front().motion = Motion{};
+        continue;
+      }
+      const SurfaceIndex target(prepared_.mesh, faces);
+      for (Eigen::Index s = 0; s < patch.samples.points.rows(); ++s) {
+        const double distance = target.nearest(motion(patch.samples.points.row(s))).distance;
+        square += distance * distance;
+        pattern.residual.max = std::max(pattern.residual.max, distance);
+        ++count;
+      }
+    }
+    pattern.residual.rms = std::sqrt(square / std::max(count, 1));
+    found_.push_back(std::move(pattern));
+  }
+
+  void note(const Instances& instances) const {
+    if (options_.explanation == nullptr) return;
+    options_.explanation->notes.push_back({options_.pieces ? "segments: patterns" : "patterns",
+                                           to_string(instances.arrangement.kind) + " of " +
+                                               std::to_string(instances.parts.size()) + " times " +
+                                               name_of_parts(instances.parts.front()),
+                                           true, "no region relates them"});
+  }
+
+  static constexpr double kRelated = 0.02;  // of the area outside of the region
+
+  const PreparedMesh& prepared_;
+  const PartRegions& parts_;
+  const std::vector<FoundRegion>& regions_;
+  const PatternSearchOptions& options_;
+  const RunContext& context_;
+  std::vector<char> used_;                  // by part: in a pattern
+  std::vector<Eigen::AlignedBox3d> boxes_;  // by part
+  std::vector<Pattern> found_;
+};
+
+}  // namespace
+
+std::vector<Pattern> find_patterns(const PreparedMesh& prepared, const PartRegions& parts,
+                                   const std::vector<FoundRegion>& regions, const PatternSearchOptions& options,
+                                   const RunContext& context) {
+  return Search(prepared, parts, regions, options, context).run();
+}
+
+}  // namespace orbifit
