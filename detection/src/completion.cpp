@@ -198,8 +198,15 @@ class Completion {
   }
 
   bool holds(const GroupPlacement& placement, const std::vector<int>& faces) const {
-    return verified(make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion"), placement,
-                    context_);
+    return holds(placement, make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion"));
+  }
+
+  // Of a region that was verified where it was found: fewer samples tell whether anything was lost on the way.
+  bool holds(const GroupPlacement& placement, const SurfacePatch& patch) const {
+    constexpr int kPairs = 6000;
+    constexpr int kFewest = 150;
+    const auto motions = judged_motions(placement.group, placement.frame, placement.centre).size();
+    return verified(patch, placement, context_, std::max(kFewest, kPairs / static_cast<int>(motions)));
   }
 
   // Moves the region's placement to the mean of its images under motions that keep the region.
@@ -224,7 +231,7 @@ class Completion {
         const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
         return measure_residual(patch, motions, context_, kQueries).rms;
       };
-      if (fit(goal) > kAsWell * fit(now.placement) + kNothing || !verified(patch, goal, context_)) return;
+      if (fit(goal) > kAsWell * fit(now.placement) + kNothing || !holds(goal, patch)) return;
     }
     regions_[region].placement = goal;
   }

@@ -20,6 +20,7 @@
 #include "orbifit/detection/part_regions.h"
 #include "orbifit/detection/pattern_search.h"
 #include "orbifit/detection/plane_regions.h"
+#include "orbifit/detection/repeated_parts.h"
 #include "orbifit/detection/revolution_regions.h"
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/surface_patch.h"
@@ -130,13 +131,20 @@ class Detector {
     if (fine) {
       find_turned(partition);
       find_about_lines(partition);
+      find_repeated(partition);
     }
-    if (count != prepared_.components.faces.size()) {
-      PartRegions parts = find_in_parts(partition, true);
-      add_of_pieces(std::move(parts.regions));
-      if (fine) add_patterns(partition, parts, true);
-    }
+    if (count != prepared_.components.faces.size()) add_of_pieces(find_in_parts(partition, true).regions);
     if (!fine) find_turned(partition);
+  }
+
+  // Parts of one surface that repeat on a host take the place of components.
+  void find_repeated(const PreparedMesh& partition) {
+    if (late()) return;
+    PreparedMesh repeated = prepared_;
+    repeated.components = repeated_parts(partition);
+    PartRegions parts = find_in_parts(repeated, true);
+    add_of_pieces(std::move(parts.regions));
+    add_patterns(repeated, parts, true);
   }
 
   // Whether nearly all is one component of small triangles, of which creases tell little. Where parts are modelled as

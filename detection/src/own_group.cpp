@@ -410,9 +410,9 @@ class Search {
 
 }  // namespace
 
-bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context) {
+bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples) {
   const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-  return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
+  return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, samples,
                        VerificationLimits{}.joint, context));
 }
 

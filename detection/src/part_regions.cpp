@@ -249,6 +249,7 @@ class Search {
     const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
     if (!group) return note("parts", {}, {first}, false, "no group of its own");
     result_.own_groups[number] = group->placement;
+    mover_->know(number, group->placement);
     if (flat_mirror_only(mine, group->placement, options_.tolerance)) return;
     if (options_.pieces && (sheet || mere_border(group->placement, {first}))) {
       return note("parts", group->placement, {first}, false, "only its border gives it the group");

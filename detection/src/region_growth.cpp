@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "orbifit/detection/patterns.h"
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/random.h"
 
@@ -111,12 +112,45 @@ ComponentMover::ComponentMover(const PreparedMesh& prepared, const ComponentSurv
       whole_(whole),
       tolerance_(tolerance),
       context_(context),
+      places_(survey.moments.size()),
+      continuous_own_(survey.classes.size()),
+      own_(survey.classes.size()),
       samples_(survey.moments.size()) {
+  for (std::size_t k = 0; k < survey.classes.size(); ++k) {
+    own_[k].emplace_back();
+    for (std::size_t i = 0; i < survey.classes[k].members.size(); ++i) {
+      places_[static_cast<std::size_t>(survey.classes[k].members[i])] = {static_cast<int>(k),
+                                                                         survey.classes[k].motions[i]};
+    }
+  }
   Points centroids(static_cast<Eigen::Index>(survey.moments.size()), 3);
   for (std::size_t c = 0; c < survey.moments.size(); ++c) {
     centroids.row(static_cast<Eigen::Index>(c)) = survey.moments[c].centroid;
   }
   centroids_ = std::make_unique<PointIndex>(centroids);
+}
+
+void ComponentMover::know(std::size_t number, const GroupPlacement& own) {
+  if (own.group.continuous()) {
+    continuous_own_[number] = own;
+    return;
+  }
+  const std::vector<Motion> motions = judged_motions(own.group, own.frame, own.centre);
+  own_[number].insert(own_[number].end(), motions.begin(), motions.end());
+}
+
+bool ComponentMover::carries(std::size_t component, std::size_t target, const Motion& motion, double reach) const {
+  const Place& from = places_[component];
+  const Place& to = places_[target];
+  if (from.number < 0 || from.number != to.number) return false;
+  const auto number = static_cast<std::size_t>(from.number);
+  const auto first = static_cast<std::size_t>(survey_.classes[number].members.front());
+  const SurfaceMoments& moments = survey_.moments[first];
+  Motion rest = inverse(to.motion) * motion * from.motion;
+  if (continuous_own_[number]) rest = straightened(rest, *continuous_own_[number]);
+  return std::ranges::any_of(own_[number], [&](const Motion& element) {
+    return motion_distance(rest, element, moments.centroid, moments.radius) <= 0.5 * reach;
+  });
 }
 
 int ComponentMover::image(std::size_t component, const Motion& motion, double reach, double least_share) {
@@ -131,6 +165,7 @@ int ComponentMover::image(std::size_t component, const Motion& motion, double re
     break;
   }
   if (target < 0) return -1;
+  if (carries(component, static_cast<std::size_t>(target), motion, reach)) return target;
   SurfaceSamples& samples = samples_[component];
   if (samples.faces.empty()) {
     std::vector<int> visible;

@@ -26,7 +26,8 @@ struct OwnGroup {
 
 /// Whether the group keeps the patch: verify() on all samples within the usual limits, at continuous_tolerance() for a
 /// continuous group and at the patch's own tolerance for a finite one.
-bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context);
+/// \param samples how many of the patch's samples to use, spread evenly; 0: all
+bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples = 0);
 
 /// The largest point group that maps the patch to itself: candidates for mirrors and axes, the orders about each axis,
 /// whole group templates refined jointly and verified element by element, largest first. Nothing for an asymmetric

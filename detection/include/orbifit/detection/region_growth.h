@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "orbifit/detection/components.h"
@@ -24,6 +25,10 @@ class ComponentMover {
   ComponentMover(const PreparedMesh& prepared, const ComponentSurvey& survey, const SurfaceIndex& whole,
                  double tolerance, const RunContext& context);
 
+  /// Tells the own group of the first member of one of the survey's classes. Where a motion differs by an element of
+  /// it from those by which the survey carries the members onto one another, nothing need be measured.
+  void know(std::size_t number, const GroupPlacement& own);
+
   /// The components that the group permutes, ascending.
   /// \param seed components known to belong \param strictness how far images may be off, in tolerances
   std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed, double strictness = 1);
@@ -35,6 +40,8 @@ class ComponentMover {
  private:
   // The component onto which the motion carries this one, or that share of it; -1 for none.
   int image(std::size_t component, const Motion& motion, double reach, double least_share);
+  // Whether the motion carries the component onto the other by what is known of their class, to half the reach.
+  bool carries(std::size_t component, std::size_t target, const Motion& motion, double reach) const;
   double reach_of(std::size_t component, const PointGroup& group) const;
 
   const PreparedMesh& prepared_;
@@ -43,7 +50,14 @@ class ComponentMover {
   double tolerance_;
   const RunContext& context_;
   std::unique_ptr<PointIndex> centroids_;
-  std::vector<SurfaceSamples> samples_;  // of each component, drawn when first needed
+  struct Place {
+    int number = -1;  // of the class
+    Motion motion;    // from its first member
+  };
+  std::vector<Place> places_;                                  // by component
+  std::vector<std::optional<GroupPlacement>> continuous_own_;  // by class
+  std::vector<std::vector<Motion>> own_;                       // by class: elements of a finite own group
+  std::vector<SurfaceSamples> samples_;                        // of each component, drawn when first needed
 };
 
 /// Whether every element of `inner` is one of `outer` on points within `reach` of `centre`, to `tolerance` (a length).
