@@ -188,7 +188,10 @@ class AxisSearch {
     std::ranges::stable_sort(orders_, [](const Order& x, const Order& y) {
       return (x.n > 2) != (y.n > 2) ? x.n > 2 : x.n * x.evidence > y.n * y.evidence;
     });
+    int half_turns = 0;
     for (std::size_t i = 0; i < orders_.size() && !late(); ++i) {
+      // A row of n things has 2 n half-turns; the strongest will do.
+      if (orders_[i].n == 2 && half_turns++ >= kMostHalfTurns) break;
       context_.progress("axes", 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(orders_.size()));
       look_at(orders_[i]);
     }
@@ -273,6 +276,7 @@ class AxisSearch {
     tried_.push_back({{order.axis, order.n}, turns.samples(order.kept)});
   }
 
+  static constexpr int kMostHalfTurns = 12;
   static constexpr double kLeastOfHalfTurns = 0.03;  // of the surface: any few things have one
 
   const ScreenedSurface& surface_;

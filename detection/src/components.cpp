@@ -215,7 +215,12 @@ std::optional<Motion> align(const SurfacePatch& patch, const PreparedMesh& prepa
     if (starts.size() > 4) starts.resize(4);
     for (const Start& start : starts) {
       const Motion motion = fit_motion(patch, prepared, target, start.motion);
-      if (verified(motion)) return motion;
+      if (!verified(motion)) continue;
+      // Along what slides on itself, such as a round bar, the fit leaves it open; the centroid does not.
+      Motion centred = motion;
+      centred.translation += part_moments.centroid - motion(patch.moments.centroid);
+      const bool slid = (centred.translation - motion.translation).norm() > 0.25 * patch.tolerance;
+      return slid && verified(centred) ? centred : motion;
     }
   }
   return std::nullopt;

@@ -5,6 +5,14 @@
 
 namespace orbifit {
 
+Eigen::Vector3d face_centroid(const PreparedMesh& prepared, int face) {
+  const Eigen::RowVector3i corners = prepared.mesh.faces.row(face);
+  return (prepared.mesh.vertices.row(corners[0]) + prepared.mesh.vertices.row(corners[1]) +
+          prepared.mesh.vertices.row(corners[2]))
+             .transpose() /
+         3;
+}
+
 void face_points(const PreparedMesh& prepared, int face, double spacing, int most_cuts,
                  std::vector<Eigen::Vector3d>& points) {
   points.clear();

@@ -6,6 +6,8 @@
 
 namespace orbifit {
 
+Eigen::Vector3d face_centroid(const PreparedMesh& prepared, int face);
+
 /// Points that stand for a face: the centroids of the k^2 equal triangles into which k cuts of each edge divide it, so
 /// that they are about `spacing` apart, k at most `most_cuts`.
 /// \param[out] points replaced

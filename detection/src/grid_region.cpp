@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 
 constexpr double kFlat = 0.999;        // length of the mean normal of a flat piece
 constexpr double kMostOff = 0.1;       // of a face's points
-constexpr double kMostAstray = 0.5;    // of a face's points, on faces that are out
 constexpr double kMostCut = 0.3;       // of the border of what is taken of a flat piece, within the piece
 constexpr double kNearlyWhole = 0.97;  // of a piece
 constexpr double kSpacing = 4;         // of a face's points, tolerances
@@ -30,8 +29,8 @@ std::vector<int> with_area(const PreparedMesh& prepared) {
   return faces;
 }
 
-std::vector<int> kept_faces(const ScreenedSurface& surface, const SurfaceGrid& grid, const std::vector<int>& faces,
-                            const std::vector<Motion>& motions, double most_off, const RunContext& context) {
+std::vector<int> kept_faces(const ScreenedSurface& surface, const std::vector<int>& faces,
+                            const std::vector<Motion>& motions, const RunContext& context) {
   std::vector<char> kept(faces.size(), 0);
   parallel_for(context, faces.size(), [&](std::size_t begin, std::size_t end) {
     std::vector<Vector3d> points;
@@ -39,12 +38,13 @@ std::vector<int> kept_faces(const ScreenedSurface& surface, const SurfaceGrid& g
       if (i % 256 == 0) context.check();
       face_points(surface.prepared, faces[i], kSpacing * surface.tolerance, kMostCuts, points);
       const Vector3d normal = surface.prepared.normals.row(faces[i]);
-      const auto allowed = static_cast<std::size_t>(most_off * static_cast<double>(points.size()));
+      const auto allowed = static_cast<std::size_t>(kMostOff * static_cast<double>(points.size()));
       kept[i] = std::ranges::all_of(motions, [&](const Motion& motion) {
         const Vector3d turned = motion.linear * normal;
         std::size_t off = 0;
-        return std::ranges::all_of(
-            points, [&](const Vector3d& point) { return grid.holds(motion(point), turned) || ++off <= allowed; });
+        return std::ranges::all_of(points, [&](const Vector3d& point) {
+          return surface.grid.holds(motion(point), turned) || ++off <= allowed;
+        });
       });
     }
   });
@@ -124,14 +124,50 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
   }
 }
 
-std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacement& placement, bool thin_out,
+std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacement& placement,
                              const RunContext& context) {
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-  const std::vector<int> first = kept_faces(surface, surface.grid, surface.faces, motions, kMostOff, context);
-  std::vector<int> result = by_pieces(surface, first);
-  if (!thin_out || result.empty() || result.size() == first.size()) return result;
-  const SurfaceGrid inside(surface.prepared, result, surface.tolerance);
-  return by_pieces(surface, kept_faces(surface, inside, result, motions, kMostAstray, context));
+  return by_pieces(surface, kept_faces(surface, surface.faces, motions, context));
+}
+
+std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePatch& patch,
+                                const Verification& verification, const GroupPlacement& placement,
+                                const RunContext& context) {
+  constexpr double kFaultless = 0.98;     // of the samples of a piece
+  constexpr double kNormalCosine = 0.64;  // 50 degrees
+  const PreparedMesh& prepared = surface.prepared;
+  const auto piece_of = [&](int face) {
+    return static_cast<std::size_t>(prepared.components.component_of_face[static_cast<std::size_t>(face)]);
+  };
+  std::vector<int> samples(prepared.components.faces.size(), 0);
+  std::vector<int> kept(samples.size(), 0);
+  for (std::size_t s = 0; s < patch.samples.faces.size(); ++s) {
+    const std::size_t piece = piece_of(patch.samples.faces[s]);
+    ++samples[piece];
+    kept[piece] += verification.kept[s];
+  }
+  const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+  std::vector<char> stays(patch.faces.size(), 1);
+  parallel_for(context, patch.faces.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t piece = piece_of(patch.faces[i]);
+      if (samples[piece] > 0 && kept[piece] >= kFaultless * samples[piece]) continue;
+      if (i % 256 == 0) context.check();
+      const Vector3d centroid = face_centroid(prepared, patch.faces[i]);
+      const Vector3d normal = prepared.normals.row(patch.faces[i]);
+      const bool all = std::ranges::all_of(motions, [&](const Motion& motion) {
+        return patch.index
+                   ->nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, patch.tolerance, true)
+                   .face >= 0;
+      });
+      stays[i] = all ? 1 : 0;
+    }
+  });
+  std::vector<int> faces;
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    if (stays[i] != 0) faces.push_back(patch.faces[i]);
+  }
+  return by_pieces(surface, faces);
 }
 
 }  // namespace orbifit

@@ -17,6 +17,7 @@ namespace orbifit {
 namespace {
 
 constexpr int kPatchSamples = 1000;
+constexpr int kRounds = 2;            // of thinning out what does not verify
 constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
 
 }  // namespace
@@ -78,7 +79,7 @@ bool LineRegionSearch::leaves(const GroupPlacement& placement, const Line& axis)
 }
 
 void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& start, bool enlarge) {
-  FoundRegion region{start, grid_region(surface_, start, false, context_), 0, "turns or mirrors into itself"};
+  FoundRegion region{start, grid_region(surface_, start, context_), 0, "turns or mirrors into itself"};
   const double least = options_.least_share * surface_.prepared.area;
   const auto measure = [&] {
     region.area = 0;
@@ -90,7 +91,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
   region.placement = refine(patch, start);
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-  std::vector<int> again = grid_region(surface_, region.placement, true, context_);
+  std::vector<int> again = grid_region(surface_, region.placement, context_);
   if (again != region.faces) {
     region.faces = std::move(again);
     if (!measure()) return note(stage, region, false, "too small once refined");
@@ -99,7 +100,19 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   }
   if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-  if (!verified(patch, region.placement, context_)) return note(stage, region, false, "not verified");
+  for (int round = 0;; ++round) {
+    const Verification verification = verify_group(patch, region.placement, context_);
+    const std::string reason = objection(verification);
+    if (reason.empty()) break;
+    if (round == kRounds || !verification.complete) return note(stage, region, false, reason);
+    std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context_);
+    if (fewer == region.faces) return note(stage, region, false, reason);
+    region.faces = std::move(fewer);
+    if (!measure()) return note(stage, region, false, "too small once thinned out");
+    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
+    region.placement = refine(patch, region.placement);
+  }
+  if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
   std::optional<OwnGroup> own;
   if (enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
   if (own && contains_group(own->placement, region.placement, patch.moments.centroid, patch.moments.radius,

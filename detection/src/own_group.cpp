@@ -410,10 +410,16 @@ class Search {
 
 }  // namespace
 
-bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples) {
+Verification verify_group(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context,
+                          int samples) {
+  constexpr double kHopeless = 0.75;
   const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-  return passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, samples,
-                       VerificationLimits{}.joint, context));
+  return verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, samples,
+                kHopeless, context);
+}
+
+bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples) {
+  return passes(verify_group(patch, placement, context, samples));
 }
 
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,

@@ -78,12 +78,51 @@ class Search {
     const bool lattice = ordered && arrangement.kind != Pattern::Kind::rotation &&
                          kind.members.size() > (std::size_t{1} << arrangement.generators.size());
     if (options_.pieces && !lattice && (!ordered || kind.members.size() < 3)) return;
-    if (!lattice && related_by_a_region(kind)) return;
+    constexpr double kTrueLattice = 0.75;  // six places of a hexagon are of nine of a lattice
+    if (!(lattice && arrangement.filled >= kTrueLattice) && related_by_a_region(kind)) return;
     for (const int c : kind.members) instances.parts.push_back({c});
     for (const int c : kind.members) used_[static_cast<std::size_t>(c)] = 1;
-    grow(instances);
-    note(instances);
+    if (arrangement.generators.size() == 1) continue_row(instances);
+    if (!options_.pieces) grow(instances);
     add(instances);
+  }
+
+  // Adds copies at the row's next places and in its gaps that the survey did not take for copies: surfaces may differ
+  // in their triangles, and a little in shape where they join.
+  void continue_row(Instances& instances) {
+    const int first = instances.parts.front().front();
+    const SurfacePatch patch = make_patch(prepared_, faces_of({first}), 100, options_.tolerance, context_, "pattern");
+    const Motion step = instances.arrangement.generators.front();
+    for (const Motion& forth : {step, inverse(step)}) {
+      Motion motion = forth;
+      for (int misses = 0; misses <= 1; motion = forth * motion) {
+        const Vector3d goal = motion(moments(first).centroid);
+        const auto near = [&](const Motion& other) {
+          return (other(moments(first).centroid) - goal).norm() < 2 * options_.tolerance;
+        };
+        if (std::ranges::any_of(instances.arrangement.motions, near)) continue;
+        const int copy = copy_at(patch, motion);
+        if (copy < 0) {
+          ++misses;
+          continue;
+        }
+        used_[static_cast<std::size_t>(copy)] = 1;
+        instances.parts.push_back({copy});
+        instances.arrangement.motions.push_back(motion);
+      }
+    }
+  }
+
+  // The part onto which the motion carries nearly all of the patch; -1 for none.
+  int copy_at(const SurfacePatch& patch, const Motion& motion) const {
+    constexpr double kAlike = 0.1;  // of the area
+    for (std::size_t c = 0; c < parts_.survey.moments.size(); ++c) {
+      const SurfaceMoments& other = parts_.survey.moments[c];
+      if (used_[c] != 0 || std::abs(other.area - patch.moments.area) > kAlike * patch.moments.area) continue;
+      if ((other.centroid - motion(patch.moments.centroid)).norm() > 3 * options_.tolerance) continue;
+      if (copy_on(patch, motion, prepared_.components.faces[c]).kept >= kKept) return static_cast<int>(c);
+    }
+    return -1;
   }
 
   // Adds to the instances the parts that touch them and that the same motions carry along, as long as there are any.
@@ -185,32 +224,48 @@ class Search {
     for (std::size_t i = 0; i < instances.parts.size(); ++i) {
       const Motion& motion = instances.arrangement.motions[i];
       const std::vector<int> faces = faces_of(instances.parts[i]);
-      pattern.instances.push_back({conjugate(prepared_.input_of_normalised, motion), faces});
-      if (i == 0) {
-        pattern.instances.front().motion = Motion{};
-        continue;
-      }
-      const SurfaceIndex target(prepared_.mesh, faces);
-      for (Eigen::Index s = 0; s < patch.samples.points.rows(); ++s) {
-        const double distance = target.nearest(motion(patch.samples.points.row(s))).distance;
-        square += distance * distance;
-        pattern.residual.max = std::max(pattern.residual.max, distance);
-        ++count;
-      }
+      const Copy copy = copy_on(patch, motion, faces);
+      if (copy.kept < kKept) continue;
+      square += copy.square;
+      count += static_cast<int>(patch.samples.points.rows());
+      pattern.residual.max = std::max(pattern.residual.max, copy.largest);
+      pattern.instances.push_back({i == 0 ? Motion{} : conjugate(prepared_.input_of_normalised, motion), faces});
     }
     pattern.residual.rms = std::sqrt(square / std::max(count, 1));
-    found_.push_back(std::move(pattern));
+    const bool enough = pattern.instances.size() == instances.parts.size() || pattern.instances.size() >= 3;
+    note(instances, enough);
+    if (enough) found_.push_back(std::move(pattern));
   }
 
-  void note(const Instances& instances) const {
+  struct Copy {
+    double kept = 0;  // share of the samples within the tolerance
+    double square = 0, largest = 0;
+  };
+
+  // How the motion brings the patch's samples onto the faces.
+  Copy copy_on(const SurfacePatch& patch, const Motion& motion, const std::vector<int>& faces) const {
+    const SurfaceIndex surface(prepared_.mesh, faces);
+    Copy copy;
+    for (Eigen::Index s = 0; s < patch.samples.points.rows(); ++s) {
+      const double distance = surface.nearest(motion(patch.samples.points.row(s))).distance;
+      if (distance <= patch.tolerance) copy.kept += 1;
+      copy.square += distance * distance;
+      copy.largest = std::max(copy.largest, distance);
+    }
+    copy.kept /= static_cast<double>(std::max<Eigen::Index>(1, patch.samples.points.rows()));
+    return copy;
+  }
+
+  void note(const Instances& instances, bool kept) const {
     if (options_.explanation == nullptr) return;
     options_.explanation->notes.push_back({options_.pieces ? "segments: patterns" : "patterns",
                                            to_string(instances.arrangement.kind) + " of " +
                                                std::to_string(instances.parts.size()) + " times " +
                                                name_of_parts(instances.parts.front()),
-                                           true, "no region relates them"});
+                                           kept, kept ? "no region relates them" : "not verified"});
   }
 
+  static constexpr double kKept = 0.9;      // of the samples of a copy
   static constexpr double kRelated = 0.02;  // of the area outside of the region
 
   const PreparedMesh& prepared_;

@@ -63,6 +63,7 @@ constexpr int kMostSteps = 400;
 struct Lattice {
   std::vector<Vector3d> steps;
   std::vector<Eigen::Vector3i> places;
+  double filled = 0;
 };
 
 // Whether all offsets are whole combinations of the steps; refines the steps by least squares.
@@ -77,12 +78,14 @@ std::optional<Lattice> fit_lattice(const std::vector<Vector3d>& offsets, std::ve
     for (Eigen::Index k = 0; k < dimension; ++k) basis.col(k) = steps[static_cast<std::size_t>(k)];
     const Eigen::MatrixXd exact = basis.colPivHouseholderQr().solve(points);
     places = exact.array().round().matrix();
-    if ((basis * exact - points).colwise().norm().maxCoeff() > tolerance) return std::nullopt;
-    if ((basis * places - points).colwise().norm().maxCoeff() > (round == 0 ? 3 : 1) * tolerance) return std::nullopt;
+    // Before they are fitted the steps are off, and the more so the more of them are taken.
+    const double slack = (round == 0 ? 3 : 1) * tolerance;
+    if ((basis * exact - points).colwise().norm().maxCoeff() > slack) return std::nullopt;
+    if ((basis * places - points).colwise().norm().maxCoeff() > slack) return std::nullopt;
     const Eigen::MatrixXd fitted = places.transpose().colPivHouseholderQr().solve(points.transpose()).transpose();
     for (Eigen::Index k = 0; k < dimension; ++k) steps[static_cast<std::size_t>(k)] = fitted.col(k);
   }
-  Lattice result{steps, {}};
+  Lattice result{steps, {}, 0};
   for (Eigen::Index i = 0; i < places.cols(); ++i) {
     Eigen::Vector3i place = Eigen::Vector3i::Zero();
     for (Eigen::Index k = 0; k < dimension; ++k) place[k] = static_cast<int>(places(k, i));
@@ -97,7 +100,8 @@ std::optional<Lattice> fit_lattice(const std::vector<Vector3d>& offsets, std::ve
     if (extent < 1) return std::nullopt;
     box *= extent + 1;
   }
-  if (2 * static_cast<double>(offsets.size()) < box) return std::nullopt;
+  result.filled = static_cast<double>(offsets.size()) / box;
+  if (result.filled < 0.5) return std::nullopt;
   return result;
 }
 
@@ -205,7 +209,7 @@ std::optional<Arrangement> find_arc(const std::vector<Motion>& motions, const Gr
       const std::vector<int> powers = powers_of(step, motions, own, centroid, reach, tolerance);
       if (powers.empty()) continue;
       const bool level = std::abs(step.rise) <= tolerance;
-      Arrangement found{level ? Pattern::Kind::rotation : Pattern::Kind::screw, {step.power(1)}, {}};
+      Arrangement found{level ? Pattern::Kind::rotation : Pattern::Kind::screw, {step.power(1)}, {}, 0};
       for (const int k : powers) found.motions.push_back(step.power(k));
       return found;
     }
@@ -221,7 +225,7 @@ Arrangement arrange(const std::vector<Motion>& given, const GroupPlacement* own,
   if (own != nullptr) {
     for (std::size_t i = 1; i < motions.size(); ++i) motions[i] = straightened(motions[i], *own);
   }
-  Arrangement result{Pattern::Kind::congruent, {}, motions};
+  Arrangement result{Pattern::Kind::congruent, {}, motions, 0};
   if (motions.size() < kLeastInstances) return result;
   const bool parallel = std::ranges::all_of(
       motions, [&](const Motion& m) { return (m.linear - Matrix3d::Identity()).norm() * reach <= 2 * tolerance; });
@@ -233,6 +237,7 @@ Arrangement arrange(const std::vector<Motion>& given, const GroupPlacement* own,
     constexpr std::array<Pattern::Kind, 3> kKinds{Pattern::Kind::translation_1d, Pattern::Kind::translation_2d,
                                                   Pattern::Kind::translation_3d};
     result.kind = kKinds[lattice->steps.size() - 1];
+    result.filled = lattice->filled;
     for (const Vector3d& step : lattice->steps) result.generators.push_back({Matrix3d::Identity(), step});
     for (std::size_t i = 0; i < motions.size(); ++i) {
       Vector3d offset = Vector3d::Zero();

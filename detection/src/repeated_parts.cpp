@@ -59,6 +59,28 @@ double repeated_area(DisjointSets& sets, const std::vector<char>& host, const st
   return result;
 }
 
+// Takes pieces into the host or out of it, one at a time, as long as more repeats then.
+void improve(std::vector<char>& host, double best, const std::vector<int>& largest, const std::vector<Pair>& pairs,
+             const std::vector<double>& areas) {
+  constexpr int kRounds = 12;
+  constexpr std::size_t kMostTried = 200;
+  for (int round = 0; round < kRounds; ++round) {
+    int better = -1;
+    for (std::size_t k = 0; k < std::min(kMostTried, largest.size()); ++k) {
+      char& in = host[static_cast<std::size_t>(largest[k])];
+      in ^= 1;
+      DisjointSets sets = parts_without(host, pairs);
+      const double repeated = repeated_area(sets, host, areas);
+      in ^= 1;
+      if (repeated <= 1.01 * best) continue;
+      best = repeated;
+      better = largest[k];
+    }
+    if (better < 0) return;
+    host[static_cast<std::size_t>(better)] ^= 1;
+  }
+}
+
 }  // namespace
 
 Components repeated_parts(const PreparedMesh& prepared) {
@@ -81,6 +103,7 @@ Components repeated_parts(const PreparedMesh& prepared) {
     best = repeated;
     best_host = host;
   }
+  improve(best_host, best, largest, pairs, areas);
   DisjointSets sets = parts_without(best_host, pairs);
   Components result;
   std::vector<int> number(areas.size(), -1);

@@ -12,6 +12,8 @@
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/verification.h"
 
+#include "face_points.h"
+
 namespace orbifit {
 
 namespace {
@@ -24,14 +26,6 @@ constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr int kPatchSamples = 700;
 constexpr double kSlack = 1.2;       // of the tolerance, for faces that are collected
 constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
-
-Vector3d centroid_of(const PreparedMesh& prepared, int face) {
-  const Eigen::RowVector3i corners = prepared.mesh.faces.row(face);
-  return (prepared.mesh.vertices.row(corners[0]) + prepared.mesh.vertices.row(corners[1]) +
-          prepared.mesh.vertices.row(corners[2]))
-             .transpose() /
-         3;
-}
 
 /// The faces about one axis.
 class Turned {
@@ -47,12 +41,12 @@ class Turned {
 
   // Whether the normal meets the axis, as on every surface turned about it.
   bool may_turn(int face) const {
-    return meets(axis_, centroid_of(prepared_, face), prepared_.normals.row(face), tolerance_);
+    return meets(axis_, face_centroid(prepared_, face), prepared_.normals.row(face), tolerance_);
   }
 
   // Whether the whole circle of the face's centroid lies on the surface.
   bool turns(int face) const {
-    const Vector3d centroid = centroid_of(prepared_, face);
+    const Vector3d centroid = face_centroid(prepared_, face);
     const Vector3d normal = prepared_.normals.row(face);
     return std::ranges::all_of(turns_, [&](const Motion& motion) {
       return surface_.nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_, true).face >=
@@ -104,7 +98,8 @@ class Search {
       region.placement = refine(patch, region.placement);
       if (verified(patch, region.placement, context_)) return add(patch, std::move(region));
       const Line better{region.placement.centre, region.placement.frame.col(2)};
-      std::vector<int> fewer = faces_about(better, round == 0 ? whole_ : *patch.index, kSlack * continuous_tolerance(patch));
+      std::vector<int> fewer =
+          faces_about(better, round == 0 ? whole_ : *patch.index, kSlack * continuous_tolerance(patch));
       if (fewer == region.faces) break;
       region.faces = std::move(fewer);
     }
@@ -199,7 +194,7 @@ Oriented oriented_points(const PreparedMesh& prepared, const std::vector<int>& f
   for (std::size_t i = 0; i < count; ++i) {
     const int f = faces[i * faces.size() / count];
     const auto row = static_cast<Eigen::Index>(i);
-    result.points.row(row) = centroid_of(prepared, f);
+    result.points.row(row) = face_centroid(prepared, f);
     result.normals.row(row) = prepared.normals.row(f);
     result.weights[row] = prepared.areas[f];
   }

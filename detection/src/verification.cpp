@@ -1,7 +1,9 @@
 #include "orbifit/detection/verification.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <numeric>
 
@@ -190,8 +192,24 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
 }
 
 bool passes(const Verification& verification, const VerificationLimits& limits) {
-  return verification.complete && verification.joint >= limits.joint && verification.worst >= limits.worst &&
-         verification.cluster <= limits.cluster && verification.part >= limits.part;
+  return objection(verification, limits).empty();
+}
+
+std::string objection(const Verification& verification, const VerificationLimits& limits) {
+  const auto percent = [](double share) {
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), "%.1f %%", 100 * share);
+    return std::string(text.data());
+  };
+  if (!verification.complete || verification.joint < limits.joint) {
+    return "not verified: all its motions together keep " + percent(verification.joint);
+  }
+  if (verification.worst < limits.worst) return "not verified: one motion keeps " + percent(verification.worst);
+  if (verification.cluster > limits.cluster) {
+    return "not verified: a blot of " + percent(verification.cluster) + " has no image";
+  }
+  if (verification.part < limits.part) return "not verified: of one part " + percent(verification.part) + " is kept";
+  return {};
 }
 
 double kept_share(const SurfacePatch& patch, const Motion& motion, double tolerance, int samples,

@@ -123,8 +123,8 @@ TEST(PlaneRegions, AreNotFoundOnAnAsymmetricShape) {
 TEST(GridRegion, TakesNoDiscOutOfAPlane) {
   // Any rotation keeps a disc of the square faces, which is no part of anything.
   const Screened box(test::box(2, 2, 0.5));
-  EXPECT_TRUE(grid_region(box.surface(), box.placement("Cinf"), true, {}).empty());
-  EXPECT_NEAR(box.share_of(grid_region(box.surface(), box.placement("C4v"), true, {})), 1, 1e-9);
+  EXPECT_TRUE(grid_region(box.surface(), box.placement("Cinf"), {}).empty());
+  EXPECT_NEAR(box.share_of(grid_region(box.surface(), box.placement("C4v"), {})), 1, 1e-9);
 }
 
 TEST(GridRegion, LeavesOutWhatHasNoImage) {
@@ -132,7 +132,7 @@ TEST(GridRegion, LeavesOutWhatHasNoImage) {
   const Mesh middle = test::box(1, 1, 1);
   const Mesh side = test::moved(test::box(0.5, 0.5, 0.5), {Eigen::Matrix3d::Identity(), {0, 0, 2}});
   const Screened both(test::joined({middle, side}));
-  const std::vector<int> region = grid_region(both.surface(), both.placement("Cs"), true, {});
+  const std::vector<int> region = grid_region(both.surface(), both.placement("Cs"), {});
   EXPECT_EQ(region.size(), static_cast<std::size_t>(middle.faces.rows()));
 }
 

@@ -22,7 +22,8 @@ struct FoundRegion {
 /// Area of the faces of `inner` that are not in `outer`; both ascending.
 double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner, const std::vector<int>& outer);
 
-/// Whether `inner` lies in `outer` but for a sliver: a twentieth of it and 0.2 % of the mesh's area, whichever is less.
+/// Whether `inner` lies in `outer` but for a sliver: a twentieth of it and 0.2 % of the mesh's area, whichever is less,
+/// not counting small triangles along the border of `outer`.
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner);
 
 /// Whether one of the others says what the region says: it holds all but `outside` of the region's area, and its group

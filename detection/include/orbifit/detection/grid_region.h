@@ -5,6 +5,7 @@
 #include "orbifit/detection/refinement.h"
 #include "orbifit/detection/surface_grid.h"
 #include "orbifit/detection/surface_patch.h"
+#include "orbifit/detection/verification.h"
 #include "orbifit/model/run_context.h"
 
 namespace orbifit {
@@ -35,9 +36,15 @@ struct ScreenedSurface {
 /// tolerance or two. Of a flat piece only what ends where the piece does is taken: a disc on a larger plane is no part
 /// of anything. Pieces of which nearly all belongs are taken in full.
 /// Costs O(F M) grid look-ups for the M elements that judge the group.
-/// \param thin_out whether faces leave whose images lie off the faces that are in; takes a grid of these
 /// \return ascending
-std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacement& placement, bool thin_out,
+std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacement& placement,
                              const RunContext& context);
+
+/// Of a region's faces those whose images lie on the region itself, to its own tolerance: what the grid let through, or
+/// what lost its images, leaves. Only pieces of which the verification saw samples fail are looked at.
+/// \param verification of the patch under the placement \return ascending
+std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePatch& patch,
+                                const Verification& verification, const GroupPlacement& placement,
+                                const RunContext& context);
 
 }  // namespace orbifit

@@ -24,8 +24,12 @@ struct OwnGroup {
   Verification verification;
 };
 
-/// Whether the group keeps the patch: verify() on all samples within the usual limits, at continuous_tolerance() for a
-/// continuous group and at the patch's own tolerance for a finite one.
+/// How much of the patch the group keeps: verify() at continuous_tolerance() for a continuous group and at the patch's
+/// own tolerance for a finite one, given up where it is far less than passes() asks for.
+Verification verify_group(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context,
+                          int samples = 0);
+
+/// Whether that passes.
 /// \param samples how many of the patch's samples to use, spread evenly; 0: all
 bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples = 0);
 

@@ -14,6 +14,7 @@ struct Arrangement {
   Pattern::Kind kind = Pattern::Kind::congruent;
   std::vector<Motion> generators;
   std::vector<Motion> motions;  ///< of each copy from the first, on the arrangement exactly
+  double filled = 0;            ///< of the places that a lattice's copies span, the share that holds one
 };
 
 /// Names the arrangement of copies placed by `motions` (the first is the identity): a lattice of translations of one to

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -41,6 +42,9 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
                     double give_up_below, const RunContext& context);
 
 bool passes(const Verification& verification, const VerificationLimits& limits = {});
+
+/// Why it does not pass, in words for an explanation; empty where it does.
+std::string objection(const Verification& verification, const VerificationLimits& limits = {});
 
 /// Share of `samples` spread evenly over the patch that one motion keeps; cheap, for screening.
 double kept_share(const SurfacePatch& patch, const Motion& motion, double tolerance, int samples,
