@@ -39,6 +39,7 @@ constexpr std::size_t kMostRegions = 300;
 constexpr double kLeastNoise = 3e-4;     // of the diagonal
 constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
 constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
+constexpr int kRoundsOfFine = 4;         // of fitting axes; parts that are modelled as such need no second
 constexpr int kScreenDirections = 2500;
 constexpr int kScreenSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
@@ -129,12 +130,12 @@ class Detector {
     // Of one surface what lines say is asked first: pieces have little to add to it.
     const bool fine = one_fine_surface();
     if (fine) {
-      find_turned(partition);
+      find_turned(partition, kRoundsOfFine);
       find_about_lines(partition);
       find_repeated(partition);
     }
     if (count != prepared_.components.faces.size()) add_of_pieces(find_in_parts(partition, true).regions);
-    if (!fine) find_turned(partition);
+    if (!fine) find_turned(partition, 1);
   }
 
   // Parts of one surface that repeat on a host take the place of components.
@@ -222,13 +223,14 @@ class Detector {
   }
 
   // Turned regions that end within a piece.
-  void find_turned(const PreparedMesh& partition) {
+  void find_turned(const PreparedMesh& partition, int rounds) {
     if (late()) return;
     std::vector<Line> axes = axes_of_regions();
     fitted_axes_ = revolution_axes(partition, options_.tolerance, context_);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
-    RevolutionRegionOptions turned{options_.tolerance, kLeastShare, options_.explanation, [this] { return late(); }};
+    RevolutionRegionOptions turned{options_.tolerance, kLeastShare, rounds, options_.explanation,
+                                   [this] { return late(); }};
     add_of_pieces(find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_));
   }
 

@@ -86,10 +86,9 @@ class Search {
   // Collects faces about the axis, fits it to them, and again with the better axis within what was collected, until
   // what is left turns.
   void look_at(const Line& axis) {
-    constexpr int kRounds = 4;
     GroupPlacement turn{{Family::Cinfv, 1}, frame_about(axis.direction), axis.point};
     FoundRegion region{turn, faces_about(axis, whole_, kSlack * options_.tolerance), 0, "turned about an axis"};
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < options_.rounds; ++round) {
       region.area = area_of(prepared_, region.faces);
       if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
       const SurfacePatch patch =
@@ -112,7 +111,10 @@ class Search {
   // With the largest group that the region has.
   void add(const SurfacePatch& patch, FoundRegion region) {
     const std::optional<OwnGroup> group = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
-    if (group && group->placement.group.continuous()) region.placement = group->placement;
+    const bool known = group && group->placement.group.continuous();
+    if (known) region.placement = group->placement;
+    // Parts that are modelled as such have no axis but their own; a fit that was made to hold is none.
+    if (!known && options_.rounds == 1) return note(region, false, "only a finite group holds");
     if (says_nothing_new(region)) return;
     note(region, true, "verified");
     found_.push_back(std::move(region));

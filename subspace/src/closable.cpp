@@ -109,8 +109,8 @@ struct Attempt {
 };
 
 // Shares axes and keeps what closes, region after region.
-Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, const RunContext& context) {
-  const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance);
+Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, bool keep_exact, const RunContext& context) {
+  const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance, keep_exact);
   const RegionMap regions(mesh, annotation, context);
   const std::vector<int> sets = sets_of_vertices(mesh, regions);
   const double tolerance = kDoublet * diagonal(mesh.vertices);
@@ -167,10 +167,15 @@ SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected
   constexpr int kMostAttempts = 6;
   SymmetryAnnotation rest = detected;
   std::vector<std::string> given_up;
-  Attempt best;
-  std::vector<std::string> best_messages;
+  // What fits exactly where it is stays there, if all closes then.
+  Attempt best = attempt(mesh, rest, true, context);
+  if (best.first_dropped < 0) {
+    for (const std::string& message : best.messages) context.message(message);
+    return best.kept;
+  }
+  std::vector<std::string> best_messages = best.messages;
   for (int round = 0; round < kMostAttempts; ++round) {
-    Attempt now = attempt(mesh, rest, context);
+    Attempt now = attempt(mesh, rest, false, context);
     const int dropped = now.first_dropped;
     std::vector<std::string> messages = given_up;
     messages.insert(messages.end(), now.messages.begin(), now.messages.end());
@@ -179,7 +184,7 @@ SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected
       given_up.push_back("left out region \"" + region.name + "\" (" + region.group.symbol() +
                          "): its group does not close with those of larger regions");
     }
-    if (round == 0 || now.kept.regions.size() > best.kept.regions.size()) {
+    if (now.kept.regions.size() > best.kept.regions.size()) {
       best = std::move(now);
       best_messages = std::move(messages);
     }

@@ -212,13 +212,14 @@ std::optional<Region> image_of_earlier(const std::vector<Region>& regions,
 
 }  // namespace
 
-SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance) {
+SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance,
+                              bool keep_exact) {
   constexpr double kMostTurn = 0.2;
   const double size = diagonal(mesh.vertices);
-  // What fits exactly is not moved off its place: no further than it misses itself, and a little of its own size.
   const auto reach_of = [&](const Region& region, const Placement& placement) {
     constexpr double kOfSize = 0.002;
     constexpr double kOfMisfit = 5;
+    if (!keep_exact) return tolerance * size;
     return std::min(tolerance * size, kOfSize * placement.reach + kOfMisfit * region.residual.rms * size);
   };
   // Larger regions first: what is around a region stands before the region itself.

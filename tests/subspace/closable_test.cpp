@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Models, NearlySharedAxes, testing::Values("bar", "table
 
 TEST(SharedAxes, LeaveAnExactAnnotationAsItIs) {
   const GeneratedModel model = generate("table");
-  const SymmetryAnnotation shared = share_axes(model.mesh, model.truth, 0.005);
+  const SymmetryAnnotation shared = share_axes(model.mesh, model.truth, 0.005, false);
   ASSERT_EQ(shared.regions.size(), model.truth.regions.size());
   for (std::size_t i = 0; i < shared.regions.size(); ++i) {
     EXPECT_LT((shared.regions[i].centre - model.truth.regions[i].centre).norm(), 1e-12);

@@ -227,7 +227,8 @@ CommandBody detect(CLI::App& app) {
     Explanation explanation;
     DetectOptions chosen = arguments->options;
     if (!arguments->explain.empty()) chosen.explanation = &explanation;
-    const SymmetryAnnotation found = share_axes(mesh, orbifit::detect(mesh, chosen, context.run), chosen.tolerance);
+    const SymmetryAnnotation found =
+        share_axes(mesh, orbifit::detect(mesh, chosen, context.run), chosen.tolerance, true);
     if (!arguments->explain.empty()) write_explanation(arguments->explain, explanation);
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));

@@ -7,13 +7,15 @@ namespace orbifit {
 
 /// Regions detected one by one share axes, planes and centres only up to the tolerance, and groups that miss each other
 /// by a little do not close (see closable.h). Here each region in turn, largest first, is moved by less than
-/// `tolerance` (fraction of the diagonal, on its own extent), and by little more than its residual where it fits
-/// closely, so that
+/// `tolerance` (fraction of the diagonal, on its own extent) so that
 ///  - its centre is fixed exactly by the elements of earlier regions around it that fix it nearly, and its axes and
 ///    mirrors are theirs where they nearly are;
 ///  - it is the exact image of an earlier region of the same group wherever an element around both takes one to the
 ///  other.
 /// Elements are regenerated in closed form; residuals grow by the movement.
-SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance);
+/// \param keep_exact whether regions that fit closely, by their residuals, stay where they are: then none moves by more
+/// than a few times its residual and a little of its own size
+SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance,
+                              bool keep_exact);
 
 }  // namespace orbifit
