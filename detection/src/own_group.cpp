@@ -48,7 +48,8 @@ double misfit(const SurfacePatch& patch, const GroupPlacement& placement, const 
 }
 
 // How far facets of a surface turned about the axis lie inside it, at most, rms over the patch: the sagitta
-// R (1 - cos(phi / 2)) of the longest chord of each face, at the distance R, across the angle phi.
+// R (1 - cos(phi / 2)) of the longest chord of each face, at the distance R, across the angle phi, in the direction of
+// the face's normal: chords of an end's plane lie in the surface.
 double sagitta(const SurfacePatch& patch, const GroupPlacement& placement) {
   const PreparedMesh& prepared = *patch.prepared;
   const bool round = !placement.group.has_axis();
@@ -71,7 +72,8 @@ double sagitta(const SurfacePatch& patch, const GroupPlacement& placement) {
       const double cosine = std::clamp(a.dot(b) / product, -1.0, 1.0);
       most = std::max(most, std::max(a.norm(), b.norm()) * (1 - std::sqrt(0.5 * (1 + cosine))));
     }
-    square += prepared.areas[face] * most * most;
+    const double along = round ? 0 : placement.frame.col(2).dot(prepared.normals.row(face));
+    square += prepared.areas[face] * most * most * (1 - along * along);
     area += prepared.areas[face];
   }
   return std::sqrt(square / std::max(area, 1e-300));
@@ -115,9 +117,14 @@ class Search {
   std::optional<OwnGroup> no_treads(const DirectionSet* screen, const GroupHints& hints) {
     constexpr double kFarLess = 0.1;
     constexpr double kFacets = 1.5;
+    constexpr double kStrict = 0.3;
     const double any = misfit(patch_, best_->placement, context_);
     if (any < kFacets * sagitta(patch_, best_->placement) + kNothing * patch_.tolerance) return best_;
-    const std::optional<OwnGroup> some = Search(patch_, context_, thorough_, true).run(screen, hints);
+    SurfacePatch strict = patch_;
+    const double share = std::min(1.0, kStrict * any / patch_.tolerance);
+    strict.tolerance *= share;
+    strict.relative_tolerance *= share;
+    const std::optional<OwnGroup> some = Search(strict, context_, thorough_, true).run(screen, hints);
     return some && misfit(patch_, some->placement, context_) < kFarLess * any ? some : best_;
   }
 

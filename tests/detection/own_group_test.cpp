@@ -35,6 +35,18 @@ TEST(OwnGroup, TheToleranceDecidesWhatIsRound) {
   EXPECT_EQ(symbol_of(test::prism(24, 1, 1), 0.0005), "D24h");
 }
 
+TEST(OwnGroup, ATreadIsNoFacet) {
+  // A drum of 120 sides, round to the tolerance, of which every fourth to sixth corner lies a little lower.
+  constexpr int kSides = 120;
+  Mesh drum = test::prism(kSides, 1, 1.4);
+  for (int i = 0; i < kSides; ++i) {
+    if (i % 12 < 4 || i % 12 > 6) continue;
+    drum.vertices.row(i).head<2>() *= 0.992;
+    drum.vertices.row(kSides + i).head<2>() *= 0.992;
+  }
+  EXPECT_EQ(symbol_of(drum), "D10h");
+}
+
 TEST(OwnGroup, NearMissesAreTold) {
   EXPECT_EQ(symbol_of(test::box(1, 1.006, 2), 0.0008), "D2h");
   EXPECT_EQ(symbol_of(test::box(1, 1.006, 2), 0.005), "D4h");

@@ -46,6 +46,43 @@ TEST(Arrange, AnArcOfRotations) {
   EXPECT_LT(motion_distance(found.generators[0], arc[1], {0, 0, 0}, 1), 1e-9);
 }
 
+TEST(Arrange, AnArcOfCopiesThatMayLieEitherWay) {
+  // Beyond a quarter turn the copies' own half-turn gives motions that turn less than the arc's.
+  const GroupPlacement own{*PointGroup::parse("D2h"), GroupFrame::Identity(), Vector3d(0.1, 0.2, 0)};
+  std::vector<Motion> arc;
+  for (int i = 0; i < 8; ++i) {
+    const Motion place = Motion::rotation({0, 0, 1}, 0.3 * i, {1, 0, 0});
+    arc.push_back(i % 3 == 1 ? place * Motion::rotation({0, 0, 1}, std::numbers::pi, own.centre) : place);
+  }
+  const Arrangement found = named(arc, &own);
+  ASSERT_EQ(found.kind, Pattern::Kind::rotation);
+  EXPECT_NEAR(axis_angle(found.generators[0].linear).angle, 0.3, 1e-9);
+}
+
+TEST(Arrange, AScrew) {
+  const auto place = [](int i) {
+    return test::shift(0, 0, 0.07 * i) * Motion::rotation({0, 0, 1}, 0.5 * i, {1, 0, 0});
+  };
+  std::vector<Motion> stair;
+  for (int i = 0; i < 15; ++i) stair.push_back(place(i));
+  const Arrangement found = named(stair);
+  ASSERT_EQ(found.kind, Pattern::Kind::screw);
+  EXPECT_LT(motion_distance(found.generators[0], place(1), {0, 0, 0}, 1), 1e-9);
+  // Three steps out of fifteen are no stair.
+  EXPECT_EQ(named({place(0), place(6), place(13)}).kind, Pattern::Kind::congruent);
+}
+
+TEST(Arrange, ARowOfPlacesThatAreALittleOff) {
+  // No step between two of them leads to all others.
+  std::vector<Motion> row;
+  for (int i = 0; i < 8; ++i) row.push_back(test::shift(0.1 * i, 0.0009 * (i % 3 - 1), 0.0006 * (i % 2)));
+  row[0] = Motion{};
+  const Arrangement found = named(row);
+  ASSERT_EQ(found.kind, Pattern::Kind::translation_1d);
+  EXPECT_NEAR(found.generators[0].translation.norm(), 0.1, 3e-4);
+  EXPECT_EQ(found.filled, 1);
+}
+
 TEST(Arrange, TheOwnGroupStraightensACopy) {
   const GroupPlacement own{*PointGroup::parse("D4h"), GroupFrame::Identity(), Vector3d(0.1, 0.2, 0)};
   std::vector<Motion> motions{Motion{}};

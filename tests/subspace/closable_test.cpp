@@ -59,6 +59,24 @@ TEST(SharedAxes, LeaveAnExactAnnotationAsItIs) {
   }
 }
 
+TEST(SharedAxes, LeaveAnExactRegionWhereItIs) {
+  // A region that fits where it is, a little off the axes of the one around it.
+  const GeneratedModel model = generate("table");
+  SymmetryAnnotation annotation = model.truth;
+  Region& inner = annotation.regions.back();
+  const double off = 0.002 * diagonal(model.mesh.vertices);
+  inner = make_region(inner.group, inner.centre + Eigen::Vector3d(off, 0, 0), frame_about(inner.axis), inner.faces,
+                      inner.name);
+  inner.id = model.truth.regions.back().id;
+  inner.residual = {1e-12, 1e-12};
+  const auto moved = [&](bool keep_exact) {
+    const SymmetryAnnotation shared = share_axes(model.mesh, annotation, 0.005, keep_exact);
+    return (shared.regions.back().centre - inner.centre).norm();
+  };
+  EXPECT_LT(moved(true), 0.1 * off);
+  EXPECT_GT(moved(false), 0.5 * off);
+}
+
 TEST(Closable, LeavesOutARegionThatClashesAndSaysSo) {
   const GeneratedModel model = generate("table");
   SymmetryAnnotation annotation = model.truth;
