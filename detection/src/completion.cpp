@@ -45,7 +45,7 @@ class Completion {
     std::ranges::stable_sort(regions_, std::greater<>(), &FoundRegion::area);
     moments_.clear();
     for (const FoundRegion& region : regions_) moments_.push_back(surface_moments(prepared_, region.faces));
-    for (std::size_t r = 0; r < regions_.size(); ++r) {
+    for (std::size_t r = 0; r < regions_.size() && !late(); ++r) {
       const PointGroup& group = regions_[r].placement.group;
       if (group.continuous() || group.order() > kMostElements) continue;
       carry_within(r);
@@ -53,6 +53,8 @@ class Completion {
   }
 
  private:
+  bool late() const { return options_.late && options_.late(); }
+
   double tolerance_of(std::size_t region) const {
     return options_.tolerance * std::min(1.0, 4 * moments_[region].diagonal);
   }
@@ -60,7 +62,7 @@ class Completion {
   void carry_within(std::size_t outer) {
     const GroupPlacement around = regions_[outer].placement;
     std::vector<char> done(regions_.size(), 0);
-    for (std::size_t q = 0; q < regions_.size(); ++q) {
+    for (std::size_t q = 0; q < regions_.size() && !late(); ++q) {
       context_.check();
       if (q == outer || (q < done.size() && done[q] != 0)) continue;
       if (regions_[q].area > 0.95 * regions_[outer].area) continue;
@@ -161,11 +163,14 @@ class Completion {
       if (prepared_.areas[face] <= 0) continue;
       const Vector3d normal = back.linear * prepared_.normals.row(face).transpose();
       const Vector3d centroid = centroids_.row(face);
+      // Of four points in the face three must be on it.
       int hits = 0;
-      for (int k = 0; k < 4; ++k) {
+      int misses = 0;
+      for (int k = 3; k >= 0 && hits < 3 && misses < 2; --k) {
         Vector3d point = centroid;
         if (k < 3) point = 0.5 * (centroid + prepared_.mesh.vertices.row(prepared_.mesh.faces(face, k)).transpose());
-        if (surface.nearest_facing(back(point), normal, kNormalCosine, reach, true).face >= 0) ++hits;
+        const bool hit = surface.nearest_facing(back(point), normal, kNormalCosine, reach, true).face >= 0;
+        ++(hit ? hits : misses);
       }
       if (hits < 3) continue;
       faces.push_back(face);

@@ -65,10 +65,11 @@ class Detector {
       add_patterns(prepared_, parts, false);
     }
     find_in_segments();
-    if (!late()) {
+    if (!late(1)) {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
-      complete_regions(prepared_, {options_.tolerance, kMostRegions, options_.explanation}, context_, regions_);
+      complete_regions(prepared_, {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }},
+                       context_, regions_);
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
@@ -79,10 +80,11 @@ class Detector {
   }
 
  private:
-  bool late() const {
+  // Whether the share of the time is spent. What was found is worth more with its images: they get the last part.
+  bool late(double share = 0.8) const {
     if (options_.max_seconds <= 0) return false;
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-    return spent.count() > options_.max_seconds;
+    return spent.count() > share * options_.max_seconds;
   }
 
   void take_noise_out() {

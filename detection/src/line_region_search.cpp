@@ -17,6 +17,7 @@ namespace orbifit {
 namespace {
 
 constexpr int kPatchSamples = 1000;
+constexpr double kNearly = 0.9;       // of the samples: less is not worth thinning out
 constexpr int kRounds = 2;            // of thinning out what does not verify
 constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
 
@@ -104,7 +105,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     const Verification verification = verify_group(patch, region.placement, context_);
     const std::string reason = objection(verification);
     if (reason.empty()) break;
-    if (round == kRounds || !verification.complete) return note(stage, region, false, reason);
+    if (round == kRounds || verification.joint < kNearly) return note(stage, region, false, reason);
     std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context_);
     if (fewer == region.faces) return note(stage, region, false, reason);
     region.faces = std::move(fewer);

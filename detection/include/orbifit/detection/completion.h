@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "orbifit/detection/found_region.h"
@@ -11,6 +12,7 @@ struct CompletionOptions {
   double tolerance = 0.005;            ///< of the detector, a fraction of the diagonal
   std::size_t most = 300;              ///< regions in all
   Explanation* explanation = nullptr;  ///< may be null
+  std::function<bool()> late = {};     ///< whether time is up; may be empty
 };
 
 /// Makes the regions a system that the larger ones' groups permute: what lies in a region and is symmetric has images
