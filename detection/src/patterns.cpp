@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -190,7 +191,7 @@ std::vector<int> powers_of(const Screw& step, const std::vector<Motion>& motions
     powers.push_back(*found);
   }
   const auto [lowest, highest] = std::ranges::minmax(powers);
-  return 2 * powers.size() < static_cast<std::size_t>(highest - lowest + 1) ? std::vector<int>{} : powers;
+  return 2 * std::ssize(powers) < highest - lowest + 1 ? std::vector<int>{} : powers;
 }
 
 // All motions powers of one rotation whose powers do not close within them, or of one screw.
@@ -231,6 +232,7 @@ Arrangement arrange(const std::vector<Motion>& given, const GroupPlacement* own,
       motions, [&](const Motion& m) { return (m.linear - Matrix3d::Identity()).norm() * reach <= 2 * tolerance; });
   if (parallel) {
     std::vector<Vector3d> offsets;
+    offsets.reserve(motions.size());
     for (const Motion& motion : motions) offsets.emplace_back(motion(centroid) - centroid);
     const std::optional<Lattice> lattice = find_lattice(offsets, tolerance);
     if (!lattice) return result;
