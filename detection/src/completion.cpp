@@ -138,7 +138,7 @@ class Completion {
       for (std::size_t i = 0; i < kLooks; ++i) {
         const int face = faces[i * faces.size() / kLooks];
         const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
-        if (surface.nearest_facing(motion(centroids_.row(face)), normal, kNormalCosine, reach, true).face >= 0) ++hits;
+        if (surface.within_facing(motion(centroids_.row(face)), normal, kNormalCosine, reach)) ++hits;
       }
       if (hits >= kLooks - 2) return k;
     }
@@ -169,7 +169,7 @@ class Completion {
       for (int k = 3; k >= 0 && hits < 3 && misses < 2; --k) {
         Vector3d point = centroid;
         if (k < 3) point = 0.5 * (centroid + prepared_.mesh.vertices.row(prepared_.mesh.faces(face, k)).transpose());
-        const bool hit = surface.nearest_facing(back(point), normal, kNormalCosine, reach, true).face >= 0;
+        const bool hit = surface.within_facing(back(point), normal, kNormalCosine, reach);
         ++(hit ? hits : misses);
       }
       if (hits < 3) continue;

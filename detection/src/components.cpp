@@ -80,9 +80,9 @@ double carried_share(const SurfacePatch& patch, const SurfaceIndex& target, cons
     const Vector3d image = motion(patch.samples.points.row(s));
     const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
     const bool free = patch.at_crease[static_cast<std::size_t>(s)] != 0;
-    const int face = free ? target.nearest(image, tolerance).face
-                          : target.nearest_facing(image, normal, kNormalCosine, tolerance, true).face;
-    if (face >= 0) ++kept;
+    const bool on =
+        free ? target.within(image, tolerance) : target.within_facing(image, normal, kNormalCosine, tolerance);
+    if (on) ++kept;
   }
   return static_cast<double>(kept) / static_cast<double>(std::max<Eigen::Index>(1, chosen));
 }

@@ -46,9 +46,9 @@ bool fits(const SurfacePatch& patch, const SurfaceIndex& whole, const Motion& mo
     const Vector3d image = motion(patch.samples.points.row(s));
     const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
     const bool free = patch.at_crease[static_cast<std::size_t>(s)] != 0;
-    const int face = free ? whole.nearest(image, tolerance).face
-                          : whole.nearest_facing(image, normal, kNormalCosine, tolerance, true).face;
-    kept += face >= 0 ? 1 : 0;
+    const bool on =
+        free ? whole.within(image, tolerance) : whole.within_facing(image, normal, kNormalCosine, tolerance);
+    kept += on ? 1 : 0;
     if (static_cast<double>(i + 1 - kept) > (1 - kFits) * static_cast<double>(count)) return false;
   }
   return true;

@@ -156,9 +156,7 @@ std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePat
       const Vector3d centroid = face_centroid(prepared, patch.faces[i]);
       const Vector3d normal = prepared.normals.row(patch.faces[i]);
       const bool all = std::ranges::all_of(motions, [&](const Motion& motion) {
-        return patch.index
-                   ->nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, patch.tolerance, true)
-                   .face >= 0;
+        return patch.index->within_facing(motion(centroid), motion.linear * normal, kNormalCosine, patch.tolerance);
       });
       stays[i] = all ? 1 : 0;
     }

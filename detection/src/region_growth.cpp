@@ -179,7 +179,7 @@ int ComponentMover::image(std::size_t component, const Motion& motion, double re
   for (Eigen::Index s = 0; s < samples.points.rows(); ++s) {
     const Vector3d normal = motion.linear * samples.normals.row(s).transpose();
     const Vector3d place = motion(samples.points.row(s));
-    if (whole_.nearest_facing(place, normal, kNormalCosine, reach, true).face >= 0) ++hits;
+    if (whole_.within_facing(place, normal, kNormalCosine, reach)) ++hits;
     if (s + 1 - hits > (1 - least_share) * kComponentSamples) return -1;
   }
   return target;

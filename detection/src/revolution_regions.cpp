@@ -49,8 +49,7 @@ class Turned {
     const Vector3d centroid = face_centroid(prepared_, face);
     const Vector3d normal = prepared_.normals.row(face);
     return std::ranges::all_of(turns_, [&](const Motion& motion) {
-      return surface_.nearest_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_, true).face >=
-             0;
+      return surface_.within_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_);
     });
   }
 

@@ -24,9 +24,9 @@ Vector3d row(const Points& points, std::size_t i) {
 bool on_surface(const SurfacePatch& patch, const Motion& motion, const SurfaceSamples& samples, bool at_crease,
                 std::size_t sample, double tolerance) {
   const Vector3d image = motion(row(samples.points, sample));
-  if (at_crease) return patch.index->nearest(image, tolerance).face >= 0;
+  if (at_crease) return patch.index->within(image, tolerance);
   const Vector3d normal = motion.linear * row(samples.normals, sample);
-  return patch.index->nearest_facing(image, normal, kNormalCosine, tolerance, true).face >= 0;
+  return patch.index->within_facing(image, normal, kNormalCosine, tolerance);
 }
 
 bool keeps(const SurfacePatch& patch, const Motion& motion, std::size_t sample, double tolerance) {

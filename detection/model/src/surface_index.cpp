@@ -187,7 +187,7 @@ struct SurfaceIndex::Implementation {
 
   void build();
   Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
-                  bool unsigned_normal) const;
+                  bool unsigned_normal, bool any = false) const;
 
   // A ray in Embree's frame, with the way by which its origin was moved towards the mesh.
   struct LocalRay {
@@ -213,6 +213,7 @@ struct Search {
   const Eigen::Vector3d* facing = nullptr;
   double min_cosine = 0;
   bool unsigned_normal = false;
+  bool any = false;  // the first face found will do
 
   double squared_distance = std::numeric_limits<double>::infinity();
   int face = -1;
@@ -247,6 +248,7 @@ bool plainly_beyond(const Search& search, unsigned triangle) {
 bool measure(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
   const unsigned triangle = arguments->primID;
+  if (search.any && search.face >= 0) return false;
   if (!search.faces_the_right_way(triangle) || plainly_beyond(search, triangle)) return false;
   const Corners& corners = search.corners[triangle];
   const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
@@ -261,7 +263,7 @@ bool measure(RTCPointQueryFunctionArguments* arguments) {
   search.face = face;
   search.position = triangle;
   search.barycentric = barycentric;
-  const float reach = search.reach(distance);
+  const float reach = search.any ? 0 : search.reach(distance);
   if (!(reach < arguments->query->radius)) return false;
   arguments->query->radius = reach;
   return true;
@@ -318,7 +320,7 @@ void SurfaceIndex::Implementation::build() {
 
 SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3d& point, double max_distance,
                                                             const Eigen::Vector3d* normal, double min_cosine,
-                                                            bool unsigned_normal) const {
+                                                            bool unsigned_normal, bool any) const {
   Nearest result;
   if (corners.empty() || !(max_distance >= 0)) return result;
   Search search;
@@ -330,6 +332,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   search.facing = normal;
   search.min_cosine = min_cosine;
   search.unsigned_normal = unsigned_normal;
+  search.any = any;
 
   const Eigen::Vector3d local = search.point - centre;
   const double offset = local.cwiseAbs().maxCoeff();
@@ -415,6 +418,15 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(const Eigen::Vector3d& point, double
 SurfaceIndex::Nearest SurfaceIndex::nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                                    double min_cosine, double max_distance, bool unsigned_normal) const {
   return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal);
+}
+
+bool SurfaceIndex::within(const Eigen::Vector3d& point, double max_distance) const {
+  return implementation_->nearest(point, max_distance, nullptr, 0, false, true).face >= 0;
+}
+
+bool SurfaceIndex::within_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
+                                 double max_distance) const {
+  return implementation_->nearest(point, max_distance, &normal, min_cosine, true, true).face >= 0;
 }
 
 std::optional<SurfaceIndex::Hit> SurfaceIndex::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,

@@ -165,6 +165,21 @@ TEST_P(Placed, MaximumDistanceIsInclusiveAndExact) {
   }
 }
 
+TEST_P(Placed, WithinSaysWhetherThereIsANearest) {
+  const SurfaceIndex index(mesh_);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d p = query(0.7);
+    const Eigen::Vector3d direction = random_.direction();
+    const double distance = index.nearest(p).distance;
+    EXPECT_TRUE(index.within(p, distance));
+    EXPECT_FALSE(index.within(p, std::nextafter(distance, 0)));
+    const double facing = index.nearest_facing(p, direction, 0.7, 10 * diagonal_, true).distance;
+    if (!std::isfinite(facing)) continue;
+    EXPECT_TRUE(index.within_facing(p, direction, 0.7, facing));
+    EXPECT_FALSE(index.within_facing(p, direction, 0.7, std::nextafter(facing, 0)));
+  }
+}
+
 TEST_P(Placed, FacingFilterIsTheBruteForceOne) {
   const SurfaceIndex index(mesh_);
   const Points normals = face_normals(mesh_);

@@ -34,6 +34,13 @@ class SurfaceIndex {
                          double max_distance = std::numeric_limits<double>::infinity(),
                          bool unsigned_normal = false) const;
 
+  /// Whether any face is within `max_distance`: nearest(...).face >= 0, for several times less.
+  bool within(const Eigen::Vector3d& point, double max_distance) const;
+
+  /// Likewise of the faces with |n . normal| >= min_cosine.
+  bool within_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
+                     double max_distance) const;
+
   struct Hit {
     double distance = 0;  ///< along the unit direction
     int face = -1;
