@@ -103,8 +103,8 @@ DetectionRow measure(const SuiteModel& suite_model, const CaseForm& form, const 
   SymmetryAnnotation detected = empty_annotation(model.mesh, options.detect.tolerance);
   const double start = seconds_now();
   try {
-    detected =
-        share_axes(model.mesh, orbifit::detect(model.mesh, options.detect, context), options.detect.tolerance, true);
+    detected = share_axes(model.mesh, orbifit::detect(model.mesh, options.detect, context), options.detect.tolerance,
+                          MayMove::inexact);
   } catch (const InterruptedError&) {
     throw;
   } catch (const Error& error) {

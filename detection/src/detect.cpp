@@ -39,7 +39,6 @@ constexpr std::size_t kMostRegions = 300;
 constexpr double kLeastNoise = 3e-4;     // of the diagonal
 constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
 constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
-constexpr int kRoundsOfFine = 4;         // of fitting axes; parts that are modelled as such need no second
 constexpr int kScreenDirections = 2500;
 constexpr int kScreenSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
@@ -59,7 +58,7 @@ class Detector {
     take_noise_out();
     find_whole();
     if (prepared_.components.faces.size() > 1) {
-      const PartRegions parts = find_in_parts(prepared_, false);
+      const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
       for (const FoundRegion& region : parts.regions) regions_.push_back(region);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
       add_patterns(prepared_, parts, false);
@@ -112,14 +111,17 @@ class Detector {
     }
   }
 
-  PartRegions find_in_parts(const PreparedMesh& partition, bool pieces) const {
-    PartRegionOptions part_options;
-    part_options.tolerance = options_.tolerance;
-    part_options.least_share = kLeastShare;
-    part_options.pieces = pieces;
-    part_options.explanation = options_.explanation;
-    part_options.late = [this] { return late(); };
-    return find_part_regions(partition, *whole_index_, regions_, screen_, part_options, context_);
+  PartRegionOptions part_options(bool pieces) const {
+    return {options_.tolerance, kLeastShare, pieces, options_.explanation, [this] { return late(); }};
+  }
+
+  ComponentSurvey survey_of(const PreparedMesh& partition) const {
+    return survey_components(partition, options_.tolerance, kLeastShare, context_);
+  }
+
+  PartRegions find_in_parts(const PreparedMesh& partition, ComponentSurvey survey, bool pieces) const {
+    return find_part_regions(partition, std::move(survey), *whole_index_, regions_, screen_, part_options(pieces),
+                             context_);
   }
 
   // Pieces of surface between creases take the place of components.
@@ -131,13 +133,18 @@ class Detector {
     if (count > kMostSegments) return;
     // Of one surface what lines say is asked first: pieces have little to add to it.
     const bool fine = one_fine_surface();
-    if (fine) {
-      find_turned(partition, kRoundsOfFine);
-      find_about_lines(partition);
-      find_repeated(partition);
+    const bool cut = count != prepared_.components.faces.size();
+    if (fine) find_turned(partition, fine);
+    if (late()) return;
+    if (fine || cut) {
+      ComponentSurvey survey = survey_of(partition);
+      if (fine) {
+        find_about_lines(partition, survey);
+        find_repeated(partition);
+      }
+      if (cut) add_of_pieces(find_in_parts(partition, std::move(survey), true).regions);
     }
-    if (count != prepared_.components.faces.size()) add_of_pieces(find_in_parts(partition, true).regions);
-    if (!fine) find_turned(partition, 1);
+    if (!fine) find_turned(partition, fine);
   }
 
   // Parts of one surface that repeat on a host take the place of components.
@@ -145,7 +152,7 @@ class Detector {
     if (late()) return;
     PreparedMesh repeated = prepared_;
     repeated.components = repeated_parts(partition);
-    PartRegions parts = find_in_parts(repeated, true);
+    PartRegions parts = find_in_parts(repeated, survey_of(repeated), true);
     add_of_pieces(std::move(parts.regions));
     add_patterns(repeated, parts, true);
   }
@@ -179,11 +186,10 @@ class Detector {
   }
 
   // What turns and mirrors into itself about axes and planes that pieces suggest, wherever it ends.
-  void find_about_lines(const PreparedMesh& partition) {
+  void find_about_lines(const PreparedMesh& partition, const ComponentSurvey& survey) {
     if (late()) return;
     context_.progress("axes", 0);
     const ScreenedSurface surface(partition, options_.tolerance, kScreenSamples, context_);
-    const ComponentSurvey survey = survey_components(partition, options_.tolerance, kLeastShare, context_);
     const SymmetryLines lines = find_symmetry_lines(partition, survey, options_.tolerance);
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
@@ -225,21 +231,19 @@ class Detector {
   }
 
   // Turned regions that end within a piece.
-  void find_turned(const PreparedMesh& partition, int rounds) {
+  void find_turned(const PreparedMesh& partition, bool fine) {
     if (late()) return;
     std::vector<Line> axes = axes_of_regions();
     fitted_axes_ = revolution_axes(partition, options_.tolerance, context_);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
-    RevolutionRegionOptions turned{options_.tolerance, kLeastShare, rounds, options_.explanation,
+    RevolutionRegionOptions turned{options_.tolerance, kLeastShare, fine, options_.explanation,
                                    [this] { return late(); }};
     add_of_pieces(find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_));
   }
 
   void add_patterns(const PreparedMesh& partition, const PartRegions& parts, bool pieces) {
-    const PatternSearchOptions options{options_.tolerance, kLeastShare, pieces, options_.explanation,
-                                       [this] { return late(); }};
-    for (Pattern& pattern : find_patterns(partition, parts, regions_, options, context_)) {
+    for (Pattern& pattern : find_patterns(partition, parts, regions_, part_options(pieces), context_)) {
       pattern.id = static_cast<int>(patterns_.size());
       patterns_.push_back(std::move(pattern));
     }

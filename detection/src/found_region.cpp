@@ -26,6 +26,28 @@ bool plainly_outside(const std::vector<int>& inner, const std::vector<int>& oute
   return outside > kLooks / 2;
 }
 
+// Area of the faces of `inner` that are neither in `outer` nor small ones that touch it: where a region ends within a
+// smooth surface its border is uncertain by a triangle.
+double area_apart(const PreparedMesh& prepared, const std::vector<int>& inner, const std::vector<int>& outer) {
+  constexpr double kSmall = 1e-4;  // of the mesh's area
+  std::vector<char> touched(prepared.weld.representative.size(), 0);
+  const auto vertex = [&](int face, int k) -> char& {
+    const auto corner = static_cast<std::size_t>(prepared.mesh.faces(face, k));
+    return touched[static_cast<std::size_t>(prepared.weld.group_of_vertex[corner])];
+  };
+  for (const int face : outer) {
+    for (int k = 0; k < 3; ++k) vertex(face, k) = 1;
+  }
+  double area = 0;
+  std::vector<int> outside;
+  std::ranges::set_difference(inner, outer, std::back_inserter(outside));
+  for (const int face : outside) {
+    const bool touches = vertex(face, 0) != 0 || vertex(face, 1) != 0 || vertex(face, 2) != 0;
+    if (!touches || prepared.areas[face] > kSmall * prepared.area) area += prepared.areas[face];
+  }
+  return area;
+}
+
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
@@ -60,32 +82,6 @@ double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner,
   }
   return area;
 }
-
-namespace {
-
-// Area of the faces of `inner` that are neither in `outer` nor small ones that touch it: where a region ends within a
-// smooth surface its border is uncertain by a triangle.
-double area_apart(const PreparedMesh& prepared, const std::vector<int>& inner, const std::vector<int>& outer) {
-  constexpr double kSmall = 1e-4;  // of the mesh's area
-  std::vector<char> touched(prepared.weld.representative.size(), 0);
-  const auto vertex = [&](int face, int k) -> char& {
-    const auto corner = static_cast<std::size_t>(prepared.mesh.faces(face, k));
-    return touched[static_cast<std::size_t>(prepared.weld.group_of_vertex[corner])];
-  };
-  for (const int face : outer) {
-    for (int k = 0; k < 3; ++k) vertex(face, k) = 1;
-  }
-  double area = 0;
-  std::vector<int> outside;
-  std::ranges::set_difference(inner, outer, std::back_inserter(outside));
-  for (const int face : outside) {
-    const bool touches = vertex(face, 0) != 0 || vertex(face, 1) != 0 || vertex(face, 2) != 0;
-    if (!touches || prepared.areas[face] > kSmall * prepared.area) area += prepared.areas[face];
-  }
-  return area;
-}
-
-}  // namespace
 
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
   if (inner.area > 1.02 * outer.area || inner.faces.empty() || plainly_outside(inner.faces, outer.faces)) return false;

@@ -42,13 +42,14 @@ struct Found {
 
 class Search {
  public:
-  Search(const PreparedMesh& prepared, const SurfaceIndex& whole, const DirectionSet& screen,
+  Search(const PreparedMesh& prepared, ComponentSurvey survey, const SurfaceIndex& whole, const DirectionSet& screen,
          const PartRegionOptions& options, const RunContext& context)
-      : prepared_(prepared), whole_(whole), screen_(screen), options_(options), context_(context) {}
+      : prepared_(prepared), whole_(whole), screen_(screen), options_(options), context_(context) {
+    result_.survey = std::move(survey);
+  }
 
   PartRegions run(const std::vector<FoundRegion>& known) {
     context_.progress("parts", 0);
-    result_.survey = survey_components(prepared_, options_.tolerance, options_.least_share, context_);
     mover_.emplace(prepared_, survey(), whole_, options_.tolerance, context_);
     for (const FoundRegion& region : known) take(region);
     result_.own_groups.resize(classes().size());
@@ -386,10 +387,10 @@ std::string name_of_parts(const std::vector<int>& parts) {
   return text;
 }
 
-PartRegions find_part_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+PartRegions find_part_regions(const PreparedMesh& prepared, ComponentSurvey survey, const SurfaceIndex& whole,
                               const std::vector<FoundRegion>& known, const DirectionSet& screen,
                               const PartRegionOptions& options, const RunContext& context) {
-  return Search(prepared, whole, screen, options, context).run(known);
+  return Search(prepared, std::move(survey), whole, screen, options, context).run(known);
 }
 
 }  // namespace orbifit

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 class Search {
  public:
   Search(const PreparedMesh& prepared, const PartRegions& parts, const std::vector<FoundRegion>& regions,
-         const PatternSearchOptions& options, const RunContext& context)
+         const PartRegionOptions& options, const RunContext& context)
       : prepared_(prepared),
         parts_(parts),
         regions_(regions),
@@ -271,7 +271,7 @@ class Search {
   const PreparedMesh& prepared_;
   const PartRegions& parts_;
   const std::vector<FoundRegion>& regions_;
-  const PatternSearchOptions& options_;
+  const PartRegionOptions& options_;
   const RunContext& context_;
   std::vector<char> used_;                  // by part: in a pattern
   std::vector<Eigen::AlignedBox3d> boxes_;  // by part
@@ -281,7 +281,7 @@ class Search {
 }  // namespace
 
 std::vector<Pattern> find_patterns(const PreparedMesh& prepared, const PartRegions& parts,
-                                   const std::vector<FoundRegion>& regions, const PatternSearchOptions& options,
+                                   const std::vector<FoundRegion>& regions, const PartRegionOptions& options,
                                    const RunContext& context) {
   return Search(prepared, parts, regions, options, context).run();
 }

@@ -82,12 +82,13 @@ class Search {
     }
   }
 
-  // Collects faces about the axis, fits it to them, and again with the better axis within what was collected, until
-  // what is left turns.
+  // Collects faces about the axis and fits it to them; where the surface is fine, again with the better axis, and then
+  // within what was collected, until what is left turns.
   void look_at(const Line& axis) {
+    constexpr int kRounds = 4;
     GroupPlacement turn{{Family::Cinfv, 1}, frame_about(axis.direction), axis.point};
     FoundRegion region{turn, faces_about(axis, whole_, kSlack * options_.tolerance), 0, "turned about an axis"};
-    for (int round = 0; round < options_.rounds; ++round) {
+    for (int round = 0; round < kRounds; ++round) {
       region.area = area_of(prepared_, region.faces);
       if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
       const SurfacePatch patch =
@@ -95,6 +96,7 @@ class Search {
       if (round == 0 && !continuous_about(patch, axis.direction, axis.point)) break;
       region.placement = refine(patch, region.placement);
       if (verified(patch, region.placement, context_)) return add(patch, std::move(region));
+      if (!options_.fine) break;
       const Line better{region.placement.centre, region.placement.frame.col(2)};
       std::vector<int> fewer =
           faces_about(better, round == 0 ? whole_ : *patch.index, kSlack * continuous_tolerance(patch));
@@ -112,8 +114,7 @@ class Search {
     const std::optional<OwnGroup> group = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
     const bool known = group && group->placement.group.continuous();
     if (known) region.placement = group->placement;
-    // Parts that are modelled as such have no axis but their own; a fit that was made to hold is none.
-    if (!known && options_.rounds == 1) return note(region, false, "only a finite group holds");
+    if (!known && !options_.fine) return note(region, false, "only a finite group holds");
     if (says_nothing_new(region)) return;
     note(region, true, "verified");
     found_.push_back(std::move(region));

@@ -109,8 +109,8 @@ struct Attempt {
 };
 
 // Shares axes and keeps what closes, region after region.
-Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, bool keep_exact, const RunContext& context) {
-  const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance, keep_exact);
+Attempt attempt(const Mesh& mesh, const SymmetryAnnotation& detected, MayMove which, const RunContext& context) {
+  const SymmetryAnnotation annotation = share_axes(mesh, detected, detected.tolerance, which);
   const RegionMap regions(mesh, annotation, context);
   const std::vector<int> sets = sets_of_vertices(mesh, regions);
   const double tolerance = kDoublet * diagonal(mesh.vertices);
@@ -168,14 +168,14 @@ SymmetryAnnotation closable(const Mesh& mesh, const SymmetryAnnotation& detected
   SymmetryAnnotation rest = detected;
   std::vector<std::string> given_up;
   // What fits exactly where it is stays there, if all closes then.
-  Attempt best = attempt(mesh, rest, true, context);
+  Attempt best = attempt(mesh, rest, MayMove::inexact, context);
   if (best.first_dropped < 0) {
     for (const std::string& message : best.messages) context.message(message);
     return best.kept;
   }
   std::vector<std::string> best_messages = best.messages;
   for (int round = 0; round < kMostAttempts; ++round) {
-    Attempt now = attempt(mesh, rest, false, context);
+    Attempt now = attempt(mesh, rest, MayMove::all, context);
     const int dropped = now.first_dropped;
     std::vector<std::string> messages = given_up;
     messages.insert(messages.end(), now.messages.begin(), now.messages.end());

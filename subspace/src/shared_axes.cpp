@@ -212,14 +212,13 @@ std::optional<Region> image_of_earlier(const std::vector<Region>& regions,
 
 }  // namespace
 
-SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance,
-                              bool keep_exact) {
+SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance, MayMove which) {
   constexpr double kMostTurn = 0.2;
   const double size = diagonal(mesh.vertices);
   const auto reach_of = [&](const Region& region, const Placement& placement) {
     constexpr double kOfSize = 0.002;
     constexpr double kOfMisfit = 5;
-    if (!keep_exact) return tolerance * size;
+    if (which == MayMove::all) return tolerance * size;
     return std::min(tolerance * size, kOfSize * placement.reach + kOfMisfit * region.residual.rms * size);
   };
   // Larger regions first: what is around a region stands before the region itself.

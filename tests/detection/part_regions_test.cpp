@@ -30,7 +30,8 @@ PartRegions regions_of(const PreparedMesh& prepared, const std::vector<FoundRegi
   static const DirectionSet screen = hemisphere_directions(1500);
   const SurfaceIndex whole(prepared.mesh);
   options.tolerance = kTolerance;
-  return find_part_regions(prepared, whole, known, screen, options, RunContext{});
+  return find_part_regions(prepared, survey_components(prepared, options.tolerance, options.least_share, {}), whole,
+                           known, screen, options, RunContext{});
 }
 
 // What must hold of every region, whatever the mesh.

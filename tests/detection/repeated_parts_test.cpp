@@ -97,10 +97,10 @@ TEST_P(Towers, AreARow) {
   PartRegionOptions options;
   options.pieces = true;
   const SurfaceIndex whole(prepared.mesh);
-  const PartRegions parts = find_part_regions(prepared, whole, {}, hemisphere_directions(500), options, context);
-  PatternSearchOptions search;
-  search.pieces = true;
-  const std::vector<Pattern> found = find_patterns(prepared, parts, {}, search, context);
+  const PartRegions parts =
+      find_part_regions(prepared, survey_components(prepared, options.tolerance, options.least_share, context), whole,
+                        {}, hemisphere_directions(500), options, context);
+  const std::vector<Pattern> found = find_patterns(prepared, parts, {}, options, context);
   const auto row = std::ranges::find(found, Pattern::Kind::translation_1d, &Pattern::kind);
   ASSERT_NE(row, found.end());
   EXPECT_EQ(row->instances.size(), static_cast<std::size_t>(GetParam()));

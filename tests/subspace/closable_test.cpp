@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Models, NearlySharedAxes, testing::Values("bar", "table
 
 TEST(SharedAxes, LeaveAnExactAnnotationAsItIs) {
   const GeneratedModel model = generate("table");
-  const SymmetryAnnotation shared = share_axes(model.mesh, model.truth, 0.005, false);
+  const SymmetryAnnotation shared = share_axes(model.mesh, model.truth, 0.005, MayMove::all);
   ASSERT_EQ(shared.regions.size(), model.truth.regions.size());
   for (std::size_t i = 0; i < shared.regions.size(); ++i) {
     EXPECT_LT((shared.regions[i].centre - model.truth.regions[i].centre).norm(), 1e-12);
@@ -69,12 +69,12 @@ TEST(SharedAxes, LeaveAnExactRegionWhereItIs) {
                       inner.name);
   inner.id = model.truth.regions.back().id;
   inner.residual = {1e-12, 1e-12};
-  const auto moved = [&](bool keep_exact) {
-    const SymmetryAnnotation shared = share_axes(model.mesh, annotation, 0.005, keep_exact);
+  const auto moved = [&](MayMove which) {
+    const SymmetryAnnotation shared = share_axes(model.mesh, annotation, 0.005, which);
     return (shared.regions.back().centre - inner.centre).norm();
   };
-  EXPECT_LT(moved(true), 0.1 * off);
-  EXPECT_GT(moved(false), 0.5 * off);
+  EXPECT_LT(moved(MayMove::inexact), 0.1 * off);
+  EXPECT_GT(moved(MayMove::all), 0.5 * off);
 }
 
 TEST(Closable, LeavesOutARegionThatClashesAndSaysSo) {

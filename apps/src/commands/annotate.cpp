@@ -187,7 +187,7 @@ CommandBody annotate(CLI::App& app) {
     if (!found.stands) throw NoResultError(reason_against(found, mesh));
     found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
     const RegionAddition addition = add_region(prepared, found.region, found.residual, options.tolerance, annotation);
-    if (hint.refine) annotation = share_axes(mesh, annotation, options.tolerance, true);
+    if (hint.refine) annotation = share_axes(mesh, annotation, options.tolerance, MayMove::inexact);
     if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
     const Region& region = annotation.regions[static_cast<std::size_t>(addition.id)];
     const std::size_t count = annotation.regions.size();

@@ -228,7 +228,7 @@ CommandBody detect(CLI::App& app) {
     DetectOptions chosen = arguments->options;
     if (!arguments->explain.empty()) chosen.explanation = &explanation;
     const SymmetryAnnotation found =
-        share_axes(mesh, orbifit::detect(mesh, chosen, context.run), chosen.tolerance, true);
+        share_axes(mesh, orbifit::detect(mesh, chosen, context.run), chosen.tolerance, MayMove::inexact);
     if (!arguments->explain.empty()) write_explanation(arguments->explain, explanation);
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));

@@ -26,11 +26,11 @@ struct OwnGroup {
 
 /// How much of the patch the group keeps: verify() at continuous_tolerance() for a continuous group and at the patch's
 /// own tolerance for a finite one, given up where it is far less than passes() asks for.
+/// \param samples how many of the patch's samples to use, spread evenly; 0: all
 Verification verify_group(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context,
                           int samples = 0);
 
-/// Whether that passes.
-/// \param samples how many of the patch's samples to use, spread evenly; 0: all
+/// Whether that passes().
 bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples = 0);
 
 /// The largest point group that maps the patch to itself: candidates for mirrors and axes, the orders about each axis,

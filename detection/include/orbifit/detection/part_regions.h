@@ -14,7 +14,7 @@ namespace orbifit {
 
 struct PartRegionOptions {
   double tolerance = 0.005;    ///< fraction of the mesh's diagonal
-  double least_share = 0.002;  ///< of the mesh's area: smaller regions say little
+  double least_share = 0.002;  ///< of the mesh's area: smaller regions and patterns say little
   /// Whether the parts are pieces of larger surfaces: their borders alone then make no symmetry. Flat regions, and
   /// finite groups of planes and surfaces of revolution, are left out.
   bool pieces = false;
@@ -31,9 +31,10 @@ struct PartRegions {
 /// Regions made of whole parts (the prepared mesh's `components`): own groups of parts, of sets of congruent parts, and
 /// of what turns or mirrors into itself about the lines and planes that parts suggest; each grown to all parts that its
 /// group permutes; then the larger regions of their subgroups. Every group was verified.
-/// \param whole index of the whole mesh \param known regions found before; their groups are not reported again
+/// \param survey of the parts, see survey_components(), with the same tolerance and least share; handed on in the
+/// result \param whole index of the whole mesh \param known regions found before; their groups are not reported again
 /// \param screen directions to search where moments leave all open
-PartRegions find_part_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+PartRegions find_part_regions(const PreparedMesh& prepared, ComponentSurvey survey, const SurfaceIndex& whole,
                               const std::vector<FoundRegion>& known, const DirectionSet& screen,
                               const PartRegionOptions& options, const RunContext& context);
 

@@ -11,9 +11,11 @@
 namespace orbifit {
 
 struct RevolutionRegionOptions {
-  double tolerance = 0.005;            ///< fraction of the mesh's diagonal
-  double least_share = 0.002;          ///< of the mesh's area: smaller regions say little
-  int rounds = 1;                      ///< of fitting the axis and collecting the faces about it
+  double tolerance = 0.005;    ///< fraction of the mesh's diagonal
+  double least_share = 0.002;  ///< of the mesh's area: smaller regions say little
+  /// Whether nearly all is one finely meshed surface: axes are then fitted and faces collected in turns. Parts that are
+  /// modelled as such have no axis but their own.
+  bool fine = false;
   Explanation* explanation = nullptr;  ///< may be null
   std::function<bool()> late;          ///< whether time is up; may be empty
 };

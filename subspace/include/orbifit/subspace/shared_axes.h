@@ -5,6 +5,12 @@
 
 namespace orbifit {
 
+/// Which regions share_axes() may move, and how far.
+enum class MayMove {
+  inexact,  ///< none by more than a few times its residual and a little of its own size: what fits exactly stays
+  all,      ///< all by up to the tolerance, for annotations whose residuals say nothing
+};
+
 /// Regions detected one by one share axes, planes and centres only up to the tolerance, and groups that miss each other
 /// by a little do not close (see closable.h). Here each region in turn, largest first, is moved by less than
 /// `tolerance` (fraction of the diagonal, on its own extent) so that
@@ -13,9 +19,7 @@ namespace orbifit {
 ///  - it is the exact image of an earlier region of the same group wherever an element around both takes one to the
 ///  other.
 /// Elements are regenerated in closed form; residuals grow by the movement.
-/// \param keep_exact whether regions that fit closely, by their residuals, stay where they are: then none moves by more
-/// than a few times its residual and a little of its own size
-SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance,
-                              bool keep_exact);
+/// \param which regions may move
+SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annotation, double tolerance, MayMove which);
 
 }  // namespace orbifit
