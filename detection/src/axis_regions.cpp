@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -181,9 +182,9 @@ class AxisSearch {
     for (const Line& axis : result.turning) search_.add_turning_axis(axis);
     for (std::size_t a = 0; a < turns_.size() && !late(); ++a) {
       context_.progress("axes", 0.5 * static_cast<double>(a) / static_cast<double>(axes_.size()));
-      look_for_middle(turns_[a]);
-      climb(a);
+      if (turns_[a]) look_for_middle(*turns_[a]);
     }
+    climb();
     // High orders first: what they explain, such as the half-turns of a dihedral group, is not looked at again.
     std::ranges::stable_sort(orders_, [](const Order& x, const Order& y) {
       return (x.n > 2) != (y.n > 2) ? x.n > 2 : x.n * x.evidence > y.n * y.evidence;
@@ -205,18 +206,35 @@ class AxisSearch {
   // Returns the axes about which more than a little turns.
   std::vector<Line> find_turns() {
     constexpr double kLeast = 0.01;  // of the surface
+    turns_.resize(axes_.size());
+    parallel_for(context_, axes_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t a = begin; a < end && !late(); ++a) turns_[a] = std::make_unique<Turns>(surface_, axes_[a]);
+    });
     std::vector<Line> turning;
-    for (std::size_t a = 0; a < axes_.size() && !late(); ++a) {
-      context_.check();
-      turns_.emplace_back(surface_, axes_[a]);
-      const auto turned = static_cast<double>(turns_[a].turned().size());
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      if (!turns_[a]) continue;
+      const auto turned = static_cast<double>(turns_[a]->turned().size());
       if (turned >= kLeast * static_cast<double>(surface_.samples.faces.size())) turning.push_back(axes_[a]);
     }
     return turning;
   }
 
-  void climb(std::size_t axis) {
-    const Turns& turns = turns_[axis];
+  // The orders about all axes.
+  void climb() {
+    std::vector<std::vector<Order>> found(turns_.size());
+    parallel_for(context_, turns_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t a = begin; a < end && !late(); ++a) {
+        if (turns_[a]) found[a] = orders_about(a);
+      }
+    });
+    for (std::vector<Order>& orders : found) {
+      orders_.insert(orders_.end(), std::make_move_iterator(orders.begin()), std::make_move_iterator(orders.end()));
+    }
+  }
+
+  std::vector<Order> orders_about(std::size_t axis) const {
+    const Turns& turns = *turns_[axis];
+    std::vector<Order> result;
     std::map<int, std::vector<std::size_t>> kept;  // by order
     kept[1] = turns.all();
     const std::vector<char> none(surface_.samples.faces.size(), 0);
@@ -229,10 +247,11 @@ class AxisSearch {
         std::vector<std::size_t> stay = turns.kept(samples, n, m);
         const double evidence = turns.evidence(stay, none);
         if (evidence < options_.least_share) continue;
-        orders_.push_back({axis, n, stay, evidence});
+        result.push_back({axis, n, stay, evidence});
         kept.emplace(n, std::move(stay));
       }
     }
+    return result;
   }
 
   // Of what turns by any angle, what is mirrored across the axis as well.
@@ -248,7 +267,7 @@ class AxisSearch {
   }
 
   void look_at(const Order& order) {
-    const Turns& turns = turns_[order.axis];
+    const Turns& turns = *turns_[order.axis];
     const Line& axis = axes_[order.axis];
     const GroupPlacement turn{{Family::Cn, order.n}, frame_about(axis.direction), axis.point};
     const double least = order.n > 2 ? options_.least_share : kLeastOfHalfTurns;
@@ -284,7 +303,7 @@ class AxisSearch {
   const LineRegionOptions& options_;
   const RunContext& context_;
   LineRegionSearch search_;
-  std::vector<Turns> turns_;
+  std::vector<std::unique_ptr<Turns>> turns_;  // of the axes, none where time was up
   std::vector<Order> orders_;
   std::vector<std::pair<std::pair<std::size_t, int>, std::vector<int>>> tried_;  // axis, order, samples
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -30,9 +31,10 @@ constexpr int kSamples = 500;
 /// Regions, and which of them are images of which.
 class Completion {
  public:
-  Completion(const PreparedMesh& prepared, const CompletionOptions& options, const RunContext& context,
-             std::vector<FoundRegion>& regions)
+  Completion(const PreparedMesh& prepared, const SurfaceIndex& whole, const CompletionOptions& options,
+             const RunContext& context, std::vector<FoundRegion>& regions)
       : prepared_(prepared),
+        whole_(whole),
         options_(options),
         context_(context),
         regions_(regions),
@@ -74,40 +76,50 @@ class Completion {
     }
   }
 
+  struct Surface {
+    SurfacePatch patch;
+    std::optional<double> fit;  // rms distance under the region's group where it is now
+  };
+
+  // What is known of a region's image under a motion before anything is changed.
+  struct Image {
+    std::optional<std::size_t> same;    // the region of the same group that it is
+    std::optional<std::size_t> within;  // one that holds it and its group
+    std::vector<int> faces;             // where neither is known: the faces; empty where there is no such surface
+  };
+
   // Makes all images of region q; their numbers.
   std::vector<std::size_t> carry(std::size_t q, const std::vector<Motion>& motions) {
-    const SurfaceIndex& surface = surface_of(q);
+    std::vector<Image> images(motions.size());
+    parallel_for(context_, motions.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) images[i] = look(q, motions[i]);
+    });
     std::vector<Motion> stabiliser;
-    std::vector<std::pair<std::size_t, Motion>> images;
-    std::vector<std::pair<Motion, std::vector<int>>> elsewhere;
-    std::vector<std::size_t> result;
-    for (const Motion& motion : motions) {
-      if (const std::optional<std::size_t> known = known_image(q, motion)) {
-        if (*known == q) {
-          stabiliser.push_back(motion);
-        } else if (std::ranges::find(result, *known) == result.end()) {
-          result.push_back(*known);
-          images.emplace_back(*known, motion);
-        }
-        continue;
-      }
-      std::vector<int> image = image_of(q, surface, motion);
-      if (image.empty()) continue;
-      if (overlap(image, regions_[q].faces) > 0.85) {
-        stabiliser.push_back(motion);
-      } else {
-        elsewhere.emplace_back(motion, std::move(image));
-      }
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const Image& image = images[i];
+      const bool itself =
+          image.same ? *image.same == q : !image.within && overlap(image.faces, regions_[q].faces) > 0.85;
+      if (itself) stabiliser.push_back(motions[i]);
     }
     settle(q, stabiliser);
-    for (const auto& [image, motion] : images) place(image, carried(regions_[q].placement, motion));
-    for (const auto& [motion, faces] : elsewhere) {
-      const GroupPlacement goal = carried(regions_[q].placement, motion);
-      const std::optional<std::size_t> known = find(goal, faces);
-      if (known) {
-        const bool fresh = std::ranges::find(result, *known) == result.end();
-        if (fresh && *known != q && regions_[*known].placement.group == goal.group) place(*known, goal);
-        result.push_back(*known);
+    std::vector<std::size_t> result;
+    const auto take = [&](std::size_t known, const GroupPlacement& goal) {
+      const bool fresh = known != q && std::ranges::find(result, known) == result.end();
+      if (!fresh) return;
+      if (regions_[known].placement.group == goal.group) place(known, goal);
+      result.push_back(known);
+    };
+    // What is the region itself moved comes before what only lies within something.
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (images[i].same) take(*images[i].same, carried(regions_[q].placement, motions[i]));
+    }
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const std::vector<int>& faces = images[i].faces;
+      const GroupPlacement goal = carried(regions_[q].placement, motions[i]);
+      if (images[i].within) take(*images[i].within, goal);
+      if (faces.empty() || overlap(faces, regions_[q].faces) > 0.85) continue;
+      if (const std::optional<std::size_t> known = find(goal, faces)) {
+        take(*known, goal);
       } else if (regions_.size() < options_.most && holds(goal, faces)) {
         note(goal, regions_[q], true, "image of a region under a larger region's group");
         const SurfaceMoments moments = surface_moments(prepared_, faces);
@@ -119,37 +131,63 @@ class Completion {
     return result;
   }
 
-  // The region of the same group onto which the motion carries this one, told by a few of its faces.
-  std::optional<std::size_t> known_image(std::size_t q, const Motion& motion) {
-    constexpr std::size_t kLooks = 24;
+  // Cheap answers first: most images are known, or there is no surface where they would be.
+  Image look(std::size_t q, const Motion& motion) {
+    constexpr double kNearlyAll = 0.9;  // of the looks
+    constexpr double kMost = 0.7;
+    Image image;
+    if (late()) return image;
+    const GroupPlacement goal = carried(regions_[q].placement, motion);
+    const SurfaceMoments& mine = moments_[q];
+    const Vector3d centroid = motion(mine.centroid);
     const double reach = 1.5 * tolerance_of(q);
-    const Vector3d goal = motion(moments_[q].centroid);
+    const auto contains = [&](std::size_t k) {
+      return contains_group(regions_[k].placement, goal, centroid, mine.radius, reach);
+    };
     for (std::size_t k = 0; k < regions_.size(); ++k) {
-      if (regions_[k].placement.group != regions_[q].placement.group) continue;
-      if ((moments_[k].centroid - goal).norm() > 2 * reach) continue;
-      if (std::abs(regions_[k].area - regions_[q].area) > 0.05 * regions_[q].area) continue;
-      if (!contains_group(regions_[k].placement, carried(regions_[q].placement, motion), goal, moments_[q].radius,
-                          reach)) {
-        continue;
-      }
-      const SurfaceIndex& surface = surface_of(k);
-      const std::vector<int>& faces = regions_[q].faces;
-      std::size_t hits = 0;
-      for (std::size_t i = 0; i < kLooks; ++i) {
-        const int face = faces[i * faces.size() / kLooks];
-        const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
-        if (surface.within_facing(motion(centroids_.row(face)), normal, kNormalCosine, reach)) ++hits;
-      }
-      if (hits >= kLooks - 2) return k;
+      const bool same = regions_[k].placement.group == goal.group &&
+                        (moments_[k].centroid - centroid).norm() <= 2 * reach &&
+                        std::abs(regions_[k].area - regions_[q].area) <= 0.05 * regions_[q].area;
+      if (!same || !contains(k) || share_on(q, index_of(k), motion) < kNearlyAll) continue;
+      image.same = k;
+      return image;
     }
-    return std::nullopt;
+    if (share_on(q, whole_, motion) < kMost) return image;
+    for (std::size_t k = 0; k < regions_.size(); ++k) {
+      if (k == q || regions_[k].area < 0.95 * regions_[q].area || !contains(k)) continue;
+      if (share_on(q, index_of(k), motion) < kNearlyAll) continue;
+      image.within = k;
+      return image;
+    }
+    image.faces = image_of(q, index_of(q), motion);
+    return image;
   }
 
-  const SurfaceIndex& surface_of(std::size_t region) {
+  // The share of a few faces of the region that the motion carries onto the surface.
+  double share_on(std::size_t q, const SurfaceIndex& surface, const Motion& motion) const {
+    constexpr std::size_t kLooks = 24;
+    const double reach = 1.5 * tolerance_of(q);
+    const std::vector<int>& faces = regions_[q].faces;
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < kLooks; ++i) {
+      const int face = faces[i * faces.size() / kLooks];
+      const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
+      if (surface.within_facing(motion(centroids_.row(face)), normal, kNormalCosine, reach)) ++hits;
+    }
+    return static_cast<double>(hits) / kLooks;
+  }
+
+  Surface& surface_of(std::size_t region) {
+    const std::lock_guard lock(surfaces_mutex_);
     if (surfaces_.size() <= region) surfaces_.resize(region + 1);
-    if (!surfaces_[region]) surfaces_[region] = std::make_unique<SurfaceIndex>(prepared_.mesh, regions_[region].faces);
+    if (!surfaces_[region]) {
+      surfaces_[region] = std::make_unique<Surface>(Surface{
+          make_patch(prepared_, regions_[region].faces, kSamples, options_.tolerance, context_, "completion"), {}});
+    }
     return *surfaces_[region];
   }
+
+  const SurfaceIndex& index_of(std::size_t region) { return *surface_of(region).patch.index; }
 
   // The faces that the motion carries the region onto; empty where there is no such surface.
   std::vector<int> image_of(std::size_t q, const SurfaceIndex& surface, const Motion& motion) const {
@@ -231,12 +269,15 @@ class Completion {
     const FoundRegion& now = regions_[region];
     const SurfaceMoments& moments = moments_[region];
     if (!contains_group(now.placement, goal, moments.centroid, moments.radius, kNothing)) {
-      const SurfacePatch patch = make_patch(prepared_, now.faces, kSamples, options_.tolerance, context_, "completion");
+      Surface& surface = surface_of(region);
       const auto fit = [&](const GroupPlacement& placement) {
         const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-        return measure_residual(patch, motions, context_, kQueries).rms;
+        return measure_residual(surface.patch, motions, context_, kQueries).rms;
       };
-      if (fit(goal) > kAsWell * fit(now.placement) + kNothing || !holds(goal, patch)) return;
+      if (!surface.fit) surface.fit = fit(now.placement);
+      const double there = fit(goal);
+      if (there > kAsWell * *surface.fit + kNothing || !holds(goal, surface.patch)) return;
+      surface.fit = there;
     }
     regions_[region].placement = goal;
   }
@@ -288,11 +329,13 @@ class Completion {
   }
 
   const PreparedMesh& prepared_;
+  const SurfaceIndex& whole_;
   const CompletionOptions& options_;
   const RunContext& context_;
   std::vector<FoundRegion>& regions_;
   std::vector<SurfaceMoments> moments_;
-  std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;  // of the regions, built when first needed
+  std::mutex surfaces_mutex_;
+  std::vector<std::unique_ptr<Surface>> surfaces_;  // of the regions, built when first needed
   Points centroids_;
   PointIndex near_;
 };
@@ -309,9 +352,9 @@ GroupPlacement carried(const GroupPlacement& placement, const Motion& motion) {
   return result;
 }
 
-void complete_regions(const PreparedMesh& prepared, const CompletionOptions& options, const RunContext& context,
-                      std::vector<FoundRegion>& regions) {
-  Completion(prepared, options, context, regions).run();
+void complete_regions(const PreparedMesh& prepared, const SurfaceIndex& whole, const CompletionOptions& options,
+                      const RunContext& context, std::vector<FoundRegion>& regions) {
+  Completion(prepared, whole, options, context, regions).run();
 }
 
 }  // namespace orbifit

@@ -67,8 +67,9 @@ class Detector {
     if (!late(1)) {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
-      complete_regions(prepared_, {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }},
-                       context_, regions_);
+      complete_regions(prepared_, *whole_index_,
+                       {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }}, context_,
+                       regions_);
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);

@@ -108,7 +108,7 @@ class Guide {
       options.samples = 700;
       options.iterations = 20;
       options.first_width = 8;
-      placement = refine(around, given, options);
+      placement = refine(around, given, context_, options);
     }
     faces_ = around.faces;
     double tolerance = tolerance_of(placement.group, around);
@@ -126,7 +126,7 @@ class Guide {
       if (!refines_) continue;
       RefinementOptions options;
       options.first_width = slack;
-      placement = refine(patch, placement, options);
+      placement = refine(patch, placement, context_, options);
     }
     return placement;
   }
@@ -216,7 +216,7 @@ class Guide {
       RefinementOptions options;
       options.samples = 1500;
       options.first_width = 1.5;
-      tries.push_back(refine_on_vertices(patch, refine(patch, placement, options)));
+      tries.push_back(refine_on_vertices(patch, refine(patch, placement, context_, options)));
     }
     tries.push_back(placement);
     GuidedRegion result;

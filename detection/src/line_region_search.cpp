@@ -90,14 +90,14 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   if (!measure()) return note(stage, region, false, "too small");
   if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
-  region.placement = refine(patch, start);
+  region.placement = refine(patch, start, context_);
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
   std::vector<int> again = grid_region(surface_, region.placement, context_);
   if (again != region.faces) {
     region.faces = std::move(again);
     if (!measure()) return note(stage, region, false, "too small once refined");
     patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
-    region.placement = refine(patch, region.placement);
+    region.placement = refine(patch, region.placement, context_);
   }
   if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
@@ -111,7 +111,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     region.faces = std::move(fewer);
     if (!measure()) return note(stage, region, false, "too small once thinned out");
     patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
-    region.placement = refine(patch, region.placement);
+    region.placement = refine(patch, region.placement, context_);
   }
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
   std::optional<OwnGroup> own;

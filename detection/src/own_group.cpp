@@ -141,14 +141,14 @@ class Search {
     options.iterations = 5;
     options.first_width = 12;
     options.last_width = 3;
-    return refine(patch_, {group, frame_about(axis), centre_}, options);
+    return refine(patch_, {group, frame_about(axis), centre_}, context_, options);
   }
 
   GroupPlacement fitted(const PointGroup& group, const GroupFrame& frame) const {
     RefinementOptions options;
     options.samples = 250;
     options.first_width = 6;
-    return refine(patch_, {group, frame, centre_}, options);
+    return refine(patch_, {group, frame, centre_}, context_, options);
   }
 
   static void add_line(std::vector<Vector3d>& lines, const Vector3d& line) {
@@ -394,7 +394,8 @@ class Search {
     options.iterations = 12;
     options.first_width = 1.5;
     options.last_width = 1;
-    for (const GroupPlacement& placement : {refine_on_vertices(patch_, refine(patch_, before, options)), before}) {
+    for (const GroupPlacement& placement :
+         {refine_on_vertices(patch_, refine(patch_, before, context_, options)), before}) {
       Verification verification = verify(patch_, judged_motions(placement.group, placement.frame, placement.centre),
                                          tolerance_of(placement.group), 0, 0, context_);
       if (!passes(verification)) continue;

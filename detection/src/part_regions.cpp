@@ -53,15 +53,8 @@ class Search {
     mover_.emplace(prepared_, survey(), whole_, options_.tolerance, context_);
     for (const FoundRegion& region : known) take(region);
     result_.own_groups.resize(classes().size());
-    for (std::size_t c = 0; c < classes().size() && !late(); ++c) {
-      context_.progress("parts", static_cast<double>(c) / static_cast<double>(classes().size()));
-      find_part_groups(c);
-    }
-    for (std::size_t c = 0; c < classes().size() && !late(); ++c) {
-      context_.progress("sets", static_cast<double>(c) / static_cast<double>(classes().size()));
-      const std::vector<int>& members = classes()[c].members;
-      if (members.size() > 1 && members.size() < survey().moments.size()) find_set_group(members, {});
-    }
+    find_part_groups();
+    find_class_groups();
     find_line_regions();
     context_.progress("subgroups", 0);
     find_subgroup_regions();
@@ -231,49 +224,123 @@ class Search {
     found_.push_back({placement, grown, area, false, off});
   }
 
-  void find_part_groups(std::size_t number) {
-    const CongruenceClass& kind = classes()[number];
-    const int first = kind.members.front();
-    const SurfaceMoments& mine = moments(first);
-    if (mine.area * static_cast<double>(kind.members.size()) < least_area()) return;
-    const bool sheet = flat(mine, options_.tolerance);
-    const SurfacePatch patch = make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(first)],
-                                          kPartSamples, options_.tolerance, context_, "part");
+  // Calls look(i) for each i < count on all threads: large ones come first, and each thread takes the next that is
+  // left.
+  template <typename Look>
+  void for_each(std::size_t count, const Look& look) const {
+    constexpr std::size_t kStride = 64;
+    parallel_for(context_, std::min(count, kStride), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t first = begin; first < end; ++first) {
+        for (std::size_t i = first; i < count && !late(); i += kStride) look(i);
+      }
+    });
+  }
+
+  // A part of a class, looked at by itself.
+  struct PartLook {
+    SurfacePatch patch;
+    bool sheet;
+    std::optional<OwnGroup> group;
+  };
+
+  PartLook look_at_part(int part, const GroupHints& given) const {
+    const SurfaceMoments& mine = moments(part);
+    PartLook look{make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(part)], kPartSamples,
+                             options_.tolerance, context_, "part"),
+                  flat(mine, options_.tolerance),
+                  {}};
     bool screen = needs_screen(mine);
-    std::vector<Vector3d> axes;
+    GroupHints hints = given;
     if (options_.pieces) {
       // A piece of a plane or a turned surface is as symmetric as that, or by its border only.
-      const std::optional<RevolutionFit> fit = revolution_of(patch);
-      if (sheet || (fit && (fit->planar || fit->spherical || turned(*fit)))) screen = false;
-      if (fit && !fit->planar && !fit->spherical) axes.push_back(fit->axis.direction);
+      const std::optional<RevolutionFit> fit = revolution_of(look.patch);
+      if (look.sheet || (fit && (fit->planar || fit->spherical || turned(*fit)))) screen = false;
+      if (fit && !fit->planar && !fit->spherical) hints.axes.insert(hints.axes.begin(), fit->axis.direction);
     }
-    const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
-    if (!group) return note("parts", {}, {first}, false, "no group of its own");
-    result_.own_groups[number] = group->placement;
-    mover_->know(number, group->placement);
-    if (flat_mirror_only(mine, group->placement, options_.tolerance)) return;
-    if (options_.pieces && (sheet || mere_border(group->placement, {first}))) {
-      return note("parts", group->placement, {first}, false, "only its border gives it the group");
-    }
-    const double strict = strictness(group->placement, patch);
-    for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
-      add("parts", carried(group->placement, kind.motions[i]), {kind.members[i]}, strict);
+    look.group = find_own_group(look.patch, screen ? &screen_ : nullptr, hints, context_);
+    return look;
+  }
+
+  // The groups of the parts, each class's by one of its members.
+  void find_part_groups() {
+    std::vector<std::optional<PartLook>> looks(classes().size());
+    const GroupHints known = hints();
+    for_each(looks.size(), [&](std::size_t c) {
+      const CongruenceClass& kind = classes()[c];
+      const int first = kind.members.front();
+      if (moments(first).area * static_cast<double>(kind.members.size()) < least_area()) return;
+      looks[c] = look_at_part(first, known);
+    });
+    for (std::size_t c = 0; c < looks.size() && !late(); ++c) {
+      context_.progress("parts", static_cast<double>(c) / static_cast<double>(looks.size()));
+      if (looks[c]) take_part_group(c, *looks[c]);
+      looks[c].reset();
     }
   }
 
-  // The own group of several parts together. Whether there is one.
-  bool find_set_group(const std::vector<int>& members, const std::vector<Vector3d>& axes) {
-    if (area_of(members) < least_area() || mere_pair(members, classes()) || !tried_.insert(members).second)
-      return false;
-    const SurfacePatch patch = patch_of(members, "set");
-    const bool screen = axes.empty() && needs_screen(patch.moments);
-    const std::optional<OwnGroup> group = find_own_group(patch, screen ? &screen_ : nullptr, hints(axes), context_);
-    if (!group) {
-      note(axes.empty() ? "sets" : "axes", {}, members, false, "no group of their own");
+  void take_part_group(std::size_t number, const PartLook& look) {
+    const CongruenceClass& kind = classes()[number];
+    const int first = kind.members.front();
+    if (!look.group) return note("parts", {}, {first}, false, "no group of its own");
+    const GroupPlacement& group = look.group->placement;
+    result_.own_groups[number] = group;
+    mover_->know(number, group);
+    if (flat_mirror_only(moments(first), group, options_.tolerance)) return;
+    if (options_.pieces && (look.sheet || mere_border(group, {first}))) {
+      return note("parts", group, {first}, false, "only its border gives it the group");
+    }
+    const double strict = strictness(group, look.patch);
+    for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
+      add("parts", carried(group, kind.motions[i]), {kind.members[i]}, strict);
+    }
+  }
+
+  // Several parts, looked at together.
+  struct SetLook {
+    SurfacePatch patch;
+    std::optional<OwnGroup> group;
+  };
+
+  SetLook look_at_set(const std::vector<int>& members, const std::vector<Vector3d>& axes) const {
+    SetLook look{patch_of(members, "set"), {}};
+    const bool screen = axes.empty() && needs_screen(look.patch.moments);
+    look.group = find_own_group(look.patch, screen ? &screen_ : nullptr, hints(axes), context_);
+    return look;
+  }
+
+  bool worth_a_look(const std::vector<int>& members) {
+    return area_of(members) >= least_area() && !mere_pair(members, classes()) && tried_.insert(members).second;
+  }
+
+  // Whether the members have a group together.
+  bool take_set_group(std::string_view stage, const SetLook& look, const std::vector<int>& members) {
+    if (!look.group) {
+      note(stage, {}, members, false, "no group of their own");
       return false;
     }
-    add(axes.empty() ? "sets" : "axes", group->placement, members, strictness(group->placement, patch));
+    add(stage, look.group->placement, members, strictness(look.group->placement, look.patch));
     return true;
+  }
+
+  // The groups of whole classes.
+  void find_class_groups() {
+    std::vector<const std::vector<int>*> sets;
+    for (const CongruenceClass& kind : classes()) {
+      const bool some = kind.members.size() > 1 && kind.members.size() < survey().moments.size();
+      if (some && worth_a_look(kind.members)) sets.push_back(&kind.members);
+    }
+    std::vector<std::optional<SetLook>> looks(sets.size());
+    for_each(sets.size(), [&](std::size_t i) { looks[i] = look_at_set(*sets[i], {}); });
+    for (std::size_t i = 0; i < sets.size() && !late(); ++i) {
+      context_.progress("sets", static_cast<double>(i) / static_cast<double>(sets.size()));
+      if (looks[i]) take_set_group("sets", *looks[i], *sets[i]);
+      looks[i].reset();
+    }
+  }
+
+  // The own group of several parts about an axis. Whether there is one.
+  bool find_set_group(const std::vector<int>& members, const Vector3d& axis) {
+    return worth_a_look(members) && take_set_group("axes", look_at_set(members, {axis}), members);
   }
 
   // The parts of `of` that none of the others holds.
@@ -319,7 +386,7 @@ class Search {
     const GroupFrame frame = frame_about(line.direction);
     const std::vector<int> round = mover_->permuted({{Family::Cinf, 1}, frame, line.point}, {});
     if (!round.empty() && !already_known({{Family::Cinf, 1}, frame, line.point}, round)) {
-      find_set_group(round, {line.direction});
+      find_set_group(round, line.direction);
     }
     std::vector<std::pair<int, std::vector<int>>> found;
     const int lowest = crowded() ? 3 : 2;
@@ -339,11 +406,11 @@ class Search {
       for (const CongruenceClass& kind : classes()) {
         std::vector<int> ring;
         std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));
-        if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, {line.direction});
+        if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, line.direction);
       }
-      if (!mere_pair(turned, classes()) && !already_known(turn, turned) && !find_set_group(turned, {line.direction})) {
+      if (!mere_pair(turned, classes()) && !already_known(turn, turned) && !find_set_group(turned, line.direction)) {
         const SurfacePatch patch = patch_of(turned, "axis");
-        const GroupPlacement placement = refine(patch, turn);
+        const GroupPlacement placement = refine(patch, turn, context_);
         if (orbifit::verified(patch, placement, context_)) add("axes", placement, turned, strictness(placement, patch));
       }
       found.emplace_back(n, std::move(turned));
@@ -356,7 +423,7 @@ class Search {
     if (parts.size() < 2 || area_of(parts) < least_area() || already_known(placement, parts)) return;
     if (mere_pair(parts, classes()) || !tried_.insert(parts).second) return;
     const SurfacePatch patch = patch_of(parts, "mirror");
-    placement = refine(patch, placement);
+    placement = refine(patch, placement, context_);
     if (orbifit::verified(patch, placement, context_)) add("planes", placement, parts, strictness(placement, patch));
   }
 

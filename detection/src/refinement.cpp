@@ -86,34 +86,71 @@ double apply(const NormalEquations& equations, double scale, GroupPlacement& pla
 
 }  // namespace
 
-GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RefinementOptions& options) {
+namespace {
+
+/// Samples of a patch and their images: what one step of the refinement is fitted to.
+struct Pairs {
+  const SurfacePatch& patch;
+  const GroupPlacement& placement;
+  double width;
+  double scale;
+  Eigen::Index count;  // of the samples that are looked at
+
+  void add(const Motion& motion, Eigen::Index i, NormalEquations& equations) const {
+    const Eigen::Index s = i * patch.samples.points.rows() / count;
+    const Vector3d point = patch.samples.points.row(s);
+    const Vector3d image = motion(point);
+    const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
+    const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNormalCosine, width, true);
+    if (near.face < 0) return;
+    const Vector3d facing = patch.prepared->normals.row(near.face);
+    const double residual = facing.dot(image - near.point);
+    const double ratio = near.distance / width;
+    const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
+    const Vector6 row = image_jacobian(motion, point - placement.centre, scale).transpose() * facing;
+    equations.matrix += weight * row * row.transpose();
+    equations.right += weight * residual * row;
+    equations.weight += weight;
+  }
+
+  // Summed block by block, so that rounding does not depend on the number of threads.
+  NormalEquations sum(const std::vector<Motion>& motions, const RunContext& context) const {
+    constexpr Eigen::Index kBlock = 256;
+    constexpr std::size_t kLeastShare = 2;  // blocks
+    const auto pairs = static_cast<Eigen::Index>(motions.size()) * count;
+    std::vector<NormalEquations> blocks(static_cast<std::size_t>((pairs + kBlock - 1) / kBlock));
+    const auto body = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        const Eigen::Index first = static_cast<Eigen::Index>(b) * kBlock;
+        for (Eigen::Index i = first; i < std::min(pairs, first + kBlock); ++i) {
+          add(motions[static_cast<std::size_t>(i / count)], i % count, blocks[b]);
+        }
+      }
+    };
+    parallel_for(context, blocks.size(), body, kLeastShare);
+    NormalEquations total;
+    for (const NormalEquations& block : blocks) {
+      total.matrix += block.matrix;
+      total.right += block.right;
+      total.weight += block.weight;
+    }
+    return total;
+  }
+};
+
+}  // namespace
+
+GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context,
+                      const RefinementOptions& options) {
   GroupPlacement placement = start;
   const double scale = std::max(patch.moments.radius, 1e-9);
-  const Eigen::Index total = patch.samples.points.rows();
-  const Eigen::Index count = std::min<Eigen::Index>(total, options.samples);
+  const Eigen::Index count = std::min<Eigen::Index>(patch.samples.points.rows(), options.samples);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const double progress = std::min(1.0, iteration / std::max(1.0, 0.6 * options.iterations));
     const double width = patch.tolerance * std::exp((1 - progress) * std::log(options.first_width) +
                                                     progress * std::log(options.last_width));
-    NormalEquations equations;
-    for (const Motion& motion : fitted_motions(placement)) {
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const Eigen::Index s = i * total / count;
-        const Vector3d point = patch.samples.points.row(s);
-        const Vector3d image = motion(point);
-        const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
-        const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNormalCosine, width, true);
-        if (near.face < 0) continue;
-        const Vector3d facing = patch.prepared->normals.row(near.face);
-        const double residual = facing.dot(image - near.point);
-        const double ratio = near.distance / width;
-        const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
-        const Vector6 row = image_jacobian(motion, point - placement.centre, scale).transpose() * facing;
-        equations.matrix += weight * row * row.transpose();
-        equations.right += weight * residual * row;
-        equations.weight += weight;
-      }
-    }
+    const Pairs pairs{patch, placement, width, scale, count};
+    const NormalEquations equations = pairs.sum(fitted_motions(placement), context);
     if (equations.weight < 20) break;
     const double moved = apply(equations, scale, placement);
     if (progress >= 1 && moved < 1e-10 * scale) break;

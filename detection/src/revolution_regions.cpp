@@ -94,7 +94,7 @@ class Search {
       const SurfacePatch patch =
           make_patch(prepared_, region.faces, kPatchSamples, options_.tolerance, context_, "turned");
       if (round == 0 && !continuous_about(patch, axis.direction, axis.point)) break;
-      region.placement = refine(patch, region.placement);
+      region.placement = refine(patch, region.placement, context_);
       if (verified(patch, region.placement, context_)) return add(patch, std::move(region));
       if (!options_.fine) break;
       const Line better{region.placement.centre, region.placement.frame.col(2)};
@@ -134,6 +134,7 @@ class Search {
 
   // Those whose circles lie on the surface to the tolerance.
   std::vector<int> faces_about(const Line& axis, const SurfaceIndex& surface, double tolerance) const {
+    constexpr std::size_t kLeastShare = 300;  // faces worth a thread
     const Turned turned(prepared_, surface, axis, tolerance);
     std::vector<int> result;
     for (std::size_t s = 0; s < prepared_.components.faces.size(); ++s) {
@@ -148,12 +149,19 @@ class Search {
       }
       if (area < 0.05 * areas_[s] || (flat_[s] != 0 && area < 0.9 * areas_[s])) continue;
       if (few_turn(turned, candidates)) continue;
+      std::vector<char> turns(candidates.size(), 0);
+      parallel_for(
+          context_, candidates.size(),
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) turns[i] = turned.turns(candidates[i]) ? 1 : 0;
+          },
+          kLeastShare);
       std::vector<int> kept;
       double kept_area = 0;
-      for (const int f : candidates) {
-        if (!turned.turns(f)) continue;
-        kept.push_back(f);
-        kept_area += prepared_.areas[f];
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (turns[i] == 0) continue;
+        kept.push_back(candidates[i]);
+        kept_area += prepared_.areas[candidates[i]];
       }
       if (flat_[s] != 0 && kept_area < 0.8 * areas_[s]) continue;
       if (kept_area > 0.97 * areas_[s]) kept = faces;

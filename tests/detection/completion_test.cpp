@@ -130,7 +130,8 @@ TEST_P(Completed, ARegionThatWasMissedComesBackExactlyCarried) {
     const std::vector<int> faces = regions[missed].faces;
     regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(missed));
     Explanation explanation;
-    complete_regions(truth.prepared, {kTolerance, 300, &explanation}, RunContext{}, regions);
+    complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance, 300, &explanation}, RunContext{},
+                     regions);
     ASSERT_EQ(regions.size(), count);
     const FoundRegion* back = on_faces(regions, faces);
     ASSERT_NE(back, nullptr) << "on the very same faces";
@@ -145,7 +146,7 @@ TEST_P(Completed, ARegionThatWasMissedComesBackExactlyCarried) {
 TEST_P(Completed, OneRegionIsEnough) {
   const Assembly truth = made();
   std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};
-  complete_regions(truth.prepared, {kTolerance}, RunContext{}, regions);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, regions);
   ASSERT_EQ(regions.size(), truth.regions.size());
   for (const FoundRegion& region : truth.regions) EXPECT_NE(on_faces(regions, region.faces), nullptr);
   expect_exactly_carried(truth, regions);
@@ -154,9 +155,9 @@ TEST_P(Completed, OneRegionIsEnough) {
 TEST_P(Completed, TwiceIsOnce) {
   const Assembly truth = made();
   std::vector<FoundRegion> once{truth.regions[0], truth.regions[1]};
-  complete_regions(truth.prepared, {kTolerance}, RunContext{}, once);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, once);
   std::vector<FoundRegion> twice = once;
-  complete_regions(truth.prepared, {kTolerance}, RunContext{}, twice);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, twice);
   ASSERT_EQ(twice.size(), once.size());
   for (const FoundRegion& region : once) {
     const FoundRegion* same = on_faces(twice, region.faces);
@@ -168,7 +169,7 @@ TEST_P(Completed, TwiceIsOnce) {
 TEST_P(Completed, NoMoreThanAskedFor) {
   const Assembly truth = made();
   std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};
-  complete_regions(truth.prepared, {kTolerance, 2}, RunContext{}, regions);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance, 2}, RunContext{}, regions);
   EXPECT_EQ(regions.size(), 2U);
 }
 
@@ -187,7 +188,7 @@ TEST_P(LeftInPlace, ByTheElementsThatKeepTheRegion) {
       assembly({PointGroup::Family::Dnh, n}, frame, {frame, frame * Vector3d(1, 0, 0)}, {0.2, 0.3, 0.4});
   std::vector<FoundRegion> regions = truth.regions;
   for (std::size_t r = 1; r < regions.size(); ++r) shake(regions[r].placement, random);
-  complete_regions(truth.prepared, {kTolerance}, RunContext{}, regions);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, regions);
   EXPECT_EQ(regions.size(), truth.regions.size());
   for (const FoundRegion& region : regions) {
     if (region.name == "whole") continue;
@@ -229,7 +230,7 @@ TEST_F(Table, GetsTheRegionOfItsFourthLegBack) {
   const PreparedMesh prepared =
       prepare(test::joined({test::box(2, 2, 0.1), leg(0, 1), leg(1, 1), leg(2, 1), leg(3, 1)}));
   std::vector<FoundRegion> regions = regions_of(prepared, 3);
-  complete_regions(prepared, {kTolerance}, RunContext{}, regions);
+  complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, regions);
   ASSERT_EQ(regions.size(), 5U);
   EXPECT_EQ(regions.back().faces, prepared.components.faces[4]);
   const std::vector<FoundRegion> truth = regions_of(prepared, 4);
@@ -242,7 +243,7 @@ TEST_F(Table, GetsNoneWhereTheLegIsMissingOrAnother) {
                             std::vector<Mesh>{test::box(2, 2, 0.1), leg(0, 1), leg(1, 1), leg(2, 1), leg(3, 0.7)}}) {
     const PreparedMesh prepared = prepare(test::joined(parts));
     std::vector<FoundRegion> regions = regions_of(prepared, 3);
-    complete_regions(prepared, {kTolerance}, RunContext{}, regions);
+    complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, regions);
     EXPECT_EQ(regions.size(), 4U);
   }
 }
@@ -262,7 +263,7 @@ TEST_F(Table, CarriesContinuousGroupsButIsCarriedByNone) {
                   prepared.components.faces[1], "leg")};
   };
   std::vector<FoundRegion> regions = regions_with("C4v");
-  complete_regions(prepared, {kTolerance}, RunContext{}, regions);
+  complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, regions);
   ASSERT_EQ(regions.size(), 5U);
   for (std::size_t r = 1; r < 5; ++r) {
     EXPECT_EQ(regions[r].placement.group.symbol(), "Dinfh");
@@ -271,7 +272,7 @@ TEST_F(Table, CarriesContinuousGroupsButIsCarriedByNone) {
     EXPECT_LT(regions[r].placement.frame.col(2).cross(Vector3d::UnitZ()).norm(), kExact);
   }
   std::vector<FoundRegion> others = regions_with("Cinfv");
-  complete_regions(prepared, {kTolerance}, RunContext{}, others);
+  complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, others);
   EXPECT_EQ(others.size(), 2U);
 }
 

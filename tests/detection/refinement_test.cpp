@@ -29,7 +29,7 @@ TEST_P(Refine, ComesBackFromAPerturbedTruth) {
   GroupPlacement start{group, options.frame, patch.moments.centroid};
   start.frame = axis_rotation(random.direction(), 0.01) * start.frame;
   start.centre += 0.003 * random.direction();
-  const GroupPlacement refined = refine(patch, start);
+  const GroupPlacement refined = refine(patch, start, RunContext{});
   const auto before = measure_residual(patch, judged_motions(group, start.frame, start.centre), context);
   const auto after = measure_residual(patch, judged_motions(group, refined.frame, refined.centre), context);
   EXPECT_GT(before.rms, 1e-3);

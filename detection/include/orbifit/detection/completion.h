@@ -5,6 +5,7 @@
 
 #include "orbifit/detection/found_region.h"
 #include "orbifit/model/run_context.h"
+#include "orbifit/model/surface_index.h"
 
 namespace orbifit {
 
@@ -19,7 +20,8 @@ struct CompletionOptions {
 /// that are symmetric in the same way. Images that were found get exactly the carried group, those that were missed are
 /// added once their group is verified; a region that an element maps to itself is moved to where the element leaves it
 /// in place. Larger regions go first. Continuous groups carry nothing.
-void complete_regions(const PreparedMesh& prepared, const CompletionOptions& options, const RunContext& context,
+/// \param whole  an index of all faces
+void complete_regions(const PreparedMesh& prepared, const SurfaceIndex& whole, const CompletionOptions& options, const RunContext& context,
                       std::vector<FoundRegion>& regions);
 
 /// The placement of the group conjugated by the motion: that of the image of a region.

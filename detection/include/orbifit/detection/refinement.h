@@ -24,7 +24,8 @@ struct RefinementOptions {
 
 /// Moves frame and centre, all elements of the group together, so that the images of the patch's samples come to lie on
 /// the patch: point-to-plane least squares with Tukey's loss, whose reach shrinks. The group itself stays exact.
-GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RefinementOptions& options = {});
+GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context,
+                      const RefinementOptions& options = {});
 
 /// Where the vertices of the patch are images of one another, lets them decide: point-to-point least squares, which
 /// leaves no more than rounding. Of a continuous group, which facets have by halves, thirds, fifths or sevenths of a
