@@ -35,7 +35,7 @@ std::vector<Motion> fitted_motions(const GroupPlacement& placement) {
   std::vector<Motion> result;
   if (placement.group.continuous()) {
     const std::vector<Motion> all = judged_motions(placement.group, placement.frame, placement.centre);
-    const std::size_t step = std::max<std::size_t>(1, all.size() / 10);
+    const std::size_t step = std::max<std::size_t>(1, all.size() / 6);
     for (std::size_t i = 0; i < all.size(); i += step) result.push_back(all[i]);
     return result;
   }
@@ -153,7 +153,7 @@ GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, co
     const NormalEquations equations = pairs.sum(fitted_motions(placement), context);
     if (equations.weight < 20) break;
     const double moved = apply(equations, scale, placement);
-    if (progress >= 1 && moved < 1e-10 * scale) break;
+    if (progress >= 1 && moved < 1e-7 * scale) break;
   }
   return placement;
 }
