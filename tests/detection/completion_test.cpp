@@ -166,6 +166,33 @@ TEST_P(Completed, TwiceIsOnce) {
   }
 }
 
+TEST_P(Completed, NothingOnceTimeIsUp) {
+  const Assembly truth = made();
+  std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};
+  CompletionOptions options{kTolerance};
+  int asked = 0;
+  options.late = [&] { return ++asked > 1; };
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), options, RunContext{}, regions);
+  EXPECT_EQ(regions.size(), 2U);
+  EXPECT_GT(asked, 1);
+}
+
+TEST_P(Completed, SameForAnyNumberOfThreads) {
+  const Assembly truth = made();
+  std::vector<FoundRegion> one{truth.regions[0], truth.regions[1]};
+  std::vector<FoundRegion> several = one;
+  RunContext context;
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, context, one);
+  context.threads = 3;
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, context, several);
+  ASSERT_EQ(one.size(), several.size());
+  for (std::size_t r = 0; r < one.size(); ++r) {
+    EXPECT_EQ(one[r].faces, several[r].faces);
+    EXPECT_EQ(one[r].placement.frame, several[r].placement.frame);
+    EXPECT_EQ(one[r].placement.centre, several[r].placement.centre);
+  }
+}
+
 TEST_P(Completed, NoMoreThanAskedFor) {
   const Assembly truth = made();
   std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <ostream>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -165,6 +167,70 @@ TEST_F(Regions, EveryDropIsExplained) {
     EXPECT_NE(note.reason.find("C4v of 6"), std::string::npos) << "names what says as much";
   }
 }
+
+// A square sheet of n by n cells, each of two triangles, column by column.
+class Sheet : public testing::TestWithParam<int> {
+ protected:
+  static PreparedMesh sheet(int n) {
+    Mesh mesh;
+    mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; j <= n; ++j) mesh.vertices.row(i * (n + 1) + j) << i, j, 0;
+    }
+    mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const int a = i * (n + 1) + j;
+        const int b = a + n + 1;
+        mesh.faces.row(2 * (i * n + j)) << a, b, b + 1;
+        mesh.faces.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
+      }
+    }
+    return prepare(mesh);
+  }
+
+  static FoundRegion columns(const PreparedMesh& prepared, int n, int count) {
+    FoundRegion region;
+    for (int f = 0; f < 2 * n * count; ++f) region.faces.push_back(f);
+    region.area = area_of(prepared, region.faces);
+    return region;
+  }
+};
+
+TEST_P(Sheet, ARegionsBorderIsUncertainByASmallTriangle) {
+  const int n = GetParam();
+  const PreparedMesh prepared = sheet(n);
+  const FoundRegion outer = columns(prepared, n, n / 2);
+  const bool fine = n > 100;
+  EXPECT_TRUE(covers(prepared, outer, columns(prepared, n, n / 2)));
+  EXPECT_EQ(covers(prepared, outer, columns(prepared, n, n / 2 + 1)), fine);
+  EXPECT_FALSE(covers(prepared, outer, columns(prepared, n, n / 2 + 3)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, Sheet, testing::Values(24, 120));
+
+struct Coincidence {
+  const char* name;
+  double area, misfit, area_around, misfit_around;
+  bool expected;
+
+  friend void PrintTo(const Coincidence& each, std::ostream* stream) { *stream << each.name; }
+};
+
+class ByCoincidence : public testing::TestWithParam<Coincidence> {};
+
+TEST_P(ByCoincidence, IsASmallPartFarLessExactThanWhatIsAround) {
+  const Coincidence& each = GetParam();
+  EXPECT_EQ(by_coincidence(each.area, each.misfit, each.area_around, each.misfit_around, kTolerance), each.expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, ByCoincidence,
+                         testing::Values(Coincidence{"SmallAndFarOff", 0.1, 3e-3, 1, 1e-12, true},
+                                         Coincidence{"SmallAndAsExact", 0.1, 2e-12, 1, 1e-12, false},
+                                         Coincidence{"BothLoose", 0.1, 3e-3, 1, 1e-3, false},
+                                         Coincidence{"TheLargerPart", 0.6, 3e-3, 1, 1e-12, false},
+                                         Coincidence{"NextToNothing", 0.1, 0.1 * kTolerance, 1, 0, false}),
+                         [](const auto& each) { return std::string(each.param.name); });
 
 TEST(DropFeatureless, PiecesOfALargerSurfaceGoTheWholeStays) {
   // Seen alone a tile on a slab is a rectangle; upon the slab it slides. A tile that stands out does not.

@@ -1,12 +1,14 @@
 // Regions found on the surface itself: rotations about given axes, mirrors, and what the grid says of a group.
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "orbifit/detection/axis_regions.h"
+#include "orbifit/detection/own_group.h"
 #include "orbifit/detection/plane_regions.h"
 #include "orbifit/detection/segments.h"
 
@@ -101,6 +103,35 @@ TEST(AxisRegions, LeaveOutWhatDoesNotTurn) {
   EXPECT_EQ(found.front().placement.group.symbol(), "D6h");
   EXPECT_EQ(found.front().faces.size(), static_cast<std::size_t>(post.faces.rows()));
 }
+
+// A disc with bolts about its axis, of which one may be missing.
+class ThinnedDisc : public testing::TestWithParam<int> {};
+
+TEST_P(ThinnedDisc, KeepsWhatHasItsImagesInIt) {
+  const int missing = GetParam();
+  const Mesh disc = test::prism(40, 1, 0.3);
+  std::vector<Mesh> parts{disc};
+  for (int i = 0; i < 8; ++i) {
+    const Mesh bolt = test::moved(test::prism(6, 0.08, 0.15), test::shift(0.7, 0, 0.2));
+    const Motion turn = Motion::rotation(Vector3d::UnitZ(), i * std::numbers::pi / 4, Vector3d::Zero());
+    if (i != missing) parts.push_back(test::moved(bolt, turn));
+  }
+  const Screened screened(test::joined(parts));
+  const PreparedMesh& prepared = screened.surface().prepared;
+  const GroupPlacement placement = screened.placement("C8");
+  const SurfacePatch patch = make_patch(prepared, screened.surface().faces, 6000, kTolerance, {}, "test");
+  const Verification verification = verify_group(patch, placement, {});
+  EXPECT_EQ(passes(verification), missing < 0);
+  const std::vector<int> kept = thinned_region(screened.surface(), patch, verification, placement, {});
+  const std::size_t expected = missing < 0 ? patch.faces.size() : static_cast<std::size_t>(disc.faces.rows());
+  EXPECT_EQ(kept.size(), expected);
+  EXPECT_TRUE(std::ranges::includes(patch.faces, kept));
+  EXPECT_LT(kept.back(), static_cast<int>(expected)) << "the disc comes first";
+}
+
+INSTANTIATE_TEST_SUITE_P(Missing, ThinnedDisc, testing::Values(-1, 0, 5), [](const auto& each) {
+  return each.param < 0 ? "None" : "Bolt" + std::to_string(each.param);
+});
 
 TEST(AxisRegions, AreNotFoundAboutAnyAxis) {
   const Screened scalene(test::scalene());

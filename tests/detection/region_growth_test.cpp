@@ -1,5 +1,9 @@
 #include "orbifit/detection/region_growth.h"
 
+#include <numbers>
+#include <ostream>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "shapes.h"
@@ -50,6 +54,63 @@ TEST(ComponentMover, TakesWhatTheGroupMovesOntoItselfAndNothingElse) {
   const GroupPlacement three{*PointGroup::parse("C3"), GroupFrame::Identity(), centre};
   EXPECT_EQ(mover.permuted(three, {0}), (std::vector<int>{0}));
 }
+
+// A ring of n blocks on a plate, one of them turned about itself by a quarter.
+struct Ring {
+  const char* block;
+  int count;
+  int turned;  // -1: none
+
+  friend void PrintTo(const Ring& ring, std::ostream* stream) { *stream << ring.block << ring.count; }
+};
+
+class KnownRing : public testing::TestWithParam<Ring> {};
+
+TEST_P(KnownRing, IsPermutedAsWhenMeasured) {
+  const auto& [block, count, turned] = GetParam();
+  const std::string name = block;
+  const Mesh shape = name == "brick"   ? test::box(0.1, 0.14, 0.2)
+                     : name == "cube"  ? test::box(0.15, 0.15, 0.15)
+                     : name == "wedge" ? test::prism(3, 0.1, 0.2)
+                                       : test::prism(24, 0.1, 0.2);
+  const std::string own = name == "brick" ? "D2h" : name == "cube" ? "Oh" : name == "wedge" ? "D3h" : "Dinfh";
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  std::vector<Mesh> parts{test::box(2, 2, 0.1)};
+  for (int i = 0; i < count; ++i) {
+    Mesh part = shape;
+    if (i == turned) part = test::moved(part, Motion::rotation(up, std::numbers::pi / 2, Eigen::Vector3d::Zero()));
+    part = test::moved(part, test::shift(0.7, 0, 0.3));
+    parts.push_back(test::moved(part, Motion::rotation(up, 2 * std::numbers::pi * i / count, Eigen::Vector3d::Zero())));
+  }
+  const PreparedMesh prepared = prepare(test::joined(parts));
+  const RunContext context;
+  const ComponentSurvey survey = survey_components(prepared, 0.005, 0, context);
+  const SurfaceIndex whole(prepared.mesh);
+  ComponentMover measured(prepared, survey, whole, 0.005, context);
+  ComponentMover told(prepared, survey, whole, 0.005, context);
+  int classes = 0;
+  for (std::size_t k = 0; k < survey.classes.size(); ++k) {
+    const CongruenceClass& kind = survey.classes[k];
+    if (kind.members.size() < 2) continue;
+    ++classes;
+    // The block's frame: the class's first member stands somewhere on the ring.
+    const SurfaceMoments& moments = survey.moments[static_cast<std::size_t>(kind.members.front())];
+    const Eigen::Vector3d out = (moments.centroid - up * up.dot(moments.centroid)).normalized();
+    told.know(k, {*PointGroup::parse(own), frame_about(up, out), moments.centroid});
+  }
+  ASSERT_EQ(classes, 1);
+  const Eigen::Vector3d centre = survey.moments[0].centroid;
+  for (const char* symbol : {"C2", "C3", "C4", "C5", "C6", "C2v", "C4v", "C6v", "Cs", "Ci", "Cinf"}) {
+    const GroupPlacement placement{*PointGroup::parse(symbol), GroupFrame::Identity(), centre};
+    EXPECT_EQ(told.permuted(placement, {}), measured.permuted(placement, {})) << symbol;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Blocks, KnownRing,
+                         testing::Values(Ring{"brick", 4, -1}, Ring{"brick", 6, 2}, Ring{"cube", 4, 1},
+                                         Ring{"cube", 5, -1}, Ring{"wedge", 3, 1}, Ring{"wedge", 6, -1},
+                                         Ring{"peg", 5, 0}, Ring{"peg", 8, -1}),
+                         [](const auto& each) { return testing::PrintToString(each.param); });
 
 TEST(ComponentMover, ASubgroupTakesMoreParts) {
   // A square plate with D4h; two blocks on it, which only half a turn and two mirrors carry onto one another.

@@ -70,6 +70,26 @@ TEST(Verify, SeesOneMissingBoltAsABlot) {
   EXPECT_FALSE(passes(verification));
 }
 
+TEST(Objection, NamesTheFirstLimitThatIsBroken) {
+  Verification fine;
+  fine.joint = 0.99;
+  fine.worst = 0.99;
+  fine.complete = true;
+  EXPECT_EQ(objection(fine), "");
+  EXPECT_TRUE(passes(fine));
+  const auto spoilt = [&](auto spoil) {
+    Verification each = fine;
+    spoil(each);
+    EXPECT_FALSE(passes(each));
+    return objection(each);
+  };
+  EXPECT_EQ(spoilt([](Verification& v) { v.joint = 0.5; }), "not verified: all its motions together keep 50.0 %");
+  EXPECT_EQ(spoilt([](Verification& v) { v.complete = false; }), "not verified: all its motions together keep 99.0 %");
+  EXPECT_EQ(spoilt([](Verification& v) { v.worst = 0.9; }), "not verified: one motion keeps 90.0 %");
+  EXPECT_EQ(spoilt([](Verification& v) { v.cluster = 0.02; }), "not verified: a blot of 2.0 % has no image");
+  EXPECT_EQ(spoilt([](Verification& v) { v.part = 0.25; }), "not verified: of one part 25.0 % is kept");
+}
+
 TEST(JudgedMotions, OfContinuousGroupsAreElements) {
   for (const char* symbol : {"Cinfv", "Dinfh", "Kh", "Cinf", "Dinf", "K", "Cinfh"}) {
     const PointGroup group = *PointGroup::parse(symbol);

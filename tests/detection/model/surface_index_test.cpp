@@ -167,6 +167,7 @@ TEST_P(Placed, MaximumDistanceIsInclusiveAndExact) {
 
 TEST_P(Placed, WithinSaysWhetherThereIsANearest) {
   const SurfaceIndex index(mesh_);
+  int faced = 0;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d p = query(0.7);
     const Eigen::Vector3d direction = random_.direction();
@@ -175,9 +176,11 @@ TEST_P(Placed, WithinSaysWhetherThereIsANearest) {
     EXPECT_FALSE(index.within(p, std::nextafter(distance, 0)));
     const double facing = index.nearest_facing(p, direction, 0.7, 10 * diagonal_, true).distance;
     if (!std::isfinite(facing)) continue;
+    ++faced;
     EXPECT_TRUE(index.within_facing(p, direction, 0.7, facing));
     EXPECT_FALSE(index.within_facing(p, direction, 0.7, std::nextafter(facing, 0)));
   }
+  EXPECT_GT(faced, 100);
 }
 
 TEST_P(Placed, FacingFilterIsTheBruteForceOne) {
