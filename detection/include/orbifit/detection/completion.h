@@ -21,8 +21,8 @@ struct CompletionOptions {
 /// added once their group is verified; a region that an element maps to itself is moved to where the element leaves it
 /// in place. Larger regions go first. Continuous groups carry nothing.
 /// \param whole  an index of all faces
-void complete_regions(const PreparedMesh& prepared, const SurfaceIndex& whole, const CompletionOptions& options, const RunContext& context,
-                      std::vector<FoundRegion>& regions);
+void complete_regions(const PreparedMesh& prepared, const SurfaceIndex& whole, const CompletionOptions& options,
+                      const RunContext& context, std::vector<FoundRegion>& regions);
 
 /// The placement of the group conjugated by the motion: that of the image of a region.
 GroupPlacement carried(const GroupPlacement& placement, const Motion& motion);
