@@ -8,5 +8,6 @@ namespace orbifit::benchmarks {
 CommandBody table1(CLI::App& app);
 CommandBody scaling(CLI::App& app);
 CommandBody detection(CLI::App& app);
+CommandBody fitting(CLI::App& app);
 
 }  // namespace orbifit::benchmarks

@@ -27,6 +27,10 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark detection --forms remesh --noise 0,0.001,0.003,0.01 --cut --json detection.json\n"
             "orbifit-benchmark detection --models none --write cases",
             benchmarks::detection},
+    Command{"fitting", "How near fits come to shapes of which they have a part, beside what others do.",
+            "orbifit-benchmark fitting\n"
+            "orbifit-benchmark fitting --levels anywhere --methods ours --json fitting.json",
+            benchmarks::fitting},
 };
 
 int run(const CommandBody& body, bool quiet) {

@@ -73,9 +73,9 @@ double largest_blot(const SurfacePatch& patch, const std::vector<std::size_t>& f
     for (std::size_t i = 0; i < blot.size(); ++i) {
       const Vector3d here = row(patch.samples.points, blot[i]);
       const auto linked = [&](std::size_t s) { return (row(patch.samples.points, s) - here).norm() <= link; };
-      const auto rest = std::ranges::stable_partition(open, [&](std::size_t s) { return !linked(s); });
-      blot.insert(blot.end(), rest.begin(), rest.end());
-      open.erase(rest.begin(), rest.end());
+      const auto rest = std::stable_partition(open.begin(), open.end(), [&](std::size_t s) { return !linked(s); });
+      blot.insert(blot.end(), rest, open.end());
+      open.erase(rest, open.end());
     }
     largest = std::max(largest, blot.size());
   }

@@ -81,6 +81,49 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
   return pose;
 }
 
+Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const PreparedScan& scan,
+                            const std::vector<int>& points, const Similarity& start,
+                            const ScaledAlignmentOptions& options) {
+  constexpr double kNormalCosine = 0.7;
+  constexpr double kReach = 3;            // robust scales
+  constexpr double kScaleDamping = 0.02;  // a scan of little else than a plane says nothing of the scale
+  using Vector7 = Eigen::Matrix<double, 7, 1>;
+  const double size = diagonal(mesh.vertices);
+  const Eigen::Vector3d pivot = bounding_box_centre(mesh.vertices);
+  Similarity pose = start;
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    const double progress = double(iteration) / std::max(1, options.iterations - 1);
+    const double robust = size * options.first_robust * std::pow(options.last_robust / options.first_robust, progress);
+    const Similarity back = inverse(pose);
+    Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();
+    Vector7 right = Vector7::Zero();
+    for (const int point : points) {
+      const Eigen::Vector3d s = back(scan.points.row(point));
+      const Eigen::Vector3d facing = back.linear * scan.normals.row(point).transpose();
+      const auto near = surface.index.nearest_facing(s, facing, kNormalCosine, kReach * robust, true);
+      if (near.face < 0) continue;
+      const Eigen::Vector3d n = surface.normals.row(near.face);
+      const double ratio = near.distance / robust;
+      const double weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
+      Vector7 row;
+      row << (s - pivot).cross(n) / size, n, n.dot(s - pivot) / size;
+      normal += weight * row * row.transpose();
+      right += weight * row * n.dot(near.point - s);
+    }
+    const double trace = normal.trace();
+    if (!(trace > 0)) return pose;
+    normal.diagonal().array() += 1e-6 * trace;
+    normal(6, 6) += kScaleDamping * trace;
+    const Vector7 step = normal.ldlt().solve(right);
+    const Motion motion = small_motion(step.head<3>() / size, step.segment<3>(3), pivot);
+    const double growth = std::clamp(1 + step[6] / size, 0.8, 1.25);
+    // The scan moves and grows about the pivot in the template's frame: pose^-1 becomes (growth, motion) pose^-1.
+    const Similarity moved{growth, motion.linear, motion(pivot) - growth * (motion.linear * pivot)};
+    pose = pose * inverse(moved);
+  }
+  return pose;
+}
+
 Motion small_motion(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation, const Eigen::Vector3d& pivot) {
   const double angle = rotation.norm();
   const Eigen::Matrix3d linear =

@@ -202,6 +202,7 @@ void assess(const FitInput& input, const PreparedScan& scan, const FitOptions& o
 
 void FitOptions::validate() const {
   subspace.validate();
+  placement.validate();
   require(levels >= 1, "levels", levels, "at least 1");
   require(iterations >= 1, "iterations", iterations, "at least 1");
   require(most_iterations >= levels * iterations, "most_iterations", most_iterations,
@@ -229,6 +230,11 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   Iterate state{input.pose, {}};
   if (!input.landmarks.empty()) {
     state.pose = align_landmarks(input.mesh, input.landmarks);
+  } else if (options.place && input.handles.empty()) {
+    preparation.evenly = false;
+    result.placements = find_placements(input.mesh, prepare_scan(input.scan, preparation, context), options.placement,
+                                        context, input.pose);
+    if (!result.placements.empty()) state.pose = result.placements.front().pose;
   } else if (options.align && input.handles.empty()) {
     state.pose = align_rigidly(input.mesh, scan, input.pose, context);
   }

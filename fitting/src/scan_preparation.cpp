@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <unordered_set>
 #include <vector>
 
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_index.h"
+#include "orbifit/model/random.h"
 
 #include "scan_normals.h"
 
@@ -57,6 +59,21 @@ std::vector<int> spread_evenly(const Points& points, int most) {
   return kept;
 }
 
+// Ascending.
+std::vector<int> some_of(Eigen::Index total, int most, std::uint64_t seed) {
+  std::vector<int> all(static_cast<std::size_t>(total));
+  std::iota(all.begin(), all.end(), 0);
+  if (total <= most) return all;
+  Random random(seed, "some points of a scan");
+  for (int i = 0; i < most; ++i) {
+    std::swap(all[static_cast<std::size_t>(i)],
+              all[static_cast<std::size_t>(i) + random.below(all.size() - static_cast<std::size_t>(i))]);
+  }
+  all.resize(static_cast<std::size_t>(most));
+  std::ranges::sort(all);
+  return all;
+}
+
 double median_spacing(const Points& points) {
   const PointIndex index(points);
   std::vector<double> distances;
@@ -78,7 +95,8 @@ PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& 
   }
   if (!(diagonal(scan.points) > 0)) throw InputError("", "scan", "all its points are at one place");
   context.progress("scan", 0);
-  const std::vector<int> kept = spread_evenly(scan.points, options.most_points);
+  const std::vector<int> kept = options.evenly ? spread_evenly(scan.points, options.most_points)
+                                               : some_of(scan.points.rows(), options.most_points, context.seed);
   PreparedScan result;
   result.points = scan.points(kept, Eigen::all);
   result.spacing = median_spacing(result.points);
@@ -88,6 +106,8 @@ PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& 
   } else {
     result.normals = plane_normals(scan.points, kept, options.neighbours);
   }
+  if (scan.viewpoints.rows() > 1) result.viewpoints = scan.viewpoints(kept, Eigen::all);
+  if (scan.viewpoints.rows() == 1) result.viewpoints = scan.viewpoints;
   if (scan.viewpoints.rows() > 0) {
     result.normals_oriented = true;
     for (std::size_t i = 0; i < kept.size(); ++i) {

@@ -228,6 +228,7 @@ SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annota
     return annotation.regions[a].faces.size() > annotation.regions[b].faces.size();
   });
   std::vector<Region> regions;
+  regions.reserve(order.size());
   for (const std::size_t number : order) regions.push_back(annotation.regions[number]);
   std::vector<std::optional<Placement>> placements;
   for (std::size_t b = 0; b < regions.size(); ++b) {

@@ -36,6 +36,7 @@ CommandBody scan(CLI::App& app) {
   number("--elevation", options.elevation, "Degrees above the horizon");
   number("--noise", options.noise, "Standard deviation along the ray, as a fraction of the diagonal");
   number("--outliers", options.outliers, "Fraction of points thrown anywhere into the box");
+  number("--clutter", options.clutter, "Fraction of points on a floor and blocks around the mesh");
   number("--distance", options.distance, "From the camera to the centre, in diagonals");
   number("--width", options.width, "Pixels");
   number("--height", options.height, "Pixels");

@@ -19,6 +19,7 @@ struct ScanOptions {
   double field_of_view = 40;  ///< vertical, degrees, in (1, 120)
   double noise = 0;           ///< standard deviation along the ray, fraction of the diagonal, >= 0
   double outliers = 0;        ///< fraction of points replaced by uniform ones in the box, in [0, 1)
+  double clutter = 0;         ///< fraction of points that lie on a floor and blocks around the mesh, in [0, 0.9]
   double grazing_limit = 80;  ///< degrees between ray and normal above which a pixel is lost, in (0, 90]
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 

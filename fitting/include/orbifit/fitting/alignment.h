@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/landmarks.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
@@ -19,6 +20,19 @@ Similarity align_landmarks(const Mesh& mesh, const std::vector<Landmark>& landma
 /// \return the refined pose, template -> scan; `start` itself when too few points correspond
 Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Similarity& start,
                          const RunContext& context);
+
+struct ScaledAlignmentOptions {
+  int iterations = 30;         ///< >= 1
+  double first_robust = 0.08;  ///< Geman-McClure's scale, fraction of the template's diagonal, at the start, > 0
+  double last_robust = 0.015;  ///< and at the end, > 0
+};
+
+/// Point-to-plane ICP with scale, scan -> template, robust, over some points of the scan. Costs O(P log F) an
+/// iteration. \param surface of the mesh \param points  numbers of the scan's points; the others do not take part
+/// \return the refined pose, template -> scan; the last one where no point is near
+Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const PreparedScan& scan,
+                            const std::vector<int>& points, const Similarity& start,
+                            const ScaledAlignmentOptions& options);
 
 /// A small rotation vector about `pivot` and a translation as a motion.
 Motion small_motion(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation, const Eigen::Vector3d& pivot);

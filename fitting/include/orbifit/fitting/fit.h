@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "orbifit/fitting/landmarks.h"
+#include "orbifit/fitting/placement.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
@@ -26,7 +27,9 @@ struct FitOptions {
   double landmark_weight = 10;    ///< of one landmark or handle, against one sample's share of the data, > 0
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
   double least_inliers = 0.5;     ///< share of explained points below which the fit has failed, in [0, 1]
-  bool align = true;              ///< refine the rough pose by rigid ICP first
+  bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
+  PlacementOptions placement;
+  bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
@@ -45,10 +48,11 @@ struct StageTime {
 };
 
 struct FitResult {
-  Mesh fitted;                    ///< template's connectivity, scan's frame
-  SymmetryAnnotation annotation;  ///< the template's, carried along into the scan's frame
-  Similarity pose;                ///< template -> scan
-  Eigen::VectorXd q;              ///< coordinates of the deformation in the subspace
+  Mesh fitted;                        ///< template's connectivity, scan's frame
+  SymmetryAnnotation annotation;      ///< the template's, carried along into the scan's frame
+  Similarity pose;                    ///< template -> scan
+  std::vector<Placement> placements;  ///< where the template may be, best first; empty where that was not asked
+  Eigen::VectorXd q;                  ///< coordinates of the deformation in the subspace
   int samples = 0, degrees_of_freedom = 0;
   std::vector<FitIteration> iterations;
   bool converged = false;

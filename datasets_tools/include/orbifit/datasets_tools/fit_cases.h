@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// A template of which scans of another shape of its kind are made.
+struct FitFamily {
+  std::string name;                          ///< of the generator
+  std::map<std::string, double> parameters;  ///< of the shape that is scanned; the template has the defaults
+};
+
+/// Eight families whose shapes differ from their templates by a tenth to a third in several lengths.
+const std::vector<FitFamily>& fit_families();
+
+/// How hard a scan is.
+enum class FitLevel {
+  three_views,  ///< in the template's frame, three views, no noise
+  one_view,     ///< in the template's frame, one view, 0.2 % noise
+  anywhere      ///< any pose and scale (0.01 to 100), two views, 0.2 % noise, 5 % outliers, up to 30 % of other things
+};
+
+/// A template, a scan of another shape and the truth.
+struct FitCase {
+  std::string name;  ///< of the family
+  FitLevel level = FitLevel::three_views;
+  GeneratedModel model;  ///< the template
+  Mesh truth;            ///< the shape scanned, with the template's connectivity, in the scan's frame
+  PointCloud scan;
+  Similarity pose;            ///< template's frame -> scan's frame
+  std::vector<char> visible;  ///< #V: the clean scan has a point within 1 % of the diagonal of the truth's vertex
+};
+
+/// The same seed gives the same case.
+FitCase fit_case(const FitFamily& family, FitLevel level, RunContext& context);
+
+/// How near a fit came to the truth. Lengths are fractions of the truth's diagonal.
+struct FitScore {
+  double visible = 0;         ///< mean distance from the truth's visible surface to the fitted one
+  double hidden = 0;          ///< likewise of what no view saw, though it can be seen from outside
+  double correspondence = 0;  ///< mean distance of the fitted hidden vertices from where they belong
+  double f_score = 0;         ///< at 1 %: harmonic mean of the shares of either surface that lie near the other
+};
+
+/// Correspondences are those of the symmetric copy that fits best: a table turned by a quarter is the same table.
+/// \param fitted with the truth's connectivity, in the scan's frame
+FitScore score_fit(const FitCase& truth, const Mesh& fitted, const RunContext& context);
+
+}  // namespace orbifit

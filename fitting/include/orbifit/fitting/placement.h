@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "orbifit/fitting/scan_preparation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+struct PlacementOptions {
+  int pairs = 6000;      ///< pairs of scan points looked at, >= 1
+  int proposals = 40;    ///< poses tried for each, >= 1
+  int refined = 60;      ///< distinct poses that are refined, >= 1
+  double reach = 0.035;  ///< of the posed template's diagonal or 0.6 of the scan's: nearer is explained, in (0, 0.2)
+  double least_scale = 0.3;    ///< of the template's diagonal against the scan's, > 0
+  double largest_scale = 2.5;  ///< likewise, > least_scale
+
+  void validate() const;  ///< \throw UsageError naming the field, its value and the rule
+};
+
+/// Where a template may be in a scan.
+struct Placement {
+  Similarity pose;       ///< template -> scan
+  double explained = 0;  ///< share of the scan's points that lie on the template, by how near they are
+  double covered = 0;    ///< share of what the viewpoints should have seen of the template that they saw
+  double score() const { return explained * covered; }
+};
+
+/// Finds a template in a scan at any position, turn and scale: nothing is assumed but that a fair part of the scan is
+/// of it. Pairs of oriented points propose poses (PoseHypotheses), which few points, then more, judge; the best are
+/// refined by robust ICP with scale and judged by what they explain and by what should have been seen. Poses that bring
+/// the template onto itself, as its symmetries do, are one.
+/// \param given  a pose that is tried as well, such as the scan's own frame
+/// \return best first, at most 10; empty where nothing fits
+std::vector<Placement> find_placements(const Mesh& mesh, const PreparedScan& scan, const PlacementOptions& options,
+                                       const RunContext& context, const std::optional<Similarity>& given = {});
+
+}  // namespace orbifit

@@ -1,0 +1,128 @@
+#include "seen_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include <Eigen/Geometry>
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kMostViews = 64;
+
+// The points of each viewpoint; viewpoints of moving scanners, one a point, are not told apart.
+std::vector<std::pair<Vector3d, std::vector<int>>> points_by_viewpoint(const Points& points, const Points& viewpoints) {
+  std::vector<std::pair<Vector3d, std::vector<int>>> result;
+  if (viewpoints.rows() == 0) return result;
+  std::map<std::tuple<double, double, double>, std::size_t> known;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Vector3d eye = viewpoints.row(viewpoints.rows() == 1 ? 0 : i);
+    const auto [at, fresh] = known.try_emplace({eye.x(), eye.y(), eye.z()}, result.size());
+    if (fresh) {
+      if (result.size() == kMostViews) return {};
+      result.push_back({eye, {}});
+    }
+    result[at->second].second.push_back(static_cast<int>(i));
+  }
+  return result;
+}
+
+}  // namespace
+
+SeenSurface::SeenSurface(const Points& points, const Points& viewpoints) : index_(points) {
+  constexpr double kPointsInAPixel = 4;
+  for (const auto& [eye, seen] : points_by_viewpoint(points, viewpoints)) {
+    Vector3d forwards = Vector3d::Zero();
+    for (const int i : seen) forwards += points.row(i).transpose() - eye;
+    if (!(forwards.norm() > 0)) continue;
+    View view;
+    view.eye = eye;
+    view.frame.col(2) = forwards.normalized();
+    view.frame.col(0) = view.frame.col(2).unitOrthogonal();
+    view.frame.col(1) = view.frame.col(2).cross(view.frame.col(0));
+    view.half_width = 1e-6;
+    for (const int i : seen) {
+      const Vector3d local = view.frame.transpose() * (points.row(i).transpose() - eye);
+      if (local.z() > 0)
+        view.half_width = std::max({view.half_width, std::abs(local.x() / local.z()), std::abs(local.y() / local.z())});
+    }
+    view.half_width = std::min(view.half_width * 1.001, 3.0);
+    view.pixels = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(seen.size()) / kPointsInAPixel)), 8, 160);
+    const auto count = static_cast<std::size_t>(view.pixels) * static_cast<std::size_t>(view.pixels);
+    view.nearest.assign(count, std::numeric_limits<float>::infinity());
+    view.farthest.assign(count, 0);
+    for (const int i : seen) {
+      const int pixel = view.pixel_of(points.row(i));
+      if (pixel < 0) continue;
+      const auto depth = static_cast<float>((points.row(i).transpose() - eye).norm());
+      float& nearest = view.nearest[static_cast<std::size_t>(pixel)];
+      float& farthest = view.farthest[static_cast<std::size_t>(pixel)];
+      nearest = std::min(nearest, depth);
+      farthest = std::max(farthest, depth);
+    }
+    views_.push_back(std::move(view));
+  }
+}
+
+int SeenSurface::View::pixel_of(const Vector3d& point) const {
+  const Vector3d local = frame.transpose() * (point - eye);
+  if (!(local.z() > 0)) return -1;
+  const auto place = [&](double tangent) {
+    return static_cast<int>(std::floor((tangent / half_width + 1) / 2 * pixels));
+  };
+  const int x = place(local.x() / local.z());
+  const int y = place(local.y() / local.z());
+  return x < 0 || y < 0 || x >= pixels || y >= pixels ? -1 : y * pixels + x;
+}
+
+SeenSurface::Sight SeenSurface::look(const View& view, const Vector3d& point, double reach) const {
+  const int pixel = view.pixel_of(point);
+  if (pixel < 0) return Sight::hidden;  // out of the picture: nothing can be said
+  const auto at = static_cast<std::size_t>(pixel);
+  const double depth = (point - view.eye).norm();
+  // Nothing at all was seen there, or only what lies behind: the template would have been.
+  if (view.farthest[at] == 0 || depth + reach < view.nearest[at]) return Sight::missed;
+  return depth - reach > view.nearest[at] ? Sight::hidden : Sight::missed;
+}
+
+double SeenSurface::covered(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
+                            double reach) const {
+  const Similarity back = inverse(pose);
+  int seen = 0;
+  int missed = 0;
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    const Vector3d own = samples.points.row(i);
+    const Vector3d point = pose(own);
+    if (index_.nearest(point, 1).front().distance <= reach) {
+      ++seen;
+      continue;
+    }
+    bool expected = views_.empty();
+    for (const View& view : views_) {
+      if (expected) break;
+      if (look(view, point, reach) != Sight::missed) continue;
+      // The template itself may stand before it. Grazing rays see little.
+      const Vector3d eye = back(view.eye);
+      const Vector3d ray = eye - own;
+      const double distance = ray.norm();
+      constexpr double kGrazing = 0.2;
+      if (std::abs(ray.dot(samples.normals.row(i))) < kGrazing * distance) continue;
+      const double start = reach / pose.scale;
+      expected = start >= distance || !surface.occluded(own, ray, 0.5 * start, distance);
+    }
+    missed += expected ? 1 : 0;
+  }
+  if (seen == 0) return 0;
+  // A corner of a template that is far too large may be all that is in the picture.
+  constexpr double kFair = 0.2;
+  const double share = static_cast<double>(seen) / static_cast<double>(samples.points.rows());
+  return static_cast<double>(seen) / (seen + missed) * std::min(1.0, share / kFair);
+}
+
+}  // namespace orbifit
