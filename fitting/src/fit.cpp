@@ -6,14 +6,18 @@
 #include <numeric>
 
 #include "orbifit/fitting/alignment.h"
+#include "orbifit/fitting/clutter.h"
 #include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_index.h"
+#include "orbifit/model/random.h"
+#include "orbifit/model/sampling.h"
 #include "orbifit/model/surface_index.h"
 #include "orbifit/subspace/displacement_field.h"
 
 #include "fit_system.h"
+#include "seen_surface.h"
 
 namespace orbifit {
 
@@ -27,10 +31,11 @@ constexpr double kDirectionNoise = 0.003;  // of the diagonal
 constexpr double kFirstRobust = 0.05;
 constexpr double kSoftRobust = 0.02;
 constexpr double kLastRobust = 0.007;
-constexpr double kRobustDecay = 0.8;  // an iteration, from the soft to the last
-constexpr double kStill = 1e-4;       // of the diagonal: the fit has settled when no sample moves more,
-constexpr double kSameRms = 5e-3;     // or when the rms changes by less than this share
-constexpr int kSameIterations = 4;    // in so many iterations
+constexpr double kRobustDecay = 0.8;     // an iteration, from the soft to the last
+constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is settled by then
+constexpr double kStill = 1e-4;          // of the diagonal: the fit has settled when no sample moves more,
+constexpr double kSameRms = 5e-3;        // or when the rms changes by less than this share
+constexpr int kSameIterations = 4;       // in so many iterations
 
 class Stopwatch {
  public:
@@ -104,6 +109,76 @@ struct Iterate {
   Eigen::VectorXd q;
 };
 
+/// Points of the template that the scan should have seen: where it saw through them they are pulled to what it saw.
+class SilhouettePulls {
+ public:
+  SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan, const RunContext& context)
+      : mesh_(mesh), scan_(scan), seen_(cloud, scan.points) {
+    constexpr int kSamples = 1500;
+    Random random(context.seed, "silhouette");
+    samples_ = sample_surface(mesh, kSamples, random);
+    for (Eigen::Index i = 0; i < samples_.points.rows(); ++i) {
+      const auto corner = [&](int k) -> Eigen::Vector3d {
+        return mesh.vertices.row(mesh.faces(samples_.faces[static_cast<std::size_t>(i)], k));
+      };
+      barycentric_.push_back(nearest_on_triangle(samples_.points.row(i), corner(0), corner(1), corner(2)));
+    }
+  }
+
+  /// \param surface of the deformed mesh \param points  the scan's, in the template's frame
+  void add(const Mesh& deformed, const MatchSurface& surface, const Points& points, const Similarity& pose,
+           double robust, std::vector<Correspondence>& pairs, const RunContext& context) {
+    constexpr double kReach = 0.012;  // of the diagonal
+    constexpr double kWeight = 2;     // there are fewer samples than points of the scan
+    const double size = diagonal(mesh_.vertices);
+    for (Eigen::Index i = 0; i < samples_.points.rows(); ++i) {
+      const auto s = static_cast<std::size_t>(i);
+      samples_.points.row(i) =
+          barycentric_[s].transpose() * deformed.vertices(deformed.faces.row(samples_.faces[s]), Eigen::all);
+      samples_.normals.row(i) = surface.normals.row(samples_.faces[s]);
+    }
+    const double reach = std::max(kReach * size * pose.scale, 1.5 * scan_.spacing);
+    for (const SeenSurface::Missed& each : seen_.missed(samples_, surface.index, pose, reach, context)) {
+      const Eigen::Vector3d own = samples_.points.row(each.sample);
+      const Eigen::Vector3d offset = points.row(each.point).transpose() - own;
+      const double distance = offset.norm();
+      if (!(distance > 0) || distance > 0.15 * size) continue;
+      const double ratio = distance / std::max(robust, 0.03 * size);
+      Correspondence pair;
+      pair.scan_point = each.point;
+      pair.face = samples_.faces[static_cast<std::size_t>(each.sample)];
+      pair.barycentric = barycentric_[static_cast<std::size_t>(each.sample)];
+      pair.normal = offset / distance;
+      pair.distance = distance;
+      pair.weight = kWeight / ((1 + ratio * ratio) * (1 + ratio * ratio));
+      pairs.push_back(pair);
+    }
+  }
+
+ private:
+  const Mesh& mesh_;
+  const PreparedScan& scan_;
+  SeenSurface seen_;
+  SurfaceSamples samples_;
+  std::vector<Eigen::Vector3d> barycentric_;
+};
+
+// Finds the template, and leaves of the scan what may be its.
+PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanPreparationOptions preparation,
+                         const RunContext& context, Similarity& pose, FitResult& result) {
+  constexpr double kNear = 0.12;  // of the diagonal
+  constexpr int kMore = 2;        // points, since planes among them go
+  result.placements = find_placements(input.mesh, input.scan, options.placement, context, input.pose);
+  if (result.placements.empty()) return prepare_scan(input.scan, preparation, context);
+  pose = result.placements.front().pose;
+  const SurfaceIndex surface(input.mesh);
+  const double size = diagonal(input.mesh.vertices);
+  const PointCloud near = points_near(surface, size, input.scan, pose, kNear, context);
+  preparation.most_points *= kMore;
+  return without_planes(surface, size, prepare_scan(near, preparation, context), pose, options.placement.reach,
+                        context);
+}
+
 void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
              const RunContext& context, Iterate& state, FitResult& result) {
   const double size = diagonal(input.mesh.vertices);
@@ -111,6 +186,7 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
   const bool signed_normals = signs_agree(input.mesh, scan, state.pose, context);
   const int scheduled = options.levels * options.iterations;
   Points displacements = sample_displacements(subspace, state.q);
+  SilhouettePulls silhouette(input.mesh, input.scan, scan, context);
   for (int i = 0; i < options.most_iterations; ++i) {
     context.progress("fit", double(i) / options.most_iterations);
     const double progress = std::min(1.0, double(i / options.iterations) / std::max(1, options.levels - 1));
@@ -126,8 +202,15 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
     matching.direction_noise = kDirectionNoise * size;
     matching.robust_scale = robust_scale(progress, i - scheduled) * size;
     const Points points = to_template(state.pose, scan.points);
-    const auto pairs = find_correspondences(MatchSurface(deformed_template(input.mesh, subspace, state.q)), points,
-                                            normals_to_template(state.pose, scan.normals), matching, context);
+    const Mesh deformed = deformed_template(input.mesh, subspace, state.q);
+    const MatchSurface surface(deformed);
+    auto pairs =
+        find_correspondences(surface, points, normals_to_template(state.pose, scan.normals), matching, context);
+    record.correspondences = static_cast<int>(pairs.size());
+    record.rms = weighted_rms(pairs) / size;
+    if (progress >= kSilhouetteFrom) {
+      silhouette.add(deformed, surface, points, state.pose, matching.robust_scale, pairs, context);
+    }
     if (pairs.empty() && input.landmarks.empty() && input.handles.empty()) {
       result.stopped_because = "no point of the scan lies near the template";
       return;
@@ -142,8 +225,6 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
     const Points next = sample_displacements(subspace, state.q);
     record.change = (next - displacements).rowwise().norm().maxCoeff() / size;
     displacements = next;
-    record.correspondences = static_cast<int>(pairs.size());
-    record.rms = weighted_rms(pairs) / size;
     record.energy = solution.energy;
     result.iterations.push_back(record);
     if (i + 1 < scheduled) continue;
@@ -224,18 +305,18 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
 
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
-  const PreparedScan scan = prepare_scan(input.scan, preparation, context);
-  watch.finished("scan");
-
   Iterate state{input.pose, {}};
+  PreparedScan scan;
+  if (options.place && input.landmarks.empty() && input.handles.empty()) {
+    scan = placed_scan(input, options, preparation, context, state.pose, result);
+  } else {
+    scan = prepare_scan(input.scan, preparation, context);
+  }
+  watch.finished(result.placements.empty() ? "scan" : "placement");
+
   if (!input.landmarks.empty()) {
     state.pose = align_landmarks(input.mesh, input.landmarks);
-  } else if (options.place && input.handles.empty()) {
-    preparation.evenly = false;
-    result.placements = find_placements(input.mesh, prepare_scan(input.scan, preparation, context), options.placement,
-                                        context, input.pose);
-    if (!result.placements.empty()) state.pose = result.placements.front().pose;
-  } else if (options.align && input.handles.empty()) {
+  } else if (options.align && result.placements.empty() && input.handles.empty()) {
     state.pose = align_rigidly(input.mesh, scan, input.pose, context);
   }
   watch.finished("alignment");

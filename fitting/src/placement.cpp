@@ -10,6 +10,7 @@
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/correspondences.h"
+#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
@@ -33,9 +34,10 @@ constexpr std::size_t kMostReturned = 10;
 /// A template and a scan, with what it takes to judge poses fast.
 class Search {
  public:
-  Search(const Mesh& mesh, const PreparedScan& scan, const PlacementOptions& options, const RunContext& context)
+  Search(const Mesh& mesh, const PointCloud& cloud, PreparedScan scan, const PlacementOptions& options,
+         const RunContext& context)
       : mesh_(mesh),
-        scan_(scan),
+        scan_(std::move(scan)),
         options_(options),
         context_(context),
         random_(context.seed, "placement"),
@@ -44,9 +46,9 @@ class Search {
         surface_(mesh),
         field_(mesh, surface_.index, kCells, context),
         extent_(scan_extent()),
-        seen_(scan.points, scan.viewpoints) {
+        seen_(cloud, scan_.points) {
     // The points in an order of which every beginning is spread over the scan.
-    order_.resize(static_cast<std::size_t>(scan.points.rows()));
+    order_.resize(static_cast<std::size_t>(scan_.points.rows()));
     std::iota(order_.begin(), order_.end(), 0);
     for (std::size_t i = order_.size(); i > 1; --i) std::swap(order_[i - 1], order_[random_.below(i)]);
   }
@@ -224,7 +226,7 @@ class Search {
   }
 
   const Mesh& mesh_;
-  const PreparedScan& scan_;
+  PreparedScan scan_;
   const PlacementOptions& options_;
   const RunContext& context_;
   Random random_;
@@ -245,16 +247,20 @@ void PlacementOptions::validate() const {
   };
   require(pairs >= 1, "pairs", pairs, "at least 1");
   require(proposals >= 1, "proposals", proposals, "at least 1");
+  require(scan_points >= 10, "scan_points", scan_points, "at least 10");
   require(refined >= 1, "refined", refined, "at least 1");
   require(reach > 0 && reach < 0.2, "reach", reach, "in (0, 0.2)");
   require(least_scale > 0, "least_scale", least_scale, "positive");
   require(largest_scale > least_scale, "largest_scale", largest_scale, "more than least_scale");
 }
 
-std::vector<Placement> find_placements(const Mesh& mesh, const PreparedScan& scan, const PlacementOptions& options,
+std::vector<Placement> find_placements(const Mesh& mesh, const PointCloud& scan, const PlacementOptions& options,
                                        const RunContext& context, const std::optional<Similarity>& given) {
   options.validate();
-  return Search(mesh, scan, options, context).run(given);
+  ScanPreparationOptions preparation;
+  preparation.most_points = options.scan_points;
+  preparation.evenly = false;  // a floor of few points is not to outweigh the shape that stands on it
+  return Search(mesh, scan, prepare_scan(scan, preparation, context), options, context).run(given);
 }
 
 }  // namespace orbifit

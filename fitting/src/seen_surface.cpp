@@ -35,9 +35,10 @@ std::vector<std::pair<Vector3d, std::vector<int>>> points_by_viewpoint(const Poi
 
 }  // namespace
 
-SeenSurface::SeenSurface(const Points& points, const Points& viewpoints) : index_(points) {
+SeenSurface::SeenSurface(const PointCloud& scan, const Points& kept) : index_(kept) {
+  const Points& points = scan.points;
   constexpr double kPointsInAPixel = 4;
-  for (const auto& [eye, seen] : points_by_viewpoint(points, viewpoints)) {
+  for (const auto& [eye, seen] : points_by_viewpoint(points, scan.viewpoints)) {
     Vector3d forwards = Vector3d::Zero();
     for (const int i : seen) forwards += points.row(i).transpose() - eye;
     if (!(forwards.norm() > 0)) continue;
@@ -91,38 +92,56 @@ SeenSurface::Sight SeenSurface::look(const View& view, const Vector3d& point, do
   return depth - reach > view.nearest[at] ? Sight::hidden : Sight::missed;
 }
 
+// Whether some viewpoint has the point before it and yet saw nothing there. The template itself may stand in between.
+bool SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const SurfaceIndex& surface,
+                           const Similarity& pose, double reach) const {
+  constexpr double kGrazing = 0.25;  // cosine: flatter rays see little
+  const Vector3d point = pose(own);
+  const Similarity back = inverse(pose);
+  return std::ranges::any_of(views_, [&](const View& view) {
+    const Vector3d ray = back(view.eye) - own;
+    const double distance = ray.norm();
+    if (std::abs(ray.dot(normal)) < kGrazing * distance || look(view, point, reach) != Sight::missed) return false;
+    const double start = 0.5 * reach / pose.scale;
+    return start >= distance || !surface.occluded(own, ray, start, distance);
+  });
+}
+
 double SeenSurface::covered(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
                             double reach) const {
-  const Similarity back = inverse(pose);
   int seen = 0;
   int missed = 0;
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const Vector3d own = samples.points.row(i);
-    const Vector3d point = pose(own);
-    if (index_.nearest(point, 1).front().distance <= reach) {
+    if (index_.nearest(pose(own), 1).front().distance <= reach) {
       ++seen;
-      continue;
+    } else if (views_.empty() || expected(own, samples.normals.row(i), surface, pose, reach)) {
+      ++missed;
     }
-    bool expected = views_.empty();
-    for (const View& view : views_) {
-      if (expected) break;
-      if (look(view, point, reach) != Sight::missed) continue;
-      // The template itself may stand before it. Grazing rays see little.
-      const Vector3d eye = back(view.eye);
-      const Vector3d ray = eye - own;
-      const double distance = ray.norm();
-      constexpr double kGrazing = 0.2;
-      if (std::abs(ray.dot(samples.normals.row(i))) < kGrazing * distance) continue;
-      const double start = reach / pose.scale;
-      expected = start >= distance || !surface.occluded(own, ray, 0.5 * start, distance);
-    }
-    missed += expected ? 1 : 0;
   }
   if (seen == 0) return 0;
   // A corner of a template that is far too large may be all that is in the picture.
   constexpr double kFair = 0.2;
   const double share = static_cast<double>(seen) / static_cast<double>(samples.points.rows());
   return static_cast<double>(seen) / (seen + missed) * std::min(1.0, share / kFair);
+}
+
+std::vector<SeenSurface::Missed> SeenSurface::missed(const SurfaceSamples& samples, const SurfaceIndex& surface,
+                                                     const Similarity& pose, double reach,
+                                                     const RunContext& context) const {
+  if (views_.empty()) return {};
+  std::vector<Missed> all(static_cast<std::size_t>(samples.points.rows()));
+  parallel_for(context, all.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Vector3d own = samples.points.row(row);
+      const PointIndex::Neighbour near = index_.nearest(pose(own), 1).front();
+      if (near.distance <= reach || !expected(own, samples.normals.row(row), surface, pose, reach)) continue;
+      all[i] = {static_cast<int>(i), near.index, near.distance};
+    }
+  });
+  std::erase_if(all, [](const Missed& each) { return each.sample < 0; });
+  return all;
 }
 
 }  // namespace orbifit

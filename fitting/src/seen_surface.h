@@ -5,6 +5,7 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_index.h"
+#include "orbifit/model/run_context.h"
 #include "orbifit/model/sampling.h"
 #include "orbifit/model/surface_index.h"
 
@@ -13,8 +14,22 @@ namespace orbifit {
 /// What a scan's viewpoints see, and so what of a posed template they should have seen.
 class SeenSurface {
  public:
-  /// \param points, viewpoints  #P by 3 each, or viewpoints 1 by 3 or 0 by 3 where unknown
-  SeenSurface(const Points& points, const Points& viewpoints);
+  /// \param scan    all of it: what its viewpoints saw \param points  those to which distances are measured
+  SeenSurface(const PointCloud& scan, const Points& points);
+
+  /// A point of the template that should have been seen, and the point of the scan nearest to it.
+  struct Missed {
+    int sample = -1;
+    int point = -1;
+    double distance = 0;  ///< scan units
+  };
+
+  /// The samples, on a surface of the template's, that a viewpoint has before it, where it saw through to something
+  /// farther away, or to nothing: the surface cannot be there. None where no viewpoint is known.
+  /// \param surface  the template's, in its frame as the samples \param pose template -> scan
+  /// \param reach  scan units: nearer to a point of the scan a sample is seen
+  std::vector<Missed> missed(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
+                             double reach, const RunContext& context) const;
 
   /// Of the template's surface that the viewpoints have before them, not behind the template itself nor behind
   /// something else, the share at which the scan has points; of all of it where no viewpoint is known. Less where
@@ -38,6 +53,8 @@ class SeenSurface {
   };
   enum class Sight { seen, missed, hidden };
   Sight look(const View& view, const Eigen::Vector3d& point, double reach) const;
+  bool expected(const Eigen::Vector3d& own, const Eigen::Vector3d& normal, const SurfaceIndex& surface,
+                const Similarity& pose, double reach) const;
 
   std::vector<View> views_;
   PointIndex index_;

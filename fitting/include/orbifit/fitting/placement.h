@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
@@ -11,10 +10,11 @@
 namespace orbifit {
 
 struct PlacementOptions {
-  int pairs = 6000;      ///< pairs of scan points looked at, >= 1
-  int proposals = 40;    ///< poses tried for each, >= 1
-  int refined = 60;      ///< distinct poses that are refined, >= 1
-  double reach = 0.035;  ///< of the posed template's diagonal or 0.6 of the scan's: nearer is explained, in (0, 0.2)
+  int scan_points = 4000;  ///< of the scan that are used, as dense as it is, >= 10
+  int pairs = 6000;        ///< pairs of scan points looked at, >= 1
+  int proposals = 40;      ///< poses tried for each, >= 1
+  int refined = 60;        ///< distinct poses that are refined, >= 1
+  double reach = 0.035;    ///< of the posed template's diagonal or 0.6 of the scan's: nearer is explained, in (0, 0.2)
   double least_scale = 0.3;    ///< of the template's diagonal against the scan's, > 0
   double largest_scale = 2.5;  ///< likewise, > least_scale
 
@@ -34,8 +34,8 @@ struct Placement {
 /// refined by robust ICP with scale and judged by what they explain and by what should have been seen. Poses that bring
 /// the template onto itself, as its symmetries do, are one.
 /// \param given  a pose that is tried as well, such as the scan's own frame
-/// \return best first, at most 10; empty where nothing fits
-std::vector<Placement> find_placements(const Mesh& mesh, const PreparedScan& scan, const PlacementOptions& options,
+/// \return best first, at most 10; empty where nothing fits \throw InputError as prepare_scan() does
+std::vector<Placement> find_placements(const Mesh& mesh, const PointCloud& scan, const PlacementOptions& options,
                                        const RunContext& context, const std::optional<Similarity>& given = {});
 
 }  // namespace orbifit
