@@ -62,18 +62,23 @@ Mesh deformed_template(const Mesh& mesh, const Subspace& subspace, const Eigen::
   return result;
 }
 
-// Whether the scan's oriented normals agree in sign with the template's, so that the sign may be demanded.
-bool signs_agree(const Mesh& mesh, const PreparedScan& scan, const Similarity& pose, const RunContext& context) {
-  if (!scan.normals_oriented) return false;
-  CorrespondenceOptions options;
-  options.max_distance = kLastReach * diagonal(mesh.vertices);
-  options.robust_scale = options.max_distance;
-  const Points normals = normals_to_template(pose, scan.normals);
-  const auto pairs =
-      find_correspondences(MatchSurface(mesh), to_template(pose, scan.points), normals, options, context);
-  const auto agreeing = std::ranges::count_if(
-      pairs, [&](const Correspondence& pair) { return pair.normal.dot(normals.row(pair.scan_point).transpose()) > 0; });
-  return static_cast<double>(agreeing) > 0.9 * static_cast<double>(pairs.size());
+// Whether the faces look outwards, so that a scan's oriented normals must agree with theirs in sign: a ray into the
+// body meets its far side from within.
+bool faces_outwards(const Mesh& mesh, const RunContext& context) {
+  constexpr int kSamples = 400;
+  constexpr double kNearlyAll = 0.85;
+  Random random(context.seed, "outwards");
+  const SurfaceSamples samples = sample_surface(mesh, kSamples, random);
+  const SurfaceIndex surface(mesh);
+  const Points normals = face_normals(mesh);
+  const double start = 1e-5 * diagonal(mesh.vertices);
+  int outwards = 0;
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    const Eigen::Vector3d inwards = -samples.normals.row(i);
+    const auto hit = surface.cast(samples.points.row(i), inwards, start);
+    if (hit && normals.row(hit->face).dot(inwards) > 0) ++outwards;
+  }
+  return outwards >= kNearlyAll * static_cast<double>(samples.points.rows());
 }
 
 std::vector<Pull> pulls_towards(const FitInput& input, const Similarity& pose, double weight) {
@@ -163,6 +168,18 @@ class SilhouettePulls {
   std::vector<Eigen::Vector3d> barycentric_;
 };
 
+// Whether a placement says that the scan is about where it was said to be, in the template's units: then its scale is
+// that of the shapes, which differ, and not of the units.
+bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& given) {
+  constexpr double kTurn = 0.3;     // radians
+  constexpr double kOffset = 0.15;  // of the diagonal
+  constexpr double kScale = 0.35;   // of its logarithm
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  return std::abs(std::log(found.scale / given.scale)) < kScale &&
+         axis_angle(found.linear * given.linear.transpose()).angle < kTurn &&
+         (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
+}
+
 // Finds the template, and leaves of the scan what may be its.
 PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanPreparationOptions preparation,
                          const RunContext& context, Similarity& pose, FitResult& result) {
@@ -175,15 +192,17 @@ PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanP
   const double size = diagonal(input.mesh.vertices);
   const PointCloud near = points_near(surface, size, input.scan, pose, kNear, context);
   preparation.most_points *= kMore;
-  return without_planes(surface, size, prepare_scan(near, preparation, context), pose, options.placement.reach,
-                        context);
+  PreparedScan scan =
+      without_planes(surface, size, prepare_scan(near, preparation, context), pose, options.placement.reach, context);
+  if (near_given(input.mesh, pose, input.pose)) pose = align_rigidly(input.mesh, scan, input.pose, context);
+  return scan;
 }
 
 void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
              const RunContext& context, Iterate& state, FitResult& result) {
   const double size = diagonal(input.mesh.vertices);
   FitSystem system(subspace, input.mesh, options.stretch);
-  const bool signed_normals = signs_agree(input.mesh, scan, state.pose, context);
+  const bool signed_normals = scan.normals_oriented && faces_outwards(input.mesh, context);
   const int scheduled = options.levels * options.iterations;
   Points displacements = sample_displacements(subspace, state.q);
   SilhouettePulls silhouette(input.mesh, input.scan, scan, context);
@@ -216,7 +235,7 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
       return;
     }
     const auto pulls = pulls_towards(input, state.pose, options.landmark_weight);
-    const FitSystem::Solution solution = system.solve(pairs, points, pulls, record.stiffness);
+    const FitSystem::Solution solution = system.solve(pairs, points, pulls, record.stiffness, context);
     state.q = solution.q;
     const Motion back = inverse(solution.scan_step);
     state.pose = state.pose * Similarity{1, back.linear, back.translation};

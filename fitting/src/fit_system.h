@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 
 #include "orbifit/fitting/correspondences.h"
+#include "orbifit/model/run_context.h"
 #include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/subspace.h"
 
@@ -33,7 +34,7 @@ class FitSystem {
   /// Minimises stiffness (|L u + (1 - R) delta|^2 + stretch * edges' stretching) / degree^2
   ///           + sum of w <n, x + u - (s + omega x (s - c) + tau)>^2 (weights scaled to #S in all) + pulls.
   Solution solve(const std::vector<Correspondence>& pairs, const Points& scan_points, const std::vector<Pull>& pulls,
-                 double stiffness);
+                 double stiffness, const RunContext& context);
 
   /// Turns the Laplace coordinates to the deformation q.
   void rotate(const Eigen::VectorXd& q);
@@ -41,8 +42,16 @@ class FitSystem {
   const Points& samples() const { return corotation_.rest; }
 
  private:
-  void add_surface_row(const std::vector<std::pair<int, double>>& vertices, const Eigen::Vector3d& direction,
-                       Eigen::Ref<Eigen::RowVectorXd> row);
+  // The sum of w (row x - right)^2 as x^T matrix x - 2 side^T x + constant.
+  struct Normal {
+    Eigen::MatrixXd matrix;  ///< lower half
+    Eigen::VectorXd side;
+    double constant;
+
+    void add(const Eigen::RowVectorXd& row, double right, double weight, std::vector<int>& entries);
+  };
+  Normal normal_of(const std::vector<Correspondence>& pairs, const Points& scan_points, const std::vector<Pull>& pulls,
+                   const RunContext& context) const;
 
   const Subspace& subspace_;
   const Mesh& mesh_;

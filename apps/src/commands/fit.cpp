@@ -60,7 +60,7 @@ CommandBody fit(CLI::App& app) {
   const auto arguments = std::make_shared<FitArguments>();
   FitOptions& options = arguments->options;
   app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to, roughly aligned with the template")->required();
+  app.add_option("SCAN", arguments->scan, "Points to fit it to, anywhere, at any scale")->required();
   app.add_option("--annotation", arguments->annotation, "The template's annotation; without it, it is detected")
       ->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Fitted mesh to write")->required()->type_name("FILE");
@@ -71,7 +71,8 @@ CommandBody fit(CLI::App& app) {
   app.add_option("--landmarks", arguments->landmarks, "Vertices and their places in the scan (.json)")
       ->type_name("FILE");
   app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
-  app.add_flag("--aligned", arguments->aligned, "The pose is right: do not refine it by rigid ICP first");
+  app.add_flag("--aligned", arguments->aligned,
+               "The scan is in the template's frame: neither find nor refine its pose");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
@@ -79,6 +80,7 @@ CommandBody fit(CLI::App& app) {
   add_subspace_options(app, arguments->subspace);
   return [arguments](CommandContext& context) {
     FitOptions& chosen = arguments->options;
+    chosen.place = !arguments->aligned && arguments->landmarks.empty() && arguments->handles.empty();
     chosen.align = !arguments->aligned;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();
