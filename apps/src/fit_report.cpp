@@ -39,6 +39,16 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
 
 }  // namespace
 
+namespace {
+
+Json pose_to_json(const Similarity& pose) {
+  return {{"scale", pose.scale},
+          {"rotation", matrix_rows(pose.linear)},
+          {"translation", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
+}
+
+}  // namespace
+
 Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
   Json iterations = Json::array();
   for (const FitIteration& iteration : result.iterations) {
@@ -50,6 +60,13 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
   }
   Json times;
   for (const StageTime& time : result.times) times[time.stage] = time.seconds;
+  Json placements = Json::array();
+  for (const Placement& placement : result.placements) {
+    placements.push_back({{"pose", pose_to_json(placement.pose)},
+                          {"explained", placement.explained},
+                          {"covered", placement.covered},
+                          {"score", placement.score()}});
+  }
   Json regions = Json::array();
   for (const RegionResidual& region : symmetry.regions) {
     regions.push_back({{"id", region.id},
@@ -60,10 +77,8 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
   }
   return {{"converged", result.converged},
           {"stopped_because", result.stopped_because},
-          {"pose",
-           {{"scale", result.pose.scale},
-            {"rotation", matrix_rows(result.pose.linear)},
-            {"translation", {result.pose.translation.x(), result.pose.translation.y(), result.pose.translation.z()}}}},
+          {"pose", pose_to_json(result.pose)},
+          {"placements", placements},
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
           {"inlier_fraction", result.inlier_fraction},

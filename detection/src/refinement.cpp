@@ -35,7 +35,7 @@ std::vector<Motion> fitted_motions(const GroupPlacement& placement) {
   std::vector<Motion> result;
   if (placement.group.continuous()) {
     const std::vector<Motion> all = judged_motions(placement.group, placement.frame, placement.centre);
-    const std::size_t step = std::max<std::size_t>(1, all.size() / 6);
+    const std::size_t step = std::max<std::size_t>(1, all.size() / 10);
     for (std::size_t i = 0; i < all.size(); i += step) result.push_back(all[i]);
     return result;
   }

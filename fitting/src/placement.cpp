@@ -193,16 +193,21 @@ class Search {
     return axis_angle(a.linear * b.linear.transpose()).angle < kTurn || same(a, b, kItself);
   }
 
-  // Whether two poses bring the template to the same place, in the mean over its surface.
+  // Whether two poses bring the template to the same place, in the mean over its surface: the field tells it to a cell.
   bool same(const Similarity& a, const Similarity& b, double tolerance) const {
+    constexpr double kOfField = 0.02;
     if (std::abs(std::log(a.scale / b.scale)) > 4 * tolerance) return false;
     constexpr Eigen::Index kLooks = 128;
     const Similarity back = inverse(b);
     double sum = 0;
     for (Eigen::Index i = 0; i < kLooks; ++i) {
-      const Eigen::Index s = i * samples_.points.rows() / kLooks;
-      const TemplateField::Value* value = field_.at(back(a(samples_.points.row(s))));
-      sum += value == nullptr ? 0.2 : value->distance / size_;
+      const Vector3d point = back(a(samples_.points.row(i * samples_.points.rows() / kLooks)));
+      const TemplateField::Value* value = field_.at(point);
+      if (tolerance < kOfField) {
+        sum += surface_.index.nearest(point).distance / size_;
+      } else {
+        sum += value == nullptr ? 0.2 : value->distance / size_;
+      }
       if (sum > tolerance * kLooks) return false;
     }
     return true;
