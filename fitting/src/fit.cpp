@@ -31,7 +31,10 @@ constexpr double kDirectionNoise = 0.003;  // of the diagonal
 constexpr double kFirstRobust = 0.05;
 constexpr double kSoftRobust = 0.02;
 constexpr double kLastRobust = 0.007;
-constexpr double kRobustDecay = 0.8;     // an iteration, from the soft to the last
+constexpr double kRobustDecay = 0.8;  // an iteration, from the soft to the last
+// Share of explained points of a scan from which what is not the template's has been taken: a scan of something else,
+// onto which the template was put as well as can be, leaves more.
+constexpr double kLeastOfPlaced = 0.8;
 constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is settled by then
 constexpr double kStill = 1e-4;          // of the diagonal: the fit has settled when no sample moves more,
 constexpr double kSameRms = 5e-3;        // or when the rms changes by less than this share
@@ -185,12 +188,18 @@ PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanP
                          const RunContext& context, Similarity& pose, FitResult& result) {
   constexpr double kNear = 0.12;  // of the diagonal
   constexpr int kMore = 2;        // points, since planes among them go
+  constexpr Eigen::Index kFewestNear = 10;
   result.placements = find_placements(input.mesh, input.scan, options.placement, context, input.pose);
   if (result.placements.empty()) return prepare_scan(input.scan, preparation, context);
   pose = result.placements.front().pose;
   const SurfaceIndex surface(input.mesh);
   const double size = diagonal(input.mesh.vertices);
   const PointCloud near = points_near(surface, size, input.scan, pose, kNear, context);
+  if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) {
+    result.placements.clear();  // there is nothing to fit to
+    pose = input.pose;
+    return prepare_scan(input.scan, preparation, context);
+  }
   preparation.most_points *= kMore;
   PreparedScan scan =
       without_planes(surface, size, prepare_scan(near, preparation, context), pose, options.placement.reach, context);
@@ -366,7 +375,9 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   }
   watch.finished("assessment");
 
-  result.converged = !result.iterations.empty() && result.inlier_fraction >= options.least_inliers;
+  const double least =
+      result.placements.empty() ? options.least_inliers : std::max(options.least_inliers, kLeastOfPlaced);
+  result.converged = !result.iterations.empty() && result.inlier_fraction >= least;
   if (!result.iterations.empty() && !result.converged) {
     result.stopped_because +=
         "; only " + std::to_string(static_cast<int>(100 * result.inlier_fraction)) + " % of the scan is explained";

@@ -1,5 +1,7 @@
 #include "orbifit/fitting/fit.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
@@ -103,6 +105,36 @@ TEST(Fit, OfAScanOfSomethingElseSaysThatItFailed) {
   EXPECT_FALSE(result.converged);
   EXPECT_FALSE(result.stopped_because.empty());
 }
+
+// Scans in which no chair is, however the template is put.
+PointCloud not_a_chair(const std::string& name) {
+  Random random(5);
+  PointCloud scan;
+  scan.points.resize(3000, 3);
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    const Eigen::Vector3d at(random.uniform(), random.uniform(), random.uniform());
+    if (name == "Ball") scan.points.row(i) = random.direction();
+    if (name == "Line") scan.points.row(i) << at.x(), 0, 0;
+    if (name == "Dust") scan.points.row(i) = at;
+  }
+  return scan;
+}
+
+class FitOfNoChair : public testing::TestWithParam<const char*> {};
+
+TEST_P(FitOfNoChair, SaysThatItFailed) {
+  RunContext context;
+  const GeneratedModel model = generate("chair");
+  FitOptions options;
+  options.place = true;
+  const FitResult result =
+      fit({model.mesh, model.truth, not_a_chair(GetParam()), Similarity{}, {}, {}}, options, context);
+  EXPECT_FALSE(result.converged);
+  EXPECT_FALSE(result.stopped_because.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scans, FitOfNoChair, testing::Values("Ball", "Line", "Dust"),
+                         [](const auto& each) { return std::string(each.param); });
 
 TEST(Fit, LandmarksTakePrecedenceOverThePose) {
   RunContext context;

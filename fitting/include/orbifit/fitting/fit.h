@@ -20,13 +20,13 @@ struct FitOptions {
   int iterations = 3;             ///< at each level, >= 1
   int most_iterations = 80;       ///< in all, >= levels * iterations
   double first_stiffness = 10;    ///< Laplace energy against data, > last_stiffness
-  double last_stiffness = 0.01;  ///< > 0
-  double stretch = 0.3;          ///< weight of the stretching energy within the Laplace energy, >= 0
+  double last_stiffness = 0.01;   ///< > 0
+  double stretch = 0.3;           ///< weight of the stretching energy within the Laplace energy, >= 0
   double trim = 0.9;              ///< share of the nearest correspondences kept, in (0, 1]
   int scan_points = 4000;         ///< points of the scan used, >= 10
   double landmark_weight = 10;    ///< of one landmark or handle, against one sample's share of the data, > 0
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
-  double least_inliers = 0.5;     ///< share of explained points below which the fit has failed, in [0, 1]
+  double least_inliers = 0.5;     ///< explained points below which the fit failed, in [0, 1]; 0.8 if placed
   bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
   PlacementOptions placement;
   bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
