@@ -133,6 +133,8 @@ class SilhouettePulls {
     }
   }
 
+  bool knows_viewpoints() const { return seen_.knows_viewpoints(); }
+
   /// \param surface of the deformed mesh \param points  the scan's, in the template's frame
   void add(const Mesh& deformed, const MatchSurface& surface, const Points& points, const Similarity& pose,
            double robust, std::vector<Correspondence>& pairs, const RunContext& context) {
@@ -195,14 +197,17 @@ PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanP
   const SurfaceIndex surface(input.mesh);
   const double size = diagonal(input.mesh.vertices);
   const PointCloud near = points_near(surface, size, input.scan, pose, kNear, context);
-  if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) {
-    result.placements.clear();  // there is nothing to fit to
+  PreparedScan scan;
+  if (near.points.rows() >= kFewestNear && diagonal(near.points) > 0) {
+    preparation.most_points *= kMore;
+    scan =
+        without_planes(surface, size, prepare_scan(near, preparation, context), pose, options.placement.reach, context);
+  }
+  if (scan.points.rows() < kFewestNear) {
+    result.placements.clear();  // all of it was of something else
     pose = input.pose;
     return prepare_scan(input.scan, preparation, context);
   }
-  preparation.most_points *= kMore;
-  PreparedScan scan =
-      without_planes(surface, size, prepare_scan(near, preparation, context), pose, options.placement.reach, context);
   if (near_given(input.mesh, pose, input.pose)) pose = align_rigidly(input.mesh, scan, input.pose, context);
   return scan;
 }
@@ -236,7 +241,7 @@ void iterate(const FitInput& input, const PreparedScan& scan, const Subspace& su
         find_correspondences(surface, points, normals_to_template(state.pose, scan.normals), matching, context);
     record.correspondences = static_cast<int>(pairs.size());
     record.rms = weighted_rms(pairs) / size;
-    if (progress >= kSilhouetteFrom) {
+    if (progress >= kSilhouetteFrom && silhouette.knows_viewpoints()) {
       silhouette.add(deformed, surface, points, state.pose, matching.robust_scale, pairs, context);
     }
     if (pairs.empty() && input.landmarks.empty() && input.handles.empty()) {

@@ -6,6 +6,7 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
+#include "orbifit/model/random.h"
 
 namespace orbifit {
 namespace {
@@ -66,6 +67,17 @@ TEST_P(Cluttered, TheFloorGoesAndTheShapeStays) {
   EXPECT_LT(floor_left, 0.03 * floor);
   EXPECT_GT(shape_left, 0.93 * shape);
   EXPECT_EQ(left.normals.rows(), left.points.rows());
+}
+
+TEST_P(Cluttered, OfAFloorAloneNothingIsLeft) {
+  PointCloud floor;
+  floor.points.resize(4000, 3);
+  Random random(3);
+  for (Eigen::Index i = 0; i < floor.points.rows(); ++i) {
+    floor.points.row(i) << size_ * random.uniform(-1, 1), size_ * random.uniform(-1, 1), -0.001 * size_;
+  }
+  const PreparedScan scan = prepare_scan(floor, {}, context_);
+  EXPECT_EQ(without_planes(surface_, size_, scan, Similarity{}, 0.035, context_).points.rows(), 0);
 }
 
 TEST_P(Cluttered, AShapeAloneLosesNothing) {
