@@ -30,7 +30,8 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
   table.rows.push_back({"stopped because", result.stopped_because});
   table.rows.push_back({"iterations", std::to_string(result.iterations.size())});
   table.rows.push_back({"degrees of freedom", std::to_string(result.degrees_of_freedom)});
-  table.rows.push_back({"scan points explained (within 1 %)", percent(result.inlier_fraction)});
+  table.rows.push_back({"of the scan taken for the template's", percent(result.used_fraction)});
+  table.rows.push_back({"of that explained (within 1 %)", percent(result.inlier_fraction)});
   table.rows.push_back({"their rms distance, of the diagonal", percent(result.rms)});
   table.rows.push_back({"surface that the scan did not see", percent(result.hidden_fraction)});
   table.rows.push_back({"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)});
@@ -81,6 +82,7 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
           {"placements", placements},
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
+          {"used_fraction", result.used_fraction},
           {"inlier_fraction", result.inlier_fraction},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},

@@ -185,6 +185,19 @@ bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& giv
          (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
 }
 
+// The share of the scan's points that stand where points were kept; planes that were taken out leave none.
+double share_near(const PointCloud& cloud, const PreparedScan& kept, const RunContext& context) {
+  constexpr std::uint64_t kLooks = 4000;
+  const PointIndex index(kept.points);
+  Random random(context.seed, "share of a scan");
+  int near = 0;
+  for (std::uint64_t i = 0; i < kLooks; ++i) {
+    const auto row = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(cloud.points.rows())));
+    near += index.nearest(cloud.points.row(row), 1).front().distance <= 2 * kept.spacing ? 1 : 0;
+  }
+  return near / static_cast<double>(kLooks);
+}
+
 // Finds the template, and leaves of the scan what may be its.
 PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanPreparationOptions preparation,
                          const RunContext& context, Similarity& pose, FitResult& result) {
@@ -208,6 +221,7 @@ PreparedScan placed_scan(const FitInput& input, const FitOptions& options, ScanP
     pose = input.pose;
     return prepare_scan(input.scan, preparation, context);
   }
+  result.used_fraction = share_near(input.scan, scan, context);
   if (near_given(input.mesh, pose, input.pose)) pose = align_rigidly(input.mesh, scan, input.pose, context);
   return scan;
 }
@@ -380,12 +394,12 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   }
   watch.finished("assessment");
 
-  const double least =
-      result.placements.empty() ? options.least_inliers : std::max(options.least_inliers, kLeastOfPlaced);
-  result.converged = !result.iterations.empty() && result.inlier_fraction >= least;
+  const double explained = result.inlier_fraction * result.used_fraction;
+  result.converged = !result.iterations.empty() && explained >= options.least_inliers &&
+                     (result.placements.empty() || result.inlier_fraction >= kLeastOfPlaced);
   if (!result.iterations.empty() && !result.converged) {
     result.stopped_because +=
-        "; only " + std::to_string(static_cast<int>(100 * result.inlier_fraction)) + " % of the scan is explained";
+        "; only " + std::to_string(static_cast<int>(100 * explained)) + " % of the scan is explained";
   }
   return result;
 }

@@ -43,9 +43,10 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
   const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
   double seconds = 0;
   for (const StageTime& time : result.times) seconds += time.seconds;
-  std::string text = arguments.output + ": " + percent(result.inlier_fraction) + " of the scan within " +
-                     percent(arguments.options.inlier_distance) + " of the diagonal (rms " + percent(result.rms) +
-                     "), " + percent(result.hidden_fraction) + " of the surface not seen\n";
+  std::string text = arguments.output + ": " + percent(result.inlier_fraction) + " of the scan " +
+                     (result.used_fraction < 1 ? "(" + percent(1 - result.used_fraction) + " left out) " : "") +
+                     "within " + percent(arguments.options.inlier_distance) + " of the diagonal (rms " +
+                     percent(result.rms) + "), " + percent(result.hidden_fraction) + " of the surface not seen\n";
   text += "symmetry residual added " + short_number(symmetry.worst_excess, 3) + ", field residual " +
           short_number(result.field_residual, 3) + "\n";
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +

@@ -26,7 +26,7 @@ struct FitOptions {
   int scan_points = 4000;         ///< points of the scan used, >= 10
   double landmark_weight = 10;    ///< of one landmark or handle, against one sample's share of the data, > 0
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
-  double least_inliers = 0.5;     ///< explained points below which the fit failed, in [0, 1]; 0.8 if placed
+  double least_inliers = 0.5;     ///< explained share of the whole scan below which a fit failed, in [0, 1]
   bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
   PlacementOptions placement;
   bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
@@ -57,6 +57,7 @@ struct FitResult {
   std::vector<FitIteration> iterations;
   bool converged = false;
   std::string stopped_because;
+  double used_fraction = 1;    ///< share of the scan taken for the template's; the rest was left out as other things
   double inlier_fraction = 0;  ///< of the scan points used, within inlier_distance of the fitted surface
   double rms = 0;              ///< of those, fraction of the fitted mesh's diagonal
   double landmark_rms = 0;     ///< of landmarks and handles, fraction of the fitted mesh's diagonal
