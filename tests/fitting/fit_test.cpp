@@ -114,6 +114,7 @@ PointCloud not_a_chair(const std::string& name) {
   for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
     const Eigen::Vector3d at(random.uniform(), random.uniform(), random.uniform());
     if (name == "Ball") scan.points.row(i) = random.direction();
+    if (name == "Square") scan.points.row(i) << at.x(), at.y(), 0;
     if (name == "Line") scan.points.row(i) << at.x(), 0, 0;
     if (name == "Dust") scan.points.row(i) = at;
   }
@@ -133,7 +134,7 @@ TEST_P(FitOfNoChair, SaysThatItFailed) {
   EXPECT_FALSE(result.stopped_because.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Scans, FitOfNoChair, testing::Values("Ball", "Line", "Dust"),
+INSTANTIATE_TEST_SUITE_P(Scans, FitOfNoChair, testing::Values("Ball", "Square", "Line", "Dust"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST(Fit, LandmarksTakePrecedenceOverThePose) {
