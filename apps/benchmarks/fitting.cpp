@@ -94,6 +94,7 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   FitOptions chosen;
   // Only ours has to find the pose: the others are given the true one.
   chosen.place = method == "ours" && each.level == FitLevel::anywhere;
+  chosen.align = false;
   const SymmetryAnnotation annotation = method == "ours" ? each.model.truth : without_symmetry(each.model);
   const PointCloud scan = method == "copied" ? copied_scan(each) : each.scan;
   const FitInput input{each.model.mesh, annotation, scan, chosen.place ? Similarity{} : each.pose, {}, {}};
@@ -105,7 +106,7 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
     if (!result.converged) row.failure = result.stopped_because;
     row.degrees_of_freedom = result.degrees_of_freedom;
     for (const StageTime& time : result.times) {
-      if (time.stage == "alignment") row.placing = time.seconds;
+      if (time.stage == "placement") row.placing = time.seconds;
       if (time.stage == "fit" && !result.iterations.empty()) {
         row.iteration = time.seconds / static_cast<double>(result.iterations.size());
       }

@@ -57,6 +57,7 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
                           {"correspondences", iteration.correspondences},
                           {"rms", iteration.rms},
                           {"energy", iteration.energy},
+                          {"damping", iteration.damping},
                           {"change", iteration.change}});
   }
   Json times;

@@ -20,6 +20,60 @@ constexpr double kDirectionNoise = 0.003;  // of the diagonal
 constexpr double kRobustDecay = 0.92;      // an iteration: what is far at first may be near later
 constexpr double kLeastRobust = 0.004;     // of the diagonal
 constexpr double kStill = 1e-6;            // of the diagonal: ICP stops at smaller steps
+constexpr double kScaleDamping = 0.02;     // a scan of little else than a plane says nothing of the scale
+
+// Point-to-plane offsets as a linear system in a small similarity of the scan in the template's frame: a rotation about
+// the pivot and the growth times the template's diagonal, and a translation.
+class PoseSystem {
+ public:
+  PoseSystem(double size, const Eigen::Vector3d& pivot) : size_(size), pivot_(pivot) {}
+
+  // A scan point, the surface's normal near it, and how far along the normal the surface is.
+  void add(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double offset, double weight) {
+    const Eigen::Vector3d arm = point - pivot_;
+    Vector7 row;
+    row << arm.cross(normal) / size_, normal, normal.dot(arm) / size_;
+    matrix_ += weight * row * row.transpose();
+    side_ += weight * offset * row;
+  }
+
+  struct Step {
+    Similarity scan;  // to apply to the scan in the template's frame
+    double length;    // template units
+  };
+
+  // What the scan leaves open, such as a turn about a lathe part's axis, stays.
+  Step rigid() const {
+    Eigen::Matrix<double, 6, 6> matrix = matrix_.topLeftCorner<6, 6>();
+    matrix.diagonal().array() += kOpen * matrix.trace();
+    Vector7 step = Vector7::Zero();
+    step.head<6>() = matrix.ldlt().solve(side_.head<6>());
+    return step_of(step);
+  }
+
+  Step scaled() const {
+    Eigen::Matrix<double, 7, 7> matrix = matrix_;
+    const double trace = matrix.trace();
+    matrix.diagonal().array() += kOpen * trace;
+    matrix(6, 6) += kScaleDamping * trace;
+    return step_of(matrix.ldlt().solve(side_));
+  }
+
+ private:
+  using Vector7 = Eigen::Matrix<double, 7, 1>;
+  static constexpr double kOpen = 1e-6;
+
+  Step step_of(const Vector7& step) const {
+    const Motion motion = small_motion(step.head<3>() / size_, step.segment<3>(3), pivot_);
+    const double growth = std::clamp(1 + step[6] / size_, 0.8, 1.25);
+    return {{growth, motion.linear, motion(pivot_) - growth * (motion.linear * pivot_)}, step.norm()};
+  }
+
+  double size_;
+  Eigen::Vector3d pivot_;
+  Eigen::Matrix<double, 7, 7> matrix_ = Eigen::Matrix<double, 7, 7>::Zero();
+  Vector7 side_ = Vector7::Zero();
+};
 
 }  // namespace
 
@@ -49,6 +103,7 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
   const Eigen::Vector3d pivot = bounding_box_centre(mesh.vertices);
   Similarity pose = start;
   double robust = 0.05 * size;
+  std::vector<int> likely;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     context.progress("alignment", double(iteration) / kIterations);
     CorrespondenceOptions options;
@@ -57,26 +112,19 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
     options.robust_scale = robust;
     options.trim = 0.95;
     const Points points = to_template(pose, scan.points);
-    const auto pairs = find_correspondences(surface, points, normals_to_template(pose, scan.normals), options, context);
+    const auto pairs =
+        find_correspondences(surface, points, normals_to_template(pose, scan.normals), options, context, &likely);
     if (static_cast<int>(pairs.size()) < kFewestPairs) return start;
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+    PoseSystem system(size, pivot);
     for (const Correspondence& pair : pairs) {
       const Eigen::Vector3d s = points.row(pair.scan_point);
       const Eigen::Vector3d foot = mesh.vertices(mesh.faces.row(pair.face), Eigen::all).transpose() * pair.barycentric;
-      Eigen::Matrix<double, 6, 1> row;
-      row << (s - pivot).cross(pair.normal) / size, pair.normal;
-      normal += pair.weight * row * row.transpose();
-      right += pair.weight * row * pair.normal.dot(foot - s);
+      system.add(s, pair.normal, pair.normal.dot(foot - s), pair.weight);
     }
-    // What the scan leaves open, such as a turn about a lathe part's axis, stays.
-    normal.diagonal().array() += 1e-6 * normal.trace();
-    const Eigen::Matrix<double, 6, 1> step = normal.ldlt().solve(right);
-    const Motion motion = small_motion(step.head<3>() / size, step.tail<3>(), pivot);
-    // The motion moves the scan in the template's frame: pose^-1 becomes motion pose^-1.
-    pose = pose * Similarity{1, motion.linear.transpose(), -(motion.linear.transpose() * motion.translation)};
+    const PoseSystem::Step step = system.rigid();
+    pose = pose * inverse(step.scan);
     robust = std::max(kLeastRobust * size, kRobustDecay * robust);
-    if (step.norm() < kStill * size && robust <= kLeastRobust * size) break;
+    if (step.length < kStill * size && robust <= kLeastRobust * size) break;
   }
   return pose;
 }
@@ -85,9 +133,7 @@ Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const
                             const std::vector<int>& points, const Similarity& start,
                             const ScaledAlignmentOptions& options) {
   constexpr double kNormalCosine = 0.7;
-  constexpr double kReach = 3;            // robust scales
-  constexpr double kScaleDamping = 0.02;  // a scan of little else than a plane says nothing of the scale
-  using Vector7 = Eigen::Matrix<double, 7, 1>;
+  constexpr double kReach = 3;  // robust scales
   const double size = diagonal(mesh.vertices);
   const Eigen::Vector3d pivot = bounding_box_centre(mesh.vertices);
   Similarity pose = start;
@@ -95,31 +141,19 @@ Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const
     const double progress = double(iteration) / std::max(1, options.iterations - 1);
     const double robust = size * options.first_robust * std::pow(options.last_robust / options.first_robust, progress);
     const Similarity back = inverse(pose);
-    Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();
-    Vector7 right = Vector7::Zero();
+    PoseSystem system(size, pivot);
+    bool any = false;
     for (const int point : points) {
       const Eigen::Vector3d s = back(scan.points.row(point));
       const Eigen::Vector3d facing = back.linear * scan.normals.row(point).transpose();
       const auto near = surface.index.nearest_facing(s, facing, kNormalCosine, kReach * robust, true);
       if (near.face < 0) continue;
-      const Eigen::Vector3d n = surface.normals.row(near.face);
-      const double ratio = near.distance / robust;
-      const double weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
-      Vector7 row;
-      row << (s - pivot).cross(n) / size, n, n.dot(s - pivot) / size;
-      normal += weight * row * row.transpose();
-      right += weight * row * n.dot(near.point - s);
+      const Eigen::Vector3d n = surface.normal(near.face);
+      system.add(s, n, n.dot(near.point - s), robust_weight(near.distance, robust));
+      any = true;
     }
-    const double trace = normal.trace();
-    if (!(trace > 0)) return pose;
-    normal.diagonal().array() += 1e-6 * trace;
-    normal(6, 6) += kScaleDamping * trace;
-    const Vector7 step = normal.ldlt().solve(right);
-    const Motion motion = small_motion(step.head<3>() / size, step.segment<3>(3), pivot);
-    const double growth = std::clamp(1 + step[6] / size, 0.8, 1.25);
-    // The scan moves and grows about the pivot in the template's frame: pose^-1 becomes (growth, motion) pose^-1.
-    const Similarity moved{growth, motion.linear, motion(pivot) - growth * (motion.linear * pivot)};
-    pose = pose * inverse(moved);
+    if (!any) return pose;
+    pose = pose * inverse(system.scaled().scan);
   }
   return pose;
 }

@@ -19,26 +19,37 @@ Eigen::Vector3d distance_direction(const Eigen::Vector3d& offset, const Eigen::V
 
 }  // namespace
 
+double robust_error(double distance, double scale) {
+  const double ratio = distance / scale;
+  return distance * distance / (1 + ratio * ratio);
+}
+
+double robust_weight(double distance, double scale) {
+  const double ratio = distance / scale;
+  return 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
+}
+
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
-                                                 const RunContext& context) {
+                                                 const RunContext& context, std::vector<int>* likely) {
   std::vector<Correspondence> all(static_cast<std::size_t>(scan_points.rows()));
+  if (likely != nullptr) likely->resize(all.size(), -1);
   parallel_for(context, all.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      const auto nearest =
-          surface.index.nearest_facing(scan_points.row(row).transpose(), scan_normals.row(row).transpose(),
-                                       options.min_normal_cosine, options.max_distance, !options.signed_normals);
+      const auto nearest = surface.index.nearest_facing(
+          scan_points.row(row).transpose(), scan_normals.row(row).transpose(), options.min_normal_cosine,
+          options.max_distance, !options.signed_normals, likely != nullptr ? (*likely)[i] : -1);
+      if (likely != nullptr) (*likely)[i] = nearest.face;
       if (nearest.face < 0) continue;
-      const double ratio = nearest.distance / options.robust_scale;
       Correspondence& pair = all[i];
       pair.scan_point = static_cast<int>(i);
       pair.face = nearest.face;
       pair.barycentric = nearest.barycentric;
-      pair.normal = distance_direction(scan_points.row(row).transpose() - nearest.point,
-                                       surface.normals.row(nearest.face).transpose(), options.direction_noise);
+      pair.normal = distance_direction(scan_points.row(row).transpose() - nearest.point, surface.normal(nearest.face),
+                                       options.direction_noise);
       pair.distance = nearest.distance;
-      pair.weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
+      pair.weight = robust_weight(nearest.distance, options.robust_scale);
     }
   });
   std::erase_if(all, [](const Correspondence& pair) { return pair.face < 0; });

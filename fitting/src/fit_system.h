@@ -10,14 +10,10 @@
 #include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/subspace.h"
 
-namespace orbifit {
+#include "pulls.h"
+#include "vertex_rows.h"
 
-/// A vertex and the place, in the template's frame, to which it is pulled.
-struct Pull {
-  int vertex;
-  Eigen::Vector3d target;
-  double weight;
-};
+namespace orbifit {
 
 /// The linear system of one iteration of the fit in the unknowns (q, omega, tau): coordinates in the subspace, and a
 /// small rotation (times the template's diagonal) and translation that move the scan in the template's frame.
@@ -28,39 +24,52 @@ class FitSystem {
   struct Solution {
     Eigen::VectorXd q;
     Motion scan_step;  ///< to apply to the scan in the template's frame
-    double energy = 0;
   };
 
-  /// Minimises stiffness (|L u + (1 - R) delta|^2 + stretch * edges' stretching) / degree^2
-  ///           + sum of w <n, x + u - (s + omega x (s - c) + tau)>^2 (weights scaled to #S in all) + pulls.
-  Solution solve(const std::vector<Correspondence>& pairs, const Points& scan_points, const std::vector<Pull>& pulls,
-                 double stiffness, const RunContext& context);
+  /// What holds the solution besides the data.
+  struct Hold {
+    double stiffness = 1;  ///< of the Laplace energy, > 0
+    double damping = 0;    ///< of a step away from `around`, relative to one sample's share of the data, >= 0
+    Eigen::VectorXd around;
+  };
+
+  /// Minimises stiffness regularity(u) + sum of w <n, x + u - (s + omega x (s - c) + tau)>^2 + pulls
+  ///           + damping (|q - around|^2 + |(omega, tau)|^2).
+  /// \param share of a pair: factor of its weight
+  Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
+                 const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context);
+
+  /// |L u + (1 - R) delta|^2 / degree^2 + stretch / degree * edges' stretching, of the deformation q as turned now.
+  double regularity(const Eigen::VectorXd& q) const;
 
   /// Turns the Laplace coordinates to the deformation q.
   void rotate(const Eigen::VectorXd& q);
 
+  using Rotations = std::vector<Eigen::Matrix3d>;
+  const Rotations& rotations() const { return rotations_; }
+  void set_rotations(const Rotations& rotations) { rotations_ = rotations; }
+
   const Points& samples() const { return corotation_.rest; }
 
  private:
-  // The sum of w (row x - right)^2 as x^T matrix x - 2 side^T x + constant.
+  // The sum of w (row x - right)^2 as x^T matrix x - 2 side^T x and a constant.
   struct Normal {
     Eigen::MatrixXd matrix;  ///< lower half
     Eigen::VectorXd side;
-    double constant;
-
-    void add(const Eigen::RowVectorXd& row, double right, double weight, std::vector<int>& entries);
   };
-  Normal normal_of(const std::vector<Correspondence>& pairs, const Points& scan_points, const std::vector<Pull>& pulls,
-                   const RunContext& context) const;
+  class Batch;
+  Normal normal_of(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
+                   const std::vector<Pull>& pulls, const RunContext& context);
 
   const Subspace& subspace_;
+  VertexRows rows_;
   const Mesh& mesh_;
   double diagonal_;
   Eigen::Vector3d pivot_;
   Corotation corotation_;
   double stretch_;
   Eigen::MatrixXd stiffness_matrix_;
-  std::vector<Eigen::Matrix3d> rotations_;
+  Rotations rotations_;
 };
 
 }  // namespace orbifit

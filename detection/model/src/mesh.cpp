@@ -27,13 +27,15 @@ Eigen::Vector3d bounding_box_centre(const Points& points) {
   return 0.5 * (points.colwise().maxCoeff() + points.colwise().minCoeff()).transpose();
 }
 
+Eigen::Vector3d face_normal(const Mesh& mesh, Eigen::Index face) {
+  const Eigen::Vector3d vector = area_vector(mesh, face);
+  const double length = vector.stableNorm();
+  return length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
+}
+
 Points face_normals(const Mesh& mesh) {
   Points normals(mesh.faces.rows(), 3);
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    const Eigen::Vector3d vector = area_vector(mesh, f);
-    const double length = vector.stableNorm();
-    normals.row(f) = length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
-  }
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) normals.row(f) = face_normal(mesh, f);
   return normals;
 }
 

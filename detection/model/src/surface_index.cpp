@@ -155,6 +155,13 @@ Eigen::Vector3d nearest_weights(const Eigen::Vector3d& p, const Corners& face) {
   return {1 - v - w, v, w};
 }
 
+// Zero for a degenerate face.
+Eigen::Vector3d unit_normal(const Corners& face) {
+  const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
+  const double length = vector.stableNorm();
+  return length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
+}
+
 // The power of two that brings `length` near 1: multiplying by it does not round.
 double unit_scale(double length) {
   return length > 0 && std::isfinite(length) ? std::ldexp(1.0, -std::clamp(std::ilogb(length), -1000, 1000)) : 1.0;
@@ -172,22 +179,28 @@ Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
 struct SurfaceIndex::Implementation {
   Device device;
   RTCScene scene = nullptr;
+  RTCGeometry geometry = nullptr;                    // kept for what moves
+  float* positions = nullptr;                        // Embree's, three corners of each face
   double scale = 1;                                  // a power of two; lengths below are in scaled units
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
   std::vector<Corners> corners;                      // scaled units
-  std::vector<Facet> facets;
+  double slack = 0;                                  // how far a corner may be from where Embree has it, scaled units
+  std::vector<Facet> facets;      // empty for what moves: most faces are never asked about before they move on
   std::vector<int> face_numbers;  // in the mesh
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
   ~Implementation() {
+    if (geometry != nullptr) rtcReleaseGeometry(geometry);
     if (scene != nullptr) rtcReleaseScene(scene);
   }
 
-  void build();
+  void choose_frame(const Eigen::Vector3d& least, const Eigen::Vector3d& most);  // of a box, not scaled
+  void build(bool moving);
+  void place(std::size_t begin, std::size_t end);  // Embree's positions from the corners
   Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
-                  bool unsigned_normal, bool any = false) const;
+                  bool unsigned_normal, bool any = false, int likely = -1) const;
 
   // A ray in Embree's frame, with the way by which its origin was moved towards the mesh.
   struct LocalRay {
@@ -223,9 +236,14 @@ struct Search {
   // The radius in single precision that still reaches every face at most this far.
   float reach(double distance) const { return static_cast<float>(distance * (1 + kCullMargin) + margin); }
 
+  Eigen::Vector3d normal_of(unsigned triangle) const {
+    if (facets != nullptr) return facets[triangle].normal;
+    return unit_normal(corners[triangle]);
+  }
+
   bool faces_the_right_way(unsigned triangle) const {
     if (facing == nullptr) return true;
-    const double cosine = facets[triangle].normal.dot(*facing);
+    const double cosine = normal_of(triangle).dot(*facing);
     return (unsigned_normal ? std::abs(cosine) : cosine) >= min_cosine;
   }
 };
@@ -234,6 +252,7 @@ struct Search {
 // that plane. Its normals are known to 1e-9 unless it is a needle, so nothing nearer is lost; this spares most
 // measurements, far from the surface by the plane, near fans of long triangles by the edges.
 bool plainly_beyond(const Search& search, unsigned triangle) {
+  if (search.facets == nullptr) return false;
   const Facet& facet = search.facets[triangle];
   if (facet.needle) return false;
   const double limit = search.face < 0 ? search.max_distance * search.max_distance : search.squared_distance;
@@ -245,9 +264,8 @@ bool plainly_beyond(const Search& search, unsigned triangle) {
   return height * height + beside * beside > limit;
 }
 
-bool measure(RTCPointQueryFunctionArguments* arguments) {
-  Search& search = *static_cast<Search*>(arguments->userPtr);
-  const unsigned triangle = arguments->primID;
+// Whether the triangle is the nearest so far; then it is kept.
+bool is_nearest(Search& search, unsigned triangle) {
   if (search.any && search.face >= 0) return false;
   if (!search.faces_the_right_way(triangle) || plainly_beyond(search, triangle)) return false;
   const Corners& corners = search.corners[triangle];
@@ -263,7 +281,13 @@ bool measure(RTCPointQueryFunctionArguments* arguments) {
   search.face = face;
   search.position = triangle;
   search.barycentric = barycentric;
-  const float reach = search.any ? 0 : search.reach(distance);
+  return true;
+}
+
+bool measure(RTCPointQueryFunctionArguments* arguments) {
+  Search& search = *static_cast<Search*>(arguments->userPtr);
+  if (!is_nearest(search, arguments->primID)) return false;
+  const float reach = search.any ? 0 : search.reach(std::sqrt(search.squared_distance));
   if (!(reach < arguments->query->radius)) return false;
   arguments->query->radius = reach;
   return true;
@@ -271,15 +295,30 @@ bool measure(RTCPointQueryFunctionArguments* arguments) {
 
 }  // namespace
 
-void SurfaceIndex::Implementation::build() {
+void SurfaceIndex::Implementation::choose_frame(const Eigen::Vector3d& least, const Eigen::Vector3d& most) {
+  scale = unit_scale((most - least).maxCoeff());
+  centre = scale * (0.5 * least + 0.5 * most);
+}
+
+void SurfaceIndex::Implementation::place(std::size_t begin, std::size_t end) {
+  float* to = positions + 9 * begin;
+  for (std::size_t i = begin; i < end; ++i) {
+    for (const Eigen::Vector3d* corner : {&corners[i].a, &corners[i].b, &corners[i].c}) {
+      const Eigen::Vector3f position = (*corner - centre).cast<float>();
+      to = std::copy_n(position.data(), 3, to);
+    }
+  }
+}
+
+void SurfaceIndex::Implementation::build(bool moving) {
   Eigen::AlignedBox3d box;
   for (const Corners& face : corners) box.extend(face.a).extend(face.b).extend(face.c);
   // Unscaled so far: choose the scale, then apply it.
-  scale = unit_scale(box.sizes().maxCoeff());
-  centre = scale * (0.5 * box.min() + 0.5 * box.max());
-  facets.reserve(corners.size());
+  choose_frame(box.min(), box.max());
+  if (!moving) facets.reserve(corners.size());
   for (Corners& face : corners) {
     face = {scale * face.a, scale * face.b, scale * face.c};
+    if (moving) continue;
     const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
     const double length = vector.stableNorm();
     Facet& facet = facets.emplace_back();
@@ -296,36 +335,29 @@ void SurfaceIndex::Implementation::build() {
   device = shared_device();
   scene = rtcNewScene(device.get());
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                3 * sizeof(float), 3 * corners.size()));
+  geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                          3 * sizeof(float), 3 * corners.size()));
   auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), corners.size()));
-  const bool allocated = positions != nullptr && indices != nullptr;
-  if (allocated) {
-    for (const Corners& face : corners) {
-      for (const Eigen::Vector3d* corner : {&face.a, &face.b, &face.c}) {
-        const Eigen::Vector3f position = (*corner - centre).cast<float>();
-        positions = std::copy_n(position.data(), 3, positions);
-      }
-    }
-    std::iota(indices, indices + 3 * corners.size(), 0U);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
+  if (positions == nullptr || indices == nullptr) {
+    throw Error("Embree cannot hold " + std::to_string(corners.size()) + " faces");
   }
-  rtcReleaseGeometry(geometry);
-  if (!allocated) throw Error("Embree cannot hold " + std::to_string(corners.size()) + " faces");
+  place(0, corners.size());
+  std::iota(indices, indices + 3 * corners.size(), 0U);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
   rtcCommitScene(scene);
 }
 
 SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3d& point, double max_distance,
                                                             const Eigen::Vector3d* normal, double min_cosine,
-                                                            bool unsigned_normal, bool any) const {
+                                                            bool unsigned_normal, bool any, int likely) const {
   Nearest result;
   if (corners.empty() || !(max_distance >= 0)) return result;
   Search search;
   search.corners = corners.data();
-  search.facets = facets.data();
+  search.facets = facets.empty() ? nullptr : facets.data();
   search.face_numbers = face_numbers.data();
   search.point = scale * point;
   search.max_distance = scale * max_distance;
@@ -333,6 +365,10 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   search.min_cosine = min_cosine;
   search.unsigned_normal = unsigned_normal;
   search.any = any;
+  const bool all_faces = face_numbers.back() + 1 == static_cast<int>(face_numbers.size());
+  if (likely >= 0 && likely < static_cast<int>(face_numbers.size()) && all_faces) {
+    is_nearest(search, static_cast<unsigned>(likely));
+  }
 
   const Eigen::Vector3d local = search.point - centre;
   const double offset = local.cwiseAbs().maxCoeff();
@@ -341,12 +377,12 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
     query.x = static_cast<float>(local.x());
     query.y = static_cast<float>(local.y());
     query.z = static_cast<float>(local.z());
-    search.margin = kCullMargin * (1 + offset);
+    search.margin = kCullMargin * (1 + offset) + slack;
   } else {
     search.margin = std::numeric_limits<double>::infinity();
   }
-  query.radius =
-      search.max_distance < 2 * kFarAway ? search.reach(search.max_distance) : std::numeric_limits<float>::infinity();
+  const double radius = search.face < 0 ? search.max_distance : std::sqrt(search.squared_distance);
+  query.radius = radius < 2 * kFarAway ? search.reach(radius) : std::numeric_limits<float>::infinity();
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(scene, &query, &context, measure, &search);
@@ -390,6 +426,15 @@ SurfaceIndex::Implementation::LocalRay SurfaceIndex::Implementation::local_ray(c
   return local;
 }
 
+namespace {
+
+Corners corners_of(const Mesh& mesh, int face) {
+  const auto corner = [&](int k) -> Eigen::Vector3d { return mesh.vertices.row(mesh.faces(face, k)); };
+  return {corner(0), corner(1), corner(2)};
+}
+
+}  // namespace
+
 SurfaceIndex::SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces)
     : implementation_(std::make_unique<Implementation>()) {
   Implementation& data = *implementation_;
@@ -400,11 +445,58 @@ SurfaceIndex::SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces)
   }
   if (data.face_numbers.empty()) return;
   data.corners.reserve(data.face_numbers.size());
-  for (const int face : data.face_numbers) {
-    const auto corner = [&](int k) -> Eigen::Vector3d { return mesh.vertices.row(mesh.faces(face, k)); };
-    data.corners.push_back({corner(0), corner(1), corner(2)});
+  for (const int face : data.face_numbers) data.corners.push_back(corners_of(mesh, face));
+  data.build(false);
+}
+
+SurfaceIndex SurfaceIndex::of_moving(const Mesh& mesh) {
+  Mesh none;
+  none.vertices.resize(0, 3);
+  none.faces.resize(0, 3);
+  SurfaceIndex result(none);
+  Implementation& data = *result.implementation_;
+  for (int face = 0; face < static_cast<int>(mesh.faces.rows()); ++face) {
+    data.face_numbers.push_back(face);
+    data.corners.push_back(corners_of(mesh, face));
   }
-  data.build();
+  if (!data.corners.empty()) data.build(true);
+  return result;
+}
+
+// Embree's tree takes a third of a microsecond a face: it is left as it is while the corners stay near where it has
+// them, and made to cull by so much less.
+void SurfaceIndex::move(const Mesh& mesh, double slack, const RunContext& context) {
+  constexpr std::size_t kLeastShare = 4000;
+  Implementation& data = *implementation_;
+  if (data.corners.empty()) return;
+  const std::size_t count = data.corners.size();
+  std::vector<float> off(1 + count / kLeastShare, 0);
+  parallel_for(context, off.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      for (std::size_t i = block * kLeastShare; i < std::min(count, (block + 1) * kLeastShare); ++i) {
+        const Corners now = corners_of(mesh, static_cast<int>(i));
+        data.corners[i] = {data.scale * now.a, data.scale * now.b, data.scale * now.c};
+        const float* had = data.positions + 9 * i;
+        for (const Eigen::Vector3d* corner : {&data.corners[i].a, &data.corners[i].b, &data.corners[i].c}) {
+          const Eigen::Vector3f moved = (*corner - data.centre).cast<float>() - Eigen::Map<const Eigen::Vector3f>(had);
+          off[block] = std::max(off[block], moved.squaredNorm());
+          had += 3;
+        }
+      }
+    }
+  });
+  data.slack = std::sqrt(static_cast<double>(*std::ranges::max_element(off)));
+  if (data.slack <= data.scale * slack) return;
+  const double scale = data.scale;
+  data.choose_frame(mesh.vertices.colwise().minCoeff(), mesh.vertices.colwise().maxCoeff());
+  for (Corners& face : data.corners) {  // by a power of two
+    face = {data.scale / scale * face.a, data.scale / scale * face.b, data.scale / scale * face.c};
+  }
+  data.slack = 0;
+  data.place(0, count);
+  rtcUpdateGeometryBuffer(data.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(data.geometry);
+  rtcCommitScene(data.scene);
 }
 
 SurfaceIndex::~SurfaceIndex() = default;
@@ -416,8 +508,9 @@ SurfaceIndex::Nearest SurfaceIndex::nearest(const Eigen::Vector3d& point, double
 }
 
 SurfaceIndex::Nearest SurfaceIndex::nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                                   double min_cosine, double max_distance, bool unsigned_normal) const {
-  return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal);
+                                                   double min_cosine, double max_distance, bool unsigned_normal,
+                                                   int likely) const {
+  return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal, false, likely);
 }
 
 bool SurfaceIndex::within(const Eigen::Vector3d& point, double max_distance) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "orbifit/fitting/scan_preparation.h"
@@ -26,21 +27,40 @@ struct Correspondence {
   Eigen::Vector3d barycentric;  ///< of the surface point on the face
   Eigen::Vector3d normal;       ///< unit: of the face, or from its edge to the scan point across that edge
   double distance = 0;          ///< between the two, template units
-  double weight = 0;            ///< 1 / (1 + (distance / robust_scale)^2)^2 (Geman and McClure)
+  double weight = 0;            ///< robust_weight()
 };
 
-/// A surface to match against.
-struct MatchSurface {
+/// Geman and McClure's error, distance^2 / (1 + (distance / scale)^2): below scale^2 however far a point is.
+double robust_error(double distance, double scale);
+
+/// 1 / (1 + (distance / scale)^2)^2, by which a least-squares step lowers that error: what is far hardly counts.
+double robust_weight(double distance, double scale);
+
+/// A surface to match against. The mesh is kept by reference.
+class MatchSurface {
+ public:
+  explicit MatchSurface(const Mesh& mesh) : index(mesh), mesh_(&mesh) {}
+
+  /// One whose mesh may move: after each move the index must be brought up to date by index.move().
+  static MatchSurface of_moving(const Mesh& mesh) { return {SurfaceIndex::of_moving(mesh), mesh}; }
+
+  Eigen::Vector3d normal(int face) const { return face_normal(*mesh_, face); }
+
   SurfaceIndex index;
-  Points normals;  ///< of its faces, #F by 3
-  explicit MatchSurface(const Mesh& mesh) : index(mesh), normals(face_normals(mesh)) {}
+
+ private:
+  MatchSurface(SurfaceIndex moving, const Mesh& mesh) : index(std::move(moving)), mesh_(&mesh) {}
+
+  const Mesh* mesh_;
 };
 
 /// Scan -> surface, never the other way: what the scan does not see must not pull. Both in the template's frame.
 /// O(P log F).
+/// \param likely  for each scan point a face that may well be the nearest, such as the one of the iteration before, -1
+///   for none: the answer does not depend on it, but comes sooner. Replaced by the faces found. May be null
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
-                                                 const RunContext& context);
+                                                 const RunContext& context, std::vector<int>* likely = nullptr);
 
 /// Root of the weighted mean square of the distances along the normals' planes; 0 for none.
 double weighted_rms(const std::vector<Correspondence>& correspondences);

@@ -37,9 +37,10 @@ struct FitOptions {
 struct FitIteration {
   double stiffness = 0;
   int correspondences = 0;
-  double rms = 0;     ///< weighted, of the distances to the surface, fraction of the template's diagonal
-  double energy = 0;  ///< data and regularisation, as minimised in this iteration
-  double change = 0;  ///< largest movement of a sample, fraction of the diagonal
+  double rms = 0;      ///< weighted, of the distances to the surface, fraction of the template's diagonal
+  double energy = 0;   ///< robust data and regularisation before this iteration's step, in mean squared diagonals
+  double damping = 0;  ///< of the step; grows in the end where a step did not lower the energy and was taken back
+  double change = 0;   ///< largest movement of a sample by the step, fraction of the diagonal
 };
 
 struct StageTime {

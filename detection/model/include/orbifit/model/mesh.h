@@ -31,7 +31,10 @@ double diagonal(const Points& points);
 
 Eigen::Vector3d bounding_box_centre(const Points& points);
 
-/// Unit normal of each triangle, #F by 3; zero for a degenerate one.
+/// Unit normal of a triangle; zero for a degenerate one.
+Eigen::Vector3d face_normal(const Mesh& mesh, Eigen::Index face);
+
+/// The same of each triangle, #F by 3.
 Points face_normals(const Mesh& mesh);
 
 /// Area of each triangle, #F.

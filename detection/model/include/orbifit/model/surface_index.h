@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
 
 namespace orbifit {
 
@@ -15,6 +16,16 @@ class SurfaceIndex {
  public:
   /// \param faces the faces to index; empty means all. The mesh is copied as far as needed.
   explicit SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces = {});
+
+  /// An index of all faces that move() can bring up to date.
+  static SurfaceIndex of_moving(const Mesh& mesh);
+
+  /// The same faces with their vertices elsewhere, O(F): a tenth of a new index while no vertex is farther than `slack`
+  /// from where it was when the tree was made. Distances stay exact; rays may meet a face that much away.
+  /// \param slack  mesh units, >= 0: less than the distances asked for, so that they cost little more
+  /// \pre made by of_moving() of a mesh with the same faces
+  void move(const Mesh& mesh, double slack, const RunContext& context);
+
   ~SurfaceIndex();
   SurfaceIndex(SurfaceIndex&&) noexcept;
   SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
@@ -30,9 +41,10 @@ class SurfaceIndex {
   Nearest nearest(const Eigen::Vector3d& point, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
+  /// \param likely  a face that may well be the nearest: the answer is the same but comes sooner; -1: none
   Nearest nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
-                         double max_distance = std::numeric_limits<double>::infinity(),
-                         bool unsigned_normal = false) const;
+                         double max_distance = std::numeric_limits<double>::infinity(), bool unsigned_normal = false,
+                         int likely = -1) const;
 
   /// Whether any face is within `max_distance`: nearest(...).face >= 0, for several times less.
   bool within(const Eigen::Vector3d& point, double max_distance) const;

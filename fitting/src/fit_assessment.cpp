@@ -1,0 +1,51 @@
+#include "fit_assessment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbifit/model/point_index.h"
+#include "orbifit/model/surface_index.h"
+
+#include "pulls.h"
+
+namespace orbifit {
+
+void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, FitResult& result) {
+  const double size = diagonal(result.fitted.vertices);
+  const SurfaceIndex surface(result.fitted);
+  double squares = 0;
+  int inliers = 0;
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    const double distance = surface.nearest(scan.points.row(i).transpose()).distance / size;
+    if (distance > options.inlier_distance) continue;
+    ++inliers;
+    squares += distance * distance;
+  }
+  result.inlier_fraction = double(inliers) / static_cast<double>(scan.points.rows());
+  result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
+
+  const PointIndex points(scan.points);
+  const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
+  result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));
+  for (std::size_t v = 0; v < result.seen.size(); ++v) {
+    const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
+    result.seen[v] = points.nearest(vertex, 1).front().distance <= near ? 1 : 0;
+  }
+  const Eigen::VectorXd areas = face_areas(result.fitted);
+  double hidden = 0;
+  for (Eigen::Index f = 0; f < areas.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (result.seen[static_cast<std::size_t>(result.fitted.faces(f, k))] == 0) hidden += areas[f] / 3;
+    }
+  }
+  result.hidden_fraction = hidden / areas.sum();
+
+  double missed = 0;
+  const auto pulls = pulls_towards(input, result.pose, 1);
+  for (const Pull& pull : pulls) {
+    missed += (result.fitted.vertices.row(pull.vertex).transpose() - result.pose(pull.target)).squaredNorm();
+  }
+  if (!pulls.empty()) result.landmark_rms = std::sqrt(missed / static_cast<double>(pulls.size())) / size;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "orbifit/fitting/fit.h"
+#include "orbifit/fitting/scan_preparation.h"
+
+namespace orbifit {
+
+/// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
+/// `inlier_fraction`, `rms`, `seen`, `hidden_fraction` and `landmark_rms` from `fitted` and `pose`.
+void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, FitResult& result);
+
+}  // namespace orbifit

@@ -1,0 +1,212 @@
+#include "fit_loop.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "orbifit/fitting/alignment.h"
+#include "orbifit/model/random.h"
+#include "orbifit/model/sampling.h"
+#include "orbifit/model/surface_index.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kFirstReach = 0.15;       // of the diagonal: correspondences farther apart are none, at the start
+constexpr double kLastReach = 0.04;        // and at the end
+constexpr double kDirectionNoise = 0.003;  // of the diagonal
+// Offsets far above the robust scale hardly count. It shrinks last: parts that the soft template has yet to reach
+// would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
+constexpr double kFirstRobust = 0.05;
+constexpr double kSoftRobust = 0.02;
+constexpr std::array<double, 3> kSettling{0.02, 0.012, 0.007};
+constexpr double kSlack = 0.3;           // robust scales: see SurfaceIndex::move
+constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is settled by then
+constexpr double kStill = 1e-4;          // of the diagonal: the fit has settled when no sample moves more,
+constexpr double kGain = 0.02;           // or when so many steps in turn lowered the energy by less than this share;
+constexpr double kLastGain = 0.002;      // in the end
+constexpr int kStalled = 3;
+constexpr double kDamping = 1e-3;  // the least, of one sample's share of the data
+constexpr double kDampingStep = 4;
+constexpr const char* kUsedUp = "the iterations allowed are used up";
+
+// Whether the faces look outwards, so that a scan's oriented normals must agree with theirs in sign: a ray into the
+// body meets its far side from within.
+bool faces_outwards(const Mesh& mesh, const RunContext& context) {
+  constexpr int kSamples = 400;
+  constexpr double kNearlyAll = 0.85;
+  Random random(context.seed, "outwards");
+  const SurfaceSamples samples = sample_surface(mesh, kSamples, random);
+  const SurfaceIndex surface(mesh);
+  const Points normals = face_normals(mesh);
+  const double start = 1e-5 * diagonal(mesh.vertices);
+  int outwards = 0;
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    const Eigen::Vector3d inwards = -samples.normals.row(i);
+    const auto hit = surface.cast(samples.points.row(i), inwards, start);
+    if (hit && normals.row(hit->face).dot(inwards) > 0) ++outwards;
+  }
+  return outwards >= kNearlyAll * static_cast<double>(samples.points.rows());
+}
+
+}  // namespace
+
+FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
+                 const RunContext& context)
+    : input_(input),
+      scan_(scan),
+      subspace_(subspace),
+      options_(options),
+      context_(context),
+      size_(diagonal(input.mesh.vertices)),
+      samples_(static_cast<double>(subspace.sampling.points.rows())),
+      signed_normals_(scan.normals_oriented && faces_outwards(input.mesh, context)),
+      system_(subspace, input.mesh, options.stretch),
+      silhouette_(input.mesh, input.scan, scan, context),
+      deformed_(input.mesh),
+      surface_(MatchSurface::of_moving(deformed_)) {}
+
+FitLoop::Stage FitLoop::stage(int iteration) const {
+  Stage now;
+  now.progress = std::min(1.0, double(iteration / options_.iterations) / std::max(1, options_.levels - 1));
+  now.stiffness = options_.first_stiffness * std::pow(options_.last_stiffness / options_.first_stiffness, now.progress);
+  now.robust = kFirstRobust * std::pow(kSoftRobust / kFirstRobust, now.progress) * size_;
+  return now;
+}
+
+FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
+  CorrespondenceOptions options;
+  options.max_distance = (kFirstReach + (kLastReach - kFirstReach) * now.progress) * size_;
+  options.signed_normals = signed_normals_;
+  // Far points are left out while the template is far; in the end the robust weights judge each by itself.
+  options.trim = options_.trim + (1 - options_.trim) * now.progress;
+  options.never_trim = 0.005 * size_;
+  options.direction_noise = kDirectionNoise * size_;
+  options.robust_scale = now.robust;
+  Matches result;
+  result.points = to_template(state.pose, scan_.points);
+  result.pairs = find_correspondences(surface_, result.points, normals_to_template(state.pose, scan_.normals), options,
+                                      context_, &likely_);
+  result.of_scan = static_cast<int>(result.pairs.size());
+  result.rms = weighted_rms(result.pairs) / size_;
+  result.energy = static_cast<double>(scan_.points.rows() - result.of_scan) * now.robust * now.robust;
+  for (const Correspondence& pair : result.pairs) result.energy += robust_error(pair.distance, now.robust);
+  if (now.progress >= kSilhouetteFrom && silhouette_.knows_viewpoints()) {
+    result.energy +=
+        silhouette_.add(deformed_, surface_, result.points, state.pose, now.robust, result.pairs, context_);
+  }
+  return result;
+}
+
+// All pairs together weigh as many as there are samples.
+double FitLoop::share_of(const Matches& matches) const {
+  return samples_ / static_cast<double>(std::max<std::size_t>(1, matches.pairs.size()));
+}
+
+double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
+  double result = share * matches.energy + now.stiffness * system_.regularity(state.q);
+  for (const Pull& pull : pulls_towards(input_, state.pose, options_.landmark_weight)) {
+    result += pull.weight * (deformed_.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm();
+  }
+  return result;
+}
+
+void FitLoop::move_to(const FitState& state, double slack) {
+  system_.rotate(state.q);
+  deformed_.vertices = input_.mesh.vertices + vertex_displacements(subspace_, {state.q, nullptr}, context_);
+  surface_.index.move(deformed_, slack, context_);
+}
+
+void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
+                   FitIteration& record) {
+  const auto pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
+  const FitSystem::Hold hold{now.stiffness, damping, state.q};
+  const FitSystem::Solution solution = system_.solve(matches.pairs, share, matches.points, pulls, hold, context_);
+  const Points before = sample_displacements(subspace_, state.q);
+  state.q = solution.q;
+  const Motion back = inverse(solution.scan_step);
+  state.pose = state.pose * Similarity{1, back.linear, back.translation};
+  move_to(state, kSlack * now.robust);
+  record.damping = damping;
+  record.change = (sample_displacements(subspace_, state.q) - before).rowwise().norm().maxCoeff() / size_;
+}
+
+FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double energy) const {
+  FitIteration record;
+  record.stiffness = now.stiffness;
+  record.correspondences = matches.of_scan;
+  record.rms = matches.rms;
+  record.energy = energy / (samples_ * size_ * size_);
+  return record;
+}
+
+std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations) {
+  struct Best {
+    FitState state;
+    FitSystem::Rotations rotations;
+    Matches matches;
+    double energy;
+  };
+  std::optional<Best> best;
+  double damping = kDamping;
+  double share = 0;
+  int stalled = 0;
+  std::string reason = kUsedUp;
+  while (static_cast<int>(iterations.size()) < options_.most_iterations) {
+    context_.progress("fit", double(iterations.size()) / options_.most_iterations);
+    Matches matches = match(state, now);
+    if (!best) share = share_of(matches);  // the same from then on: energies are compared
+    const double energy_now = energy(state, matches, share, now);
+    iterations.push_back(record_of(matches, now, energy_now));
+    stalled = !best || energy_now < (1 - gain) * best->energy ? 0 : stalled + 1;
+    if (!best || energy_now < best->energy) {
+      best = Best{state, system_.rotations(), std::move(matches), energy_now};
+      damping = std::max(kDamping, damping / kDampingStep);
+    } else {
+      state = best->state;
+      system_.set_rotations(best->rotations);
+      damping *= kDampingStep;
+    }
+    if (stalled >= kStalled) {
+      reason = "settled: the energy no longer falls";
+      break;
+    }
+    step(state, best->matches, now, share, damping, iterations.back());
+    if (iterations.back().change < kStill) {
+      reason = "settled: no sample moves by more than 0.01 % of the diagonal";
+      break;
+    }
+  }
+  if (best) {
+    state = best->state;
+    move_to(state, kSlack * now.robust);
+    system_.set_rotations(best->rotations);
+  }
+  return reason;
+}
+
+std::string FitLoop::run(FitState& state, std::vector<FitIteration>& iterations) {
+  move_to(state, 0);
+  Stage now = stage(0);
+  for (int i = 0; i < options_.levels * options_.iterations; ++i) {
+    context_.progress("fit", double(i) / options_.most_iterations);
+    now = stage(i);
+    const Matches matches = match(state, now);
+    if (matches.pairs.empty() && input_.landmarks.empty() && input_.handles.empty()) {
+      return "no point of the scan lies near the template";
+    }
+    const double share = share_of(matches);
+    iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
+    step(state, matches, now, share, 0, iterations.back());
+  }
+  std::string reason = kUsedUp;
+  for (const double robust : kSettling) {
+    now.robust = robust * size_;
+    reason = settle(state, now, robust == kSettling.back() ? kLastGain : kGain, iterations);
+  }
+  return reason;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbifit/fitting/correspondences.h"
+#include "orbifit/fitting/fit.h"
+#include "orbifit/fitting/scan_preparation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+#include "fit_system.h"
+#include "silhouette_pulls.h"
+
+namespace orbifit {
+
+/// Where a fit has come to.
+struct FitState {
+  Similarity pose;  ///< template -> scan
+  Eigen::VectorXd q;
+};
+
+/// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it. Then the
+/// stiffness stays, and so does what counts as far until nothing more is gained with it: there is one energy to lower,
+/// and steps that do not lower it are taken back and damped (Levenberg and Marquardt). What the data do not determine
+/// holds still instead of swaying from one iteration to the next.
+class FitLoop {
+ public:
+  /// All references are kept.
+  FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
+          const RunContext& context);
+
+  /// Improves the state in place. \return why it stopped
+  std::string run(FitState& state, std::vector<FitIteration>& iterations);
+
+ private:
+  struct Stage {
+    double progress = 1;  // of the schedule, in [0, 1]
+    double stiffness = 0;
+    double robust = 0;  // Geman-McClure's scale, template units
+  };
+  struct Matches {
+    std::vector<Correspondence> pairs;  // those of silhouettes after those of the scan
+    Points points;                      // the scan's, in the template's frame
+    int of_scan = 0;
+    double rms = 0;     // fraction of the diagonal
+    double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared template units
+  };
+  Stage stage(int iteration) const;
+  Matches match(const FitState& state, const Stage& now);
+  double share_of(const Matches& matches) const;
+  double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
+  FitIteration record_of(const Matches& matches, const Stage& now, double energy) const;
+  // One solve from there. \param share of each pair; what the record says of the step is filled in
+  void step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
+            FitIteration& record);
+  // Steps that lower the energy of one stage, until it stalls.
+  std::string settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
+  void move_to(const FitState& state, double slack);
+
+  const FitInput& input_;
+  const PreparedScan& scan_;
+  const Subspace& subspace_;
+  const FitOptions& options_;
+  const RunContext& context_;
+  double size_;     // the template's diagonal
+  double samples_;  // of the subspace
+  bool signed_normals_;
+  FitSystem system_;
+  SilhouettePulls silhouette_;
+  Mesh deformed_;
+  MatchSurface surface_;  // of deformed_
+  std::vector<int> likely_;
+};
+
+}  // namespace orbifit

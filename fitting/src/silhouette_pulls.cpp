@@ -1,0 +1,63 @@
+#include "silhouette_pulls.h"
+
+#include <algorithm>
+
+#include "orbifit/model/random.h"
+#include "orbifit/model/surface_index.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr int kSamples = 1500;
+constexpr double kReach = 0.012;       // of the diagonal: nearer to a point of the scan a sample is seen
+constexpr double kFarthest = 0.15;     // of the diagonal: what is pulled
+constexpr double kLeastRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
+constexpr double kWeight = 2;          // there are fewer samples than points of the scan
+
+}  // namespace
+
+SilhouettePulls::SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan,
+                                 const RunContext& context)
+    : size_(diagonal(mesh.vertices)), scan_(scan), seen_(cloud, scan.points) {
+  Random random(context.seed, "silhouette");
+  samples_ = sample_surface(mesh, kSamples, random);
+  for (Eigen::Index i = 0; i < samples_.points.rows(); ++i) {
+    const auto corner = [&](int k) -> Eigen::Vector3d {
+      return mesh.vertices.row(mesh.faces(samples_.faces[static_cast<std::size_t>(i)], k));
+    };
+    barycentric_.push_back(nearest_on_triangle(samples_.points.row(i), corner(0), corner(1), corner(2)));
+  }
+}
+
+double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, const Points& points,
+                            const Similarity& pose, double robust, std::vector<Correspondence>& pairs,
+                            const RunContext& context) {
+  for (Eigen::Index i = 0; i < samples_.points.rows(); ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    samples_.points.row(i) =
+        barycentric_[s].transpose() * deformed.vertices(deformed.faces.row(samples_.faces[s]), Eigen::all);
+    samples_.normals.row(i) = surface.normal(samples_.faces[s]).transpose();
+  }
+  const double reach = std::max(kReach * size_ * pose.scale, 1.5 * scan_.spacing);
+  const double scale = std::max(robust, kLeastRobust * size_);
+  double error = 0;
+  for (const SeenSurface::Missed& each : seen_.missed(samples_, surface.index, pose, reach, context)) {
+    const auto s = static_cast<std::size_t>(each.sample);
+    const Eigen::Vector3d offset = (points.row(each.point) - samples_.points.row(each.sample)).transpose();
+    const double distance = offset.norm();
+    if (!(distance > 0) || distance > kFarthest * size_) continue;
+    Correspondence pair;
+    pair.scan_point = each.point;
+    pair.face = samples_.faces[s];
+    pair.barycentric = barycentric_[s];
+    pair.normal = offset / distance;
+    pair.distance = distance;
+    pair.weight = kWeight * robust_weight(distance, scale);
+    pairs.push_back(pair);
+    error += kWeight * robust_error(distance, scale);
+  }
+  return error;
+}
+
+}  // namespace orbifit

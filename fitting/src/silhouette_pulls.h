@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "orbifit/fitting/correspondences.h"
+#include "orbifit/fitting/scan_preparation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/model/sampling.h"
+
+#include "seen_surface.h"
+
+namespace orbifit {
+
+/// Points of the template that the scan should have seen: where it saw through them they are pulled to what it saw.
+class SilhouettePulls {
+ public:
+  /// \param cloud  all of the scan, with its viewpoints \param scan  the points that are matched; kept by reference
+  SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan, const RunContext& context);
+
+  bool knows_viewpoints() const { return seen_.knows_viewpoints(); }
+
+  /// Appends a pair for each sample of the deformed template that was seen through and the scan's point nearest to it.
+  /// \param surface of the deformed mesh \param points  the scan's, in the template's frame
+  /// \param pose template -> scan \param robust  Geman-McClure's scale, template units
+  /// \return their robust_error(), weighted
+  double add(const Mesh& deformed, const MatchSurface& surface, const Points& points, const Similarity& pose,
+             double robust, std::vector<Correspondence>& pairs, const RunContext& context);
+
+ private:
+  double size_;  // the template's diagonal
+  const PreparedScan& scan_;
+  SeenSurface seen_;
+  SurfaceSamples samples_;
+  std::vector<Eigen::Vector3d> barycentric_;
+};
+
+}  // namespace orbifit

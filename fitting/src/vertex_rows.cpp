@@ -1,0 +1,26 @@
+#include "vertex_rows.h"
+
+namespace orbifit {
+
+void VertexRows::prepare(const std::vector<int>& vertices, const RunContext& context) {
+  std::vector<int> fresh;
+  for (const int vertex : vertices) {
+    char& known = known_[static_cast<std::size_t>(vertex)];
+    if (known == 0) fresh.push_back(vertex);
+    known = 1;
+  }
+  const Eigen::Index dof = subspace_.degrees_of_freedom();
+  parallel_for(context, fresh.size(), [&](std::size_t begin, std::size_t end) {
+    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> dense(3, dof);
+    for (std::size_t i = begin; i < end; ++i) {
+      dense.setZero();
+      for (int c = 0; c < 3; ++c) add_vertex_row(subspace_, fresh[i], Eigen::Vector3d::Unit(c), dense.row(c));
+      std::vector<Entry>& row = rows_[static_cast<std::size_t>(fresh[i])];
+      for (Eigen::Index j = 0; j < dof; ++j) {
+        if (!dense.col(j).isZero(0)) row.push_back({static_cast<int>(j), dense.col(j)});
+      }
+    }
+  });
+}
+
+}  // namespace orbifit
