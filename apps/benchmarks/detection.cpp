@@ -15,6 +15,7 @@
 #include "orbifit/subspace/shared_axes.h"
 
 #include "benchmarks.h"
+#include "stage_run.h"
 #include "stopwatch.h"
 
 namespace orbifit::benchmarks {
@@ -28,16 +29,12 @@ struct DetectionOptions {
   std::vector<double> noise{0};
   bool cut = false;
   std::string json, folder;
-  int threads = 1;
-  std::uint64_t seed = 1;
+  StageRun stages;
   DetectOptions detect;
 };
 
 void check(const DetectionOptions& options) {
   options.detect.validate();
-  if (options.threads < 1 || options.threads > 4096) {
-    throw UsageError("--threads is " + std::to_string(options.threads) + ": must be from 1 to 4096");
-  }
   for (const double noise : options.noise) {
     if (!(noise >= 0 && noise <= 0.1))
       throw UsageError("--noise is " + short_number(noise) + ": must be from 0 to 0.1");
@@ -129,10 +126,7 @@ int run(const DetectionOptions& options, const CommandContext& given) {
   const std::vector<SuiteModel> models = chosen_models(options.models);
   const std::vector<CaseForm> forms = chosen_forms(options);
   if (!options.folder.empty()) make_folder(options.folder);
-  RunContext context = given.run;
-  context.on_message = nullptr;  // of the stages
-  context.threads = options.threads;
-  context.seed = options.seed;
+  RunContext context = stage_context(given, options.stages);
   std::vector<DetectionRow> rows;
   const auto report = [&] {
     if (!options.json.empty()) write_file(options.json, detection_json(rows));
@@ -176,8 +170,7 @@ CommandBody detection(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--max-seconds", options->detect.max_seconds, "The detector's time for a mesh; 0: no limit")
       ->capture_default_str();
-  app.add_option("--seed", options->seed, "Of poses, noise, cuts and the detector")->capture_default_str();
-  app.add_option("--threads", options->threads, "Threads to use")->type_name("N")->capture_default_str();
+  add_stage_run(app, options->stages, "poses, noise, cuts and the detector");
   app.add_option("--write", options->folder,
                  "Write each mesh, its truth and its detection; the folder is made if missing")
       ->type_name("FOLDER");

@@ -9,6 +9,7 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/fitting/alignment.h"
+#include "orbifit/fitting/clutter.h"
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
@@ -17,6 +18,7 @@
 #include "orbifit/model/scan_io.h"
 
 #include "benchmarks.h"
+#include "stage_run.h"
 #include "stopwatch.h"
 
 namespace orbifit::benchmarks {
@@ -28,8 +30,7 @@ namespace {
 struct FittingOptions {
   std::vector<std::string> families, levels, methods;
   std::string json, folder;
-  int threads = 1;
-  std::uint64_t seed = 1;
+  StageRun stages;
 };
 
 struct Level {
@@ -41,21 +42,28 @@ constexpr Level kLevels[] = {
 
 constexpr const char* kMethods[] = {"ours", "rigid", "free", "copied"};
 
-// The scan and its images under the known groups of the whole shape, in the scan's frame.
-PointCloud copied_scan(const FitCase& each) {
-  PointCloud result = each.scan;
+// The scan without what is far from the template as it was found.
+PointCloud own_scan(const FitCase& each, const Similarity& pose, const RunContext& context) {
+  constexpr double kNear = 0.12;  // of the diagonal, as in the fit
+  const Mesh& mesh = each.model.mesh;
+  return points_near(SurfaceIndex(mesh), diagonal(mesh.vertices), each.scan, pose, kNear, context);
+}
+
+// The scan and its images under the known groups of the whole shape, which stands there.
+PointCloud copied_scan(const FitCase& each, const PointCloud& scan, const Similarity& pose) {
+  PointCloud result = scan;
   for (const Region& region : each.model.truth.regions) {
     if (static_cast<Eigen::Index>(region.faces.size()) != each.model.mesh.faces.rows()) continue;
     for (const Motion& element : region.elements) {
-      const Motion there = conjugate(each.pose, element);
+      const Motion there = conjugate(pose, element);
       if ((there.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9) continue;
       const auto append = [&](Points& to, const Points& from) {
         const Eigen::Index rows = to.rows();
         to.conservativeResize(rows + from.rows(), 3);
         to.bottomRows(from.rows()) = (from * there.linear.transpose()).rowwise() + there.translation.transpose();
       };
-      append(result.points, each.scan.points);
-      append(result.viewpoints, each.scan.viewpoints);
+      append(result.points, scan.points);
+      append(result.viewpoints, scan.viewpoints);
     }
   }
   return result;
@@ -69,14 +77,14 @@ SymmetryAnnotation without_symmetry(const GeneratedModel& model) {
   return none;
 }
 
-// Similarity ICP from the true pose of the template; nothing is deformed.
-FitResult rigid_fit(const FitCase& each, RunContext& context) {
+// Similarity ICP; nothing is deformed.
+FitResult rigid_fit(const FitCase& each, const Similarity& pose, RunContext& context) {
   const PreparedScan scan = prepare_scan(each.scan, {}, context);
   std::vector<int> all(static_cast<std::size_t>(scan.points.rows()));
   std::iota(all.begin(), all.end(), 0);
   const Mesh& mesh = each.model.mesh;
   FitResult result;
-  result.pose = align_with_scale(mesh, MatchSurface(mesh), scan, all, each.pose, {});
+  result.pose = align_with_scale(mesh, MatchSurface(mesh), scan, all, pose, {});
   result.fitted = mesh;
   for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
     result.fitted.vertices.row(v) = result.pose(mesh.vertices.row(v).transpose()).transpose();
@@ -92,24 +100,33 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   row.level = level;
   row.method = method;
   FitOptions chosen;
-  // Only ours has to find the pose: the others are given the true one.
-  chosen.place = method == "ours" && each.level == FitLevel::anywhere;
   chosen.align = false;
   const SymmetryAnnotation annotation = method == "ours" ? each.model.truth : without_symmetry(each.model);
-  const PointCloud scan = method == "copied" ? copied_scan(each) : each.scan;
-  const FitInput input{each.model.mesh, annotation, scan, chosen.place ? Similarity{} : each.pose, {}, {}};
   const double start = seconds_now();
   try {
-    const FitResult result = method == "rigid" ? rigid_fit(each, context) : fit(input, chosen, context);
+    // All methods find the pose in the same way, where it is not known.
+    Similarity pose = each.pose;
+    if (each.level == FitLevel::anywhere) {
+      chosen.place = method == "ours" || method == "free";
+      pose = Similarity{};
+      if (!chosen.place) {
+        const auto placements = find_placements(each.model.mesh, each.scan, chosen.placement, context, pose);
+        if (!placements.empty()) pose = placements.front().pose;
+        row.placing = seconds_now() - start;
+      }
+    }
+    PointCloud scan = each.scan;
+    if (method == "copied")
+      scan = copied_scan(each, each.level == FitLevel::anywhere ? own_scan(each, pose, context) : scan, pose);
+    const FitInput input{each.model.mesh, annotation, scan, pose, {}, {}};
+    const FitResult result = method == "rigid" ? rigid_fit(each, pose, context) : fit(input, chosen, context);
     row.seconds = seconds_now() - start;
     row.fitted = result.converged;
     if (!result.converged) row.failure = result.stopped_because;
     row.degrees_of_freedom = result.degrees_of_freedom;
     for (const StageTime& time : result.times) {
       if (time.stage == "placement") row.placing = time.seconds;
-      if (time.stage == "fit" && !result.iterations.empty()) {
-        row.iteration = time.seconds / static_cast<double>(result.iterations.size());
-      }
+      if (time.stage == "fit" && result.iterations_in_all > 0) row.iteration = time.seconds / result.iterations_in_all;
     }
     row.score = score_fit(each, result.fitted, context);
     row.symmetry = symmetry_residual(each.model.mesh, each.model.truth, &result.fitted, CarriedMotions::moving, context)
@@ -135,19 +152,13 @@ bool asked(const std::vector<std::string>& wanted, const std::string& name) {
 }
 
 int run(const FittingOptions& options, const CommandContext& given) {
-  if (options.threads < 1 || options.threads > 4096) {
-    throw UsageError("--threads is " + std::to_string(options.threads) + ": must be from 1 to 4096");
-  }
   for (const std::string& name : options.families) {
     if (std::ranges::none_of(fit_families(), [&](const FitFamily& family) { return family.name == name; })) {
       throw UsageError("--families: there is no family '" + name + "'");
     }
   }
   if (!options.json.empty()) check_output(options.json);
-  RunContext context = given.run;
-  context.on_message = nullptr;  // of the stages
-  context.threads = options.threads;
-  context.seed = options.seed;
+  RunContext context = stage_context(given, options.stages);
   std::vector<FittingRow> rows;
   for (const FitFamily& family : fit_families()) {
     if (!asked(options.families, family.name)) continue;
@@ -184,8 +195,7 @@ CommandBody fitting(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::IsMember({"ours", "rigid", "free", "copied"}))
       ->type_name("METHOD,...");
-  app.add_option("--seed", options->seed, "Of poses, noise and the fit")->capture_default_str();
-  app.add_option("--threads", options->threads, "Threads to use")->type_name("N")->capture_default_str();
+  add_stage_run(app, options->stages, "poses, noise and the fit");
   app.add_option("--write", options->folder, "Write templates, scans, truths and fits into this folder")
       ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER");

@@ -97,7 +97,7 @@ std::string fitting_text(const std::vector<FittingRow>& rows) {
          "corr.: of the fitted hidden vertices from where they belong; percent of the diagonal. symmetry: worst "
          "residual\n"
          "that the fit added, a fraction of the diagonal. s: seconds in all, place s: until the pose is found.\n"
-         "ours finds the pose of 'anywhere'; the other methods are given the true one.\n\n"
+         "In 'anywhere' all methods find the pose in the same way.\n\n"
          "Means by level and method\n" +
          means.text();
 }

@@ -33,6 +33,8 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
   table.rows.push_back({"of the scan taken for the template's", percent(result.used_fraction)});
   table.rows.push_back({"of that explained (within 1 %)", percent(result.inlier_fraction)});
   table.rows.push_back({"their rms distance, of the diagonal", percent(result.rms)});
+  table.rows.push_back({"of what the viewpoints should have seen, seen", percent(result.covered)});
+  table.rows.push_back({"confidence", short_number(result.confidence, 2)});
   table.rows.push_back({"surface that the scan did not see", percent(result.hidden_fraction)});
   table.rows.push_back({"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)});
   return table;
@@ -77,6 +79,15 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
                        {"rest", region.floor.max},
                        {"excess", region.excess.max}});
   }
+  Json groups = Json::array();
+  for (const GroupAgreement& group : result.groups) {
+    groups.push_back({{"region", group.region},
+                      {"pairs", group.pairs},
+                      {"disagreement", group.disagreement},
+                      {"held_rms", group.held},
+                      {"free_rms", group.free},
+                      {"disagrees", group.disagrees}});
+  }
   return {{"converged", result.converged},
           {"stopped_because", result.stopped_because},
           {"pose", pose_to_json(result.pose)},
@@ -85,14 +96,50 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
           {"degrees_of_freedom", result.degrees_of_freedom},
           {"used_fraction", result.used_fraction},
           {"inlier_fraction", result.inlier_fraction},
+          {"covered", result.covered},
+          {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},
           {"hidden_fraction", result.hidden_fraction},
           {"symmetry",
            {{"field_residual", result.field_residual}, {"worst_excess", symmetry.worst_excess}, {"regions", regions}}},
+          {"groups", groups},
+          {"relaxed", result.relaxed},
           {"seconds", times},
           {"iterations", iterations}};
 }
+
+namespace {
+
+// Which groups the scan supports; those that it says nothing of are left out.
+ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry) {
+  const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
+  ReportTable table{{"region", "group", "pairs", "differs by", "rms with it", "without", "the scan"}, {}};
+  for (const GroupAgreement& group : result.groups) {
+    if (group.pairs == 0) continue;
+    const auto region = std::ranges::find(symmetry.regions, group.region, &RegionResidual::id);
+    const bool known = region != symmetry.regions.end();
+    const bool left_out = std::ranges::find(result.relaxed, group.region) != result.relaxed.end();
+    std::string verdict = "agrees";
+    if (group.disagrees) verdict = left_out ? "disagrees: left out" : "disagrees";
+    table.rows.push_back({known && !region->name.empty() ? region->name : std::to_string(group.region),
+                          known ? region->group : "", std::to_string(group.pairs), percent(group.disagreement),
+                          percent(group.held), percent(group.free), verdict});
+  }
+  return table;
+}
+
+ReportTable placement_table(const FitResult& result) {
+  ReportTable table{{"placement", "scale", "explained", "covered", "score"}, {}};
+  for (std::size_t i = 0; i < result.placements.size(); ++i) {
+    const Placement& each = result.placements[i];
+    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), short_number(each.explained, 3),
+                          short_number(each.covered, 3), short_number(each.score(), 3)});
+  }
+  return table;
+}
+
+}  // namespace
 
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
                         const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run) {
@@ -133,6 +180,17 @@ std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResul
         picture(hidden, "blue: completed, not seen by the scan")},
        {figures(result, symmetry)},
        {}});
+  if (!result.groups.empty()) {
+    report.sections.push_back({"What the scan says of the groups",
+                               "Compared with a fit that keeps none: by how much it differs between places that the "
+                               "group takes to one another, of the diagonal.",
+                               {},
+                               {group_table(result, symmetry)},
+                               {}});
+  }
+  if (!result.placements.empty()) {
+    report.sections.push_back({"Where the template may be in the scan", "", {}, {placement_table(result)}, {}});
+  }
   return to_html(report);
 }
 

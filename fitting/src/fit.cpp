@@ -1,11 +1,13 @@
 #include "orbifit/fitting/fit.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/errors.h"
+#include "orbifit/subspace/closable.h"
 #include "orbifit/subspace/displacement_field.h"
 
 #include "fit_assessment.h"
@@ -19,6 +21,7 @@ namespace {
 // Share of explained points of a scan from which what is not the template's has been taken: a scan of something else,
 // onto which the template was put as well as can be, leaves more.
 constexpr double kLeastOfPlaced = 0.8;
+
 class Stopwatch {
  public:
   explicit Stopwatch(std::vector<StageTime>& times) : times_(times) {}
@@ -50,6 +53,8 @@ void FitOptions::validate() const {
   require(last_stiffness > 0, "last_stiffness", last_stiffness, "positive");
   require(first_stiffness > last_stiffness, "first_stiffness", first_stiffness, "more than last_stiffness");
   require(stretch >= 0, "stretch", stretch, "0 or more");
+  require(tie > 0 && tie <= 1, "tie", tie, "in (0, 1]");
+  require(most_tied >= 1, "most_tied", most_tied, "at least 1");
   require(trim > 0 && trim <= 1, "trim", trim, "in (0, 1]");
   require(scan_points >= 10, "scan_points", scan_points, "at least 10");
   require(landmark_weight > 0, "landmark_weight", landmark_weight, "positive");
@@ -57,60 +62,158 @@ void FitOptions::validate() const {
   require(least_inliers >= 0 && least_inliers <= 1, "least_inliers", least_inliers, "in [0, 1]");
 }
 
+namespace {
+
+// Where the fit may start from: one place, or several that the scan supports about as well.
+std::vector<PlacedScan> starts_of(const FitInput& input, const FitOptions& options, const RunContext& context,
+                                  FitResult& result, Stopwatch& watch) {
+  ScanPreparationOptions preparation;
+  preparation.most_points = options.scan_points;
+  std::vector<PlacedScan> starts;
+  const bool place = options.place && input.landmarks.empty() && input.handles.empty();
+  if (place) {
+    std::vector<Placement> found = find_placements(input.mesh, input.scan, options.placement, context, input.pose);
+    for (const Placement& each : found) {
+      if (static_cast<int>(starts.size()) == options.most_tied) break;
+      if (each.score() < options.tie * found.front().score()) break;
+      auto placed = placed_scan(input.mesh, input.scan, each.pose, input.pose, options.placement, preparation, context);
+      if (placed) starts.push_back(std::move(*placed));
+    }
+    if (!starts.empty()) result.placements = std::move(found);
+    watch.finished("placement");
+  }
+  if (starts.empty()) {
+    starts.push_back({prepare_scan(input.scan, preparation, context), input.pose, 1});
+    watch.finished("scan");
+    if (!input.landmarks.empty()) {
+      starts.front().pose = align_landmarks(input.mesh, input.landmarks);
+    } else if (options.align && input.handles.empty()) {
+      starts.front().pose = align_rigidly(input.mesh, starts.front().scan, input.pose, context);
+    }
+    watch.finished("alignment");
+  }
+  return starts;
+}
+
+// A deformation of the template within a subspace, and how it was found.
+struct Deformation {
+  FitState state;
+  std::vector<FitIteration> iterations;
+  std::string stopped_because;
+  Mesh deformed;  // in the template's frame
+  Mesh fitted;    // in the scan's
+};
+
+Deformation deformation_of(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
+                           const FitOptions& options, const RunContext& context) {
+  Deformation result;
+  result.state = {start.pose, Eigen::VectorXd::Zero(subspace.degrees_of_freedom())};
+  FitLoop loop(input, start.scan, subspace, options, context);
+  result.stopped_because = loop.run(result.state, result.iterations);
+  result.deformed = input.mesh;
+  result.deformed.vertices += vertex_displacements(subspace, result.state.q);
+  result.fitted = result.deformed;
+  for (Eigen::Index v = 0; v < result.fitted.vertices.rows(); ++v) {
+    result.fitted.vertices.row(v) = result.state.pose(result.deformed.vertices.row(v).transpose()).transpose();
+  }
+  return result;
+}
+
+// The template fitted without any group, finely enough that parts may move by themselves.
+Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context) {
+  constexpr int kSamples = 150;
+  const SymmetryAnnotation none = empty_annotation(input.mesh, input.annotation.tolerance);
+  FitOptions free = options;
+  free.subspace = SubspaceOptions{};
+  free.subspace.samples = kSamples;
+  const FitInput without{input.mesh, none, input.scan, input.pose, input.landmarks, input.handles};
+  const Subspace subspace = build_subspace(input.mesh, none, free.subspace, context);
+  return deformation_of(without, start, subspace, free, context).fitted;
+}
+
+// Fills in what the deformation says.
+void take(const FitInput& input, Deformation&& found, const PlacedScan& start, const Subspace& subspace,
+          const FitOptions& options, const RunContext& context, FitResult& result) {
+  result.pose = found.state.pose;
+  result.q = found.state.q;
+  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  result.degrees_of_freedom = subspace.degrees_of_freedom();
+  result.iterations = std::move(found.iterations);
+  result.stopped_because = std::move(found.stopped_because);
+  result.used_fraction = start.used_fraction;
+  result.rest_annotation = input.annotation;
+  result.annotation =
+      transformed(carried_annotation(input.annotation, subspace, result.q, found.deformed), result.pose);
+  result.fitted = std::move(found.fitted);
+  result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
+  assess_fit(input, start.scan, options, context, result);
+}
+
+double worst_field_residual(const FitInput& input, const Subspace& subspace, const Eigen::VectorXd& q,
+                            const RunContext& context) {
+  double worst = 0;
+  for (std::size_t i = 0; i < input.annotation.regions.size(); ++i) {
+    const Region& region = input.annotation.regions[i];
+    worst = std::max(worst, field_residual(subspace, input.mesh, region, static_cast<int>(i), q, context).max);
+  }
+  return worst;
+}
+
+// Compares the fit with one without groups, and where that is asked, fits anew without those that the scan has not.
+void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
+                  FitResult& result) {
+  constexpr int kMostRelaxations = 5;
+  const Mesh free = free_fit(input, start, options, context);
+  for (int round = 0;; ++round) {
+    std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);
+    if (round == 0) result.groups = groups;
+    std::erase_if(groups, [](const GroupAgreement& group) { return !group.disagrees; });
+    if (!options.relax || groups.empty() || round == kMostRelaxations) return;
+    for (const GroupAgreement& group : groups) {
+      result.relaxed.push_back(group.region);
+      context.message("left out region " + std::to_string(group.region) + ": the scan has not its symmetry");
+    }
+    const SymmetryAnnotation rest =
+        closable(input.mesh, without_regions(result.rest_annotation, result.relaxed), context);
+    const FitInput relaxed{input.mesh, rest, input.scan, input.pose, input.landmarks, input.handles};
+    const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
+    take(relaxed, deformation_of(relaxed, start, subspace, options, context), start, subspace, options, context,
+         result);
+    result.field_residual = worst_field_residual(relaxed, subspace, result.q, context);
+  }
+}
+
+}  // namespace
+
 FitResult fit(const FitInput& input, const FitOptions& options, const RunContext& context) {
   options.validate();
   FitResult result;
   Stopwatch watch(result.times);
-
-  ScanPreparationOptions preparation;
-  preparation.most_points = options.scan_points;
-  FitState state{input.pose, {}};
-  PreparedScan scan;
-  if (options.place && input.landmarks.empty() && input.handles.empty()) {
-    PlacedScan placed = place_in_scan(input.mesh, input.scan, input.pose, options.placement, preparation, context);
-    scan = std::move(placed.scan);
-    state.pose = placed.pose;
-    result.placements = std::move(placed.placements);
-    result.used_fraction = placed.used_fraction;
-  } else {
-    scan = prepare_scan(input.scan, preparation, context);
-  }
-  watch.finished(result.placements.empty() ? "scan" : "placement");
-
-  if (!input.landmarks.empty()) {
-    state.pose = align_landmarks(input.mesh, input.landmarks);
-  } else if (options.align && result.placements.empty() && input.handles.empty()) {
-    state.pose = align_rigidly(input.mesh, scan, input.pose, context);
-  }
-  watch.finished("alignment");
-
+  const std::vector<PlacedScan> starts = starts_of(input, options, context, result, watch);
   const Subspace subspace = build_subspace(input.mesh, input.annotation, options.subspace, context);
-  state.q = Eigen::VectorXd::Zero(subspace.degrees_of_freedom());
-  result.samples = static_cast<int>(subspace.sampling.points.rows());
-  result.degrees_of_freedom = subspace.degrees_of_freedom();
   watch.finished("subspace");
-
-  FitLoop loop(input, scan, subspace, options, context);
-  result.stopped_because = loop.run(state, result.iterations);
+  const PlacedScan* start = nullptr;
+  FitResult best;
+  int iterations = 0;
+  for (const PlacedScan& each : starts) {
+    FitResult trial;
+    take(input, deformation_of(input, each, subspace, options, context), each, subspace, options, context, trial);
+    iterations += static_cast<int>(trial.iterations.size());
+    if (start != nullptr && trial.confidence * trial.used_fraction <= best.confidence * best.used_fraction) continue;
+    best = std::move(trial);
+    start = &each;
+  }
+  best.times = std::move(result.times);
+  best.placements = std::move(result.placements);
+  best.iterations_in_all = iterations;
+  result = std::move(best);
   watch.finished("fit");
-
-  Mesh deformed = input.mesh;
-  deformed.vertices += vertex_displacements(subspace, state.q);
-  result.pose = state.pose;
-  result.q = state.q;
-  result.fitted = deformed;
-  for (Eigen::Index v = 0; v < deformed.vertices.rows(); ++v) {
-    result.fitted.vertices.row(v) = state.pose(deformed.vertices.row(v).transpose()).transpose();
-  }
-  result.annotation = transformed(carried_annotation(input.annotation, subspace, state.q, deformed), state.pose);
-  result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
-  assess_fit(input, scan, options, result);
-  for (std::size_t i = 0; i < input.annotation.regions.size(); ++i) {
-    const Residual residual =
-        field_residual(subspace, input.mesh, input.annotation.regions[i], static_cast<int>(i), state.q, context);
-    result.field_residual = std::max(result.field_residual, residual.max);
-  }
+  result.field_residual = worst_field_residual(input, subspace, result.q, context);
   watch.finished("assessment");
+  if ((options.judge_groups || options.relax) && !input.annotation.regions.empty()) {
+    judge_groups(input, *start, options, context, result);
+    watch.finished("groups");
+  }
 
   const double explained = result.inlier_fraction * result.used_fraction;
   result.converged = !result.iterations.empty() && explained >= options.least_inliers &&

@@ -4,13 +4,17 @@
 #include <cmath>
 
 #include "orbifit/model/point_index.h"
+#include "orbifit/model/random.h"
+#include "orbifit/model/sampling.h"
 #include "orbifit/model/surface_index.h"
 
 #include "pulls.h"
+#include "seen_surface.h"
 
 namespace orbifit {
 
-void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, FitResult& result) {
+void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, const RunContext& context,
+                FitResult& result) {
   const double size = diagonal(result.fitted.vertices);
   const SurfaceIndex surface(result.fitted);
   double squares = 0;
@@ -23,6 +27,15 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOption
   }
   result.inlier_fraction = double(inliers) / static_cast<double>(scan.points.rows());
   result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
+
+  const SeenSurface views(input.scan, scan.points);
+  if (views.knows_viewpoints()) {
+    constexpr int kSamples = 1500;
+    Random random(context.seed, "coverage of a fit");
+    const double reach = std::max(2 * options.inlier_distance * size, 2 * scan.spacing);
+    result.covered = views.covered(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
+  }
+  result.confidence = result.inlier_fraction * result.covered;
 
   const PointIndex points(scan.points);
   const double near = std::max(2 * scan.spacing, options.inlier_distance * size);

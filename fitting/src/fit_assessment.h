@@ -6,7 +6,9 @@
 namespace orbifit {
 
 /// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
-/// `inlier_fraction`, `rms`, `seen`, `hidden_fraction` and `landmark_rms` from `fitted` and `pose`.
-void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, FitResult& result);
+/// `inlier_fraction`, `rms`, `covered`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms` from `fitted` and
+/// `pose`.
+void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, const RunContext& context,
+                FitResult& result);
 
 }  // namespace orbifit

@@ -1,6 +1,5 @@
 #include "placed_scan.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "orbifit/fitting/alignment.h"
@@ -40,34 +39,23 @@ double share_near(const PointCloud& cloud, const PreparedScan& kept, const RunCo
 
 }  // namespace
 
-PlacedScan place_in_scan(const Mesh& mesh, const PointCloud& cloud, const Similarity& given,
-                         const PlacementOptions& options, const ScanPreparationOptions& preparation,
-                         const RunContext& context) {
+std::optional<PlacedScan> placed_scan(const Mesh& mesh, const PointCloud& cloud, const Similarity& pose,
+                                      const Similarity& given, const PlacementOptions& options,
+                                      const ScanPreparationOptions& preparation, const RunContext& context) {
   constexpr double kNear = 0.12;  // of the diagonal
   constexpr int kMore = 2;        // points, since planes among them go
   constexpr Eigen::Index kFewestNear = 10;
+  const SurfaceIndex surface(mesh);
+  const double size = diagonal(mesh.vertices);
+  const PointCloud near = points_near(surface, size, cloud, pose, kNear, context);
+  if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) return std::nullopt;
+  ScanPreparationOptions more = preparation;
+  more.most_points *= kMore;
   PlacedScan result;
-  result.pose = given;
-  std::vector<Placement> placements = find_placements(mesh, cloud, options, context, given);
-  if (!placements.empty()) {
-    const Similarity& pose = placements.front().pose;
-    const SurfaceIndex surface(mesh);
-    const double size = diagonal(mesh.vertices);
-    const PointCloud near = points_near(surface, size, cloud, pose, kNear, context);
-    if (near.points.rows() >= kFewestNear && diagonal(near.points) > 0) {
-      ScanPreparationOptions more = preparation;
-      more.most_points *= kMore;
-      result.scan = without_planes(surface, size, prepare_scan(near, more, context), pose, options.reach, context);
-    }
-  }
-  if (result.scan.points.rows() < kFewestNear) {  // all of it was of something else
-    result.scan = prepare_scan(cloud, preparation, context);
-    return result;
-  }
-  result.placements = std::move(placements);
-  result.pose = result.placements.front().pose;
+  result.scan = without_planes(surface, size, prepare_scan(near, more, context), pose, options.reach, context);
+  if (result.scan.points.rows() < kFewestNear) return std::nullopt;
   result.used_fraction = share_near(cloud, result.scan, context);
-  if (near_given(mesh, result.pose, given)) result.pose = align_rigidly(mesh, result.scan, given, context);
+  result.pose = near_given(mesh, pose, given) ? align_rigidly(mesh, result.scan, given, context) : pose;
   return result;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <optional>
 
 #include "orbifit/fitting/placement.h"
 #include "orbifit/fitting/scan_preparation.h"
@@ -10,20 +10,18 @@
 
 namespace orbifit {
 
-/// A scan in which a template was found, without what is not the template's.
+/// A placement of a template, and what of the scan may be the template's there.
 struct PlacedScan {
   PreparedScan scan;
-  Similarity pose;                    ///< template -> scan
-  std::vector<Placement> placements;  ///< best first; empty where it was not found: then all of the scan, as given
-  double used_fraction = 1;           ///< share of the scan's points near those that are left
+  Similarity pose;           ///< template -> scan
+  double used_fraction = 1;  ///< share of the scan's points near those that are left
 };
 
-/// Finds the template in a scan (find_placements), and leaves of the scan what may be its: what is near, without planes
-/// that the template does not explain.
-/// \param given  rough pose: where the best placement is much the same, its scale is kept
-/// \throw InputError as prepare_scan() does
-PlacedScan place_in_scan(const Mesh& mesh, const PointCloud& cloud, const Similarity& given,
-                         const PlacementOptions& options, const ScanPreparationOptions& preparation,
-                         const RunContext& context);
+/// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain.
+/// \param given  rough pose: where the placement is much the same, its scale is kept
+/// \return none where all of the scan is of something else \throw InputError as prepare_scan() does
+std::optional<PlacedScan> placed_scan(const Mesh& mesh, const PointCloud& cloud, const Similarity& pose,
+                                      const Similarity& given, const PlacementOptions& options,
+                                      const ScanPreparationOptions& preparation, const RunContext& context);
 
 }  // namespace orbifit

@@ -114,5 +114,46 @@ TEST(Correspondences, AcrossAnEdgePointAwayFromIt) {
   EXPECT_GT(std::abs(pairs[0].normal.y()), 0.999);
 }
 
+TEST(RobustWeight, IsTheSlopeOfTheErrorOverTheSquaredDistance) {
+  for (const double distance : {0.0, 0.01, 0.3, 2.0, 50.0}) {
+    constexpr double kScale = 0.4;
+    constexpr double kStep = 1e-6;
+    const double squared = distance * distance + kStep;  // away from 0, where there is no square root
+    const double slope =
+        (robust_error(std::sqrt(squared + kStep), kScale) - robust_error(std::sqrt(squared - kStep), kScale)) /
+        (2 * kStep);
+    EXPECT_NEAR(robust_weight(std::sqrt(squared), kScale), slope, 1e-5);
+    EXPECT_LE(robust_error(distance, kScale), kScale * kScale);
+  }
+}
+
+TEST(Correspondences, DoNotDependOnTheFacesTakenForLikely) {
+  Random random(4);
+  const Mesh mesh = generate("chair").mesh;
+  const double size = diagonal(mesh.vertices);
+  Points points(500, 3);
+  Points normals(500, 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const auto vertex = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(mesh.vertices.rows())));
+    points.row(i) = mesh.vertices.row(vertex) + 0.02 * size * random.direction().transpose();
+    normals.row(i) = random.direction().transpose();
+  }
+  CorrespondenceOptions options;
+  options.max_distance = 0.1 * size;
+  options.robust_scale = 0.1 * size;
+  const MatchSurface surface(mesh);
+  const auto expected = find_correspondences(surface, points, normals, options, RunContext{});
+  std::vector<int> likely(500);
+  for (int& face : likely) face = static_cast<int>(random.below(static_cast<std::uint64_t>(mesh.faces.rows())));
+  for (int round = 0; round < 2; ++round) {  // with any faces, then with those found
+    const auto pairs = find_correspondences(surface, points, normals, options, RunContext{}, &likely);
+    ASSERT_EQ(pairs.size(), expected.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      EXPECT_EQ(pairs[i].face, expected[i].face);
+      EXPECT_EQ(pairs[i].distance, expected[i].distance);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace orbifit

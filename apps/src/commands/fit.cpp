@@ -1,5 +1,6 @@
 #include "orbifit/fitting/fit.h"
 
+#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -27,6 +28,7 @@ struct FitArguments {
   std::string mesh, scan, annotation, output, report, html, landmarks, handles, annotation_output;
   std::vector<double> up{0, 0, 1};
   bool aligned = false;
+  std::vector<int> without;
   FitOptions options;
   SubspaceArguments subspace;
 };
@@ -37,6 +39,16 @@ void check_outputs(const FitArguments& arguments) {
   if (!arguments.report.empty()) check_output(arguments.report, {".json"}, inputs);
   if (!arguments.html.empty()) check_output(arguments.html, {".html", ".htm"}, inputs);
   if (!arguments.annotation_output.empty()) check_output(arguments.annotation_output, {".json"}, inputs);
+}
+
+SymmetryAnnotation without(const std::vector<int>& ids, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                           const RunContext& context) {
+  for (const int id : ids) {
+    if (std::ranges::find(annotation.regions, id, &Region::id) == annotation.regions.end()) {
+      throw UsageError("--without: the annotation has no region " + std::to_string(id));
+    }
+  }
+  return closable(mesh, without_regions(annotation, ids), context);
 }
 
 std::string to_text(const FitArguments& arguments, const FitResult& result, const SymmetryReport& symmetry) {
@@ -52,6 +64,13 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
           count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
+  for (const GroupAgreement& group : result.groups) {
+    if (!group.disagrees) continue;
+    const bool left_out = std::ranges::find(result.relaxed, group.region) != result.relaxed.end();
+    text += "region " + std::to_string(group.region) + ": the scan is off its symmetry by " +
+            percent(group.disagreement) + " of the diagonal (rms " + percent(group.held) + ", without the group " +
+            percent(group.free) + (left_out ? "); left out\n" : ")\n");
+  }
   return text;
 }
 
@@ -74,6 +93,10 @@ CommandBody fit(CLI::App& app) {
   app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
   app.add_flag("--aligned", arguments->aligned,
                "The scan is in the template's frame: neither find nor refine its pose");
+  app.add_option("--without", arguments->without, "Do not keep the groups of these regions (their ids)")
+      ->delimiter(',')
+      ->type_name("ID,...");
+  app.add_flag("--auto-relax", options.relax, "Do not keep the groups that the scan has not, as a fit without shows");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
@@ -96,14 +119,16 @@ CommandBody fit(CLI::App& app) {
     SymmetryAnnotation annotation =
         arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
                                       : read_annotation(arguments->annotation, mesh);
+    if (!arguments->without.empty()) annotation = without(arguments->without, mesh, annotation, context.run);
     if (!arguments->annotation.empty()) build_closable(mesh, annotation, chosen.subspace, context.run);
+    chosen.judge_groups = !arguments->report.empty() || !arguments->html.empty() || context.json;
     FitInput input{mesh, annotation, scan, Similarity{}, {}, {}};
     if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
     if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;
 
     const FitResult result = orbifit::fit(input, chosen, context.run);
     const SymmetryReport symmetry =
-        symmetry_residual(mesh, annotation, &result.fitted, CarriedMotions::moving, context.run);
+        symmetry_residual(mesh, result.rest_annotation, &result.fitted, CarriedMotions::moving, context.run);
     context.run.check();
     // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
     if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");

@@ -84,6 +84,13 @@ void set_parents(std::vector<Region>& regions) {
   }
 }
 
+SymmetryAnnotation without_regions(SymmetryAnnotation annotation, const std::vector<int>& ids) {
+  std::erase_if(annotation.regions,
+                [&](const Region& region) { return std::ranges::find(ids, region.id) != ids.end(); });
+  set_parents(annotation.regions);
+  return annotation;
+}
+
 SymmetryAnnotation transformed(const SymmetryAnnotation& annotation, const Similarity& similarity) {
   SymmetryAnnotation result = annotation;
   result.mesh_diagonal *= similarity.scale;  // the diagonal of a turned box may differ; callers that know it set it

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "orbifit/fitting/group_agreement.h"
 #include "orbifit/fitting/landmarks.h"
 #include "orbifit/fitting/placement.h"
 #include "orbifit/model/annotation.h"
@@ -29,6 +30,11 @@ struct FitOptions {
   double least_inliers = 0.5;     ///< explained share of the whole scan below which a fit failed, in [0, 1]
   bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
   PlacementOptions placement;
+  double tie = 0.8;           ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
+  int most_tied = 3;          ///< placements fitted, >= 1
+  bool judge_groups = false;  ///< compare with a fit without groups: see group_agreement(); takes as long again
+  /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
+  bool relax = false;
   bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
@@ -49,22 +55,28 @@ struct StageTime {
 };
 
 struct FitResult {
-  Mesh fitted;                        ///< template's connectivity, scan's frame
-  SymmetryAnnotation annotation;      ///< the template's, carried along into the scan's frame
-  Similarity pose;                    ///< template -> scan
-  std::vector<Placement> placements;  ///< where the template may be, best first; empty where that was not asked
-  Eigen::VectorXd q;                  ///< coordinates of the deformation in the subspace
+  Mesh fitted;                         ///< template's connectivity, scan's frame
+  SymmetryAnnotation rest_annotation;  ///< the template's, as it was kept
+  SymmetryAnnotation annotation;       ///< the same, carried along into the scan's frame
+  Similarity pose;                     ///< template -> scan
+  std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
+  Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
   int samples = 0, degrees_of_freedom = 0;
   std::vector<FitIteration> iterations;
+  int iterations_in_all = 0;  ///< with those from other placements, which were not kept
   bool converged = false;
   std::string stopped_because;
   double used_fraction = 1;    ///< share of the scan taken for the template's; the rest was left out as other things
   double inlier_fraction = 0;  ///< of the scan points used, within inlier_distance of the fitted surface
   double rms = 0;              ///< of those, fraction of the fitted mesh's diagonal
+  double covered = 1;          ///< of the fitted surface that the viewpoints should have seen, the share that they saw
+  double confidence = 0;       ///< inlier_fraction * covered, in [0, 1]
   double landmark_rms = 0;     ///< of landmarks and handles, fraction of the fitted mesh's diagonal
   std::vector<char> seen;      ///< #V: a scan point lies near the fitted vertex
   double hidden_fraction = 0;  ///< share of the fitted area around vertices not seen
   double field_residual = 0;   ///< worst of the regions: see orbifit::field_residual
+  std::vector<GroupAgreement> groups;  ///< what the scan says of the regions' groups, where that was asked
+  std::vector<int> relaxed;            ///< ids of regions that were left out since the scan has not their symmetry
   std::vector<StageTime> times;
 };
 

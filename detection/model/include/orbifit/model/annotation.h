@@ -73,6 +73,9 @@ Region make_region(const PointGroup& group, const Eigen::Vector3d& centre, const
 /// Sets each region's parent: the smallest (by face count) region that strictly contains it.
 void set_parents(std::vector<Region>& regions);
 
+/// The annotation without the regions of these ids; ids that it has not do not matter.
+SymmetryAnnotation without_regions(SymmetryAnnotation annotation, const std::vector<int>& ids);
+
 /// The annotation as it stands after the whole mesh was moved by `similarity`.
 SymmetryAnnotation transformed(const SymmetryAnnotation& annotation, const Similarity& similarity);
 

@@ -1,0 +1,118 @@
+#include "fit_system.h"
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/fitting/alignment.h"
+#include "orbifit/model/random.h"
+#include "orbifit/model/sampling.h"
+
+namespace orbifit {
+namespace {
+
+// A template with random points beside its surface, which pull it there.
+class System : public testing::TestWithParam<const char*> {
+ protected:
+  System()
+      : model_(generate(GetParam())),
+        subspace_(build_subspace(model_.mesh, model_.truth, {}, context_)),
+        system_(subspace_, model_.mesh, 0.3),
+        size_(diagonal(model_.mesh.vertices)),
+        pivot_(bounding_box_centre(model_.mesh.vertices)) {
+    Random random(7);
+    const SurfaceSamples samples = sample_surface(model_.mesh, 700, random);
+    points_ = samples.points;
+    for (Eigen::Index i = 0; i < points_.rows(); ++i) {
+      Correspondence pair;
+      pair.scan_point = static_cast<int>(i);
+      pair.face = samples.faces[static_cast<std::size_t>(i)];
+      pair.barycentric = Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform());
+      pair.barycentric /= pair.barycentric.sum();
+      pair.normal = random.direction();
+      pair.weight = random.uniform();
+      pairs_.push_back(pair);
+      points_.row(i) += 0.05 * size_ * random.direction().transpose();
+    }
+    pulls_.push_back({3, model_.mesh.vertices.row(3).transpose() + 0.1 * size_ * random.direction(), 4});
+    hold_.stiffness = 0.3;
+    hold_.damping = 0.2;
+    hold_.around = Eigen::VectorXd::Zero(subspace_.degrees_of_freedom());
+    for (double& value : hold_.around) value = 0.01 * size_ * random.uniform(-1, 1);
+    system_.rotate(hold_.around);
+  }
+
+  // The sum that solve() says it minimises; of the pose its unknowns, not yet a motion.
+  double energy(const Eigen::VectorXd& x) const {
+    const Eigen::Index dof = subspace_.degrees_of_freedom();
+    const Eigen::VectorXd q = x.head(dof);
+    const Eigen::Vector3d omega = x.segment<3>(dof) / size_;
+    const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, q);
+    const auto scan = [&](const Eigen::Vector3d& s) -> Eigen::Vector3d {
+      return s + omega.cross(s - pivot_) + x.tail<3>();
+    };
+    double sum = hold_.stiffness * system_.regularity(q) + hold_.damping * (q - hold_.around).squaredNorm() +
+                 hold_.damping * x.tail<6>().squaredNorm();
+    for (const Correspondence& pair : pairs_) {
+      const Eigen::Vector3d foot = moved(model_.mesh.faces.row(pair.face), Eigen::all).transpose() * pair.barycentric;
+      const double offset = pair.normal.dot(foot - scan(points_.row(pair.scan_point)));
+      sum += kShare * pair.weight * offset * offset;
+    }
+    for (const Pull& pull : pulls_) {
+      sum += pull.weight * (moved.row(pull.vertex).transpose() - scan(pull.target)).squaredNorm();
+    }
+    return sum;
+  }
+
+  static constexpr double kShare = 0.4;
+  RunContext context_;
+  GeneratedModel model_;
+  Subspace subspace_;
+  FitSystem system_;
+  double size_;
+  Eigen::Vector3d pivot_;
+  Points points_;
+  std::vector<Correspondence> pairs_;
+  std::vector<Pull> pulls_;
+  FitSystem::Hold hold_;
+};
+
+TEST_P(System, SolutionIsWhereTheEnergyIsLeast) {
+  const FitSystem::Solution solution = system_.solve(pairs_, kShare, points_, pulls_, hold_, context_);
+  const Eigen::Index dof = subspace_.degrees_of_freedom();
+  Eigen::VectorXd x(dof + 6);
+  // Back from the motion to the unknowns: a rotation vector about the pivot, and a translation.
+  const AxisAngle turn = axis_angle(solution.scan_step.linear);
+  x << solution.q, size_ * turn.angle * turn.axis, solution.scan_step(pivot_) - pivot_;
+  const double least = energy(x);
+  Random random(1);
+  for (int k = 0; k < 12; ++k) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(dof + 6);
+    if (k < 6) {
+      for (double& value : step) value = random.uniform(-1, 1);
+    } else {
+      step[dof + k - 6] = 1;
+    }
+    step *= 1e-3 * size_ / step.norm();
+    const double forwards = energy(x + step) - least;
+    const double backwards = energy(x - step) - least;
+    EXPECT_GT(forwards, 0);
+    EXPECT_GT(backwards, 0);
+    // The slope is what the two differ by. A samples' share of 1e-6 prefers the pose to a deformation.
+    EXPECT_LT(std::abs(forwards - backwards), 2e-2 * (forwards + backwards));
+  }
+}
+
+TEST_P(System, SolutionIsTheSameWithTwoThreads) {
+  FitSystem other(subspace_, model_.mesh, 0.3);
+  other.rotate(hold_.around);
+  RunContext two;
+  two.threads = 2;
+  const FitSystem::Solution one = system_.solve(pairs_, kShare, points_, pulls_, hold_, context_);
+  EXPECT_EQ(other.solve(pairs_, kShare, points_, pulls_, hold_, two).q, one.q);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, System, testing::Values("bar", "table"),
+                         [](const auto& each) { return std::string(each.param); });
+
+}  // namespace
+}  // namespace orbifit

@@ -1,0 +1,76 @@
+#include "seen_surface.h"
+
+#include <gtest/gtest.h>
+
+namespace orbifit {
+namespace {
+
+// A wall of points at z = 0 that one viewpoint has seen, and a square held in front of it, at it, or behind it.
+class Wall : public testing::Test {
+ protected:
+  Wall() {
+    constexpr int kSide = 60;
+    scan_.points.resize(kSide * kSide, 3);
+    for (int i = 0; i < kSide; ++i) {
+      for (int j = 0; j < kSide; ++j) scan_.points.row(i * kSide + j) << i / 29.5 - 1, j / 29.5 - 1, 0;
+    }
+    scan_.viewpoints.resize(1, 3);
+    scan_.viewpoints << 0, 0, 4;
+    square_.vertices.resize(4, 3);
+    square_.vertices << -0.3, -0.3, 0, 0.3, -0.3, 0, 0.3, 0.3, 0, -0.3, 0.3, 0;
+    square_.faces.resize(2, 3);
+    square_.faces << 0, 1, 2, 0, 2, 3;
+    Random random(2);
+    samples_ = sample_surface(square_, 200, random);
+  }
+
+  static Similarity at(double height) { return {1, Eigen::Matrix3d::Identity(), {0, 0, height}}; }
+
+  PointCloud scan_;
+  Mesh square_;
+  SurfaceSamples samples_;
+  RunContext context_;
+};
+
+TEST_F(Wall, WhatStandsBeforeItShouldHaveBeenSeen) {
+  const SeenSurface seen(scan_, scan_.points);
+  const SurfaceIndex surface(square_);
+  ASSERT_TRUE(seen.knows_viewpoints());
+  EXPECT_EQ(seen.missed(samples_, surface, at(1), 0.1, context_).size(), 200U);
+  EXPECT_EQ(seen.covered(samples_, surface, at(1), 0.1), 0);
+}
+
+TEST_F(Wall, WhatLiesAtItWasSeen) {
+  const SeenSurface seen(scan_, scan_.points);
+  const SurfaceIndex surface(square_);
+  EXPECT_TRUE(seen.missed(samples_, surface, at(0), 0.1, context_).empty());
+  EXPECT_EQ(seen.covered(samples_, surface, at(0), 0.1), 1);
+}
+
+TEST_F(Wall, WhatLiesBehindItIsHidden) {
+  const SeenSurface seen(scan_, scan_.points);
+  EXPECT_TRUE(seen.missed(samples_, SurfaceIndex(square_), at(-1), 0.1, context_).empty());
+}
+
+TEST_F(Wall, WithoutViewpointsNothingIsMissed) {
+  scan_.viewpoints.resize(0, 3);
+  const SeenSurface seen(scan_, scan_.points);
+  EXPECT_FALSE(seen.knows_viewpoints());
+  EXPECT_TRUE(seen.missed(samples_, SurfaceIndex(square_), at(1), 0.1, context_).empty());
+}
+
+TEST_F(Wall, TheSquareHidesWhatStandsBehindIt) {
+  Mesh both = square_;  // a smaller square behind the first, in front of the wall
+  both.vertices.conservativeResize(8, 3);
+  both.vertices.bottomRows(4) = 0.5 * square_.vertices;
+  both.vertices.bottomRows(4).col(2).array() -= 0.5;
+  both.faces.conservativeResize(4, 3);
+  both.faces.bottomRows(2) = square_.faces.array() + 4;
+  Random random(2);
+  const SurfaceSamples behind = sample_surface(both, 100, random, {2, 3});
+  const SeenSurface seen(scan_, scan_.points);
+  EXPECT_TRUE(seen.missed(behind, SurfaceIndex(both), at(1), 0.1, context_).empty());
+}
+
+}  // namespace
+}  // namespace orbifit
