@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "orbifit/fitting/alignment.h"
+#include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/closable.h"
@@ -21,6 +24,9 @@ namespace {
 // Share of explained points of a scan from which what is not the template's has been taken: a scan of something else,
 // onto which the template was put as well as can be, leaves more.
 constexpr double kLeastOfPlaced = 0.8;
+constexpr double kWell = 0.995;        // confidence from which another scale is not tried,
+constexpr double kOtherScale = 0.02;   // which must differ so much, by its logarithm,
+constexpr double kWorthwhile = 0.005;  // and explain so much more
 
 class Stopwatch {
  public:
@@ -93,6 +99,16 @@ std::vector<PlacedScan> starts_of(const FitInput& input, const FitOptions& optio
     watch.finished("alignment");
   }
   return starts;
+}
+
+// The same with the scale that brings the template as it is nearest to the scan. Lengths of which the shape has more,
+// such as a taller back, take a fit at the template's scale to the wrong slat; from there it may find the right one.
+PlacedScan rescaled(const FitInput& input, const PlacedScan& start) {
+  PlacedScan result = start;
+  std::vector<int> all(static_cast<std::size_t>(start.scan.points.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  result.pose = align_with_scale(input.mesh, MatchSurface(input.mesh), start.scan, all, start.pose, {});
+  return result;
 }
 
 // A deformation of the template within a subspace, and how it was found.
@@ -192,16 +208,22 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   const std::vector<PlacedScan> starts = starts_of(input, options, context, result, watch);
   const Subspace subspace = build_subspace(input.mesh, input.annotation, options.subspace, context);
   watch.finished("subspace");
-  const PlacedScan* start = nullptr;
+  PlacedScan start;
   FitResult best;
   int iterations = 0;
-  for (const PlacedScan& each : starts) {
+  const auto attempt = [&](const PlacedScan& from, double least_gain) {
     FitResult trial;
-    take(input, deformation_of(input, each, subspace, options, context), each, subspace, options, context, trial);
+    take(input, deformation_of(input, from, subspace, options, context), from, subspace, options, context, trial);
     iterations += static_cast<int>(trial.iterations.size());
-    if (start != nullptr && trial.confidence * trial.used_fraction <= best.confidence * best.used_fraction) continue;
+    const double better = trial.confidence * trial.used_fraction - best.confidence * best.used_fraction;
+    if (iterations > static_cast<int>(trial.iterations.size()) && better <= least_gain) return;
     best = std::move(trial);
-    start = &each;
+    start = from;
+  };
+  for (const PlacedScan& each : starts) attempt(each, 0);
+  if (best.confidence < kWell && input.landmarks.empty() && input.handles.empty()) {
+    const PlacedScan other = rescaled(input, start);
+    if (std::abs(std::log(other.pose.scale / start.pose.scale)) > kOtherScale) attempt(other, kWorthwhile);
   }
   best.times = std::move(result.times);
   best.placements = std::move(result.placements);
@@ -211,7 +233,7 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   result.field_residual = worst_field_residual(input, subspace, result.q, context);
   watch.finished("assessment");
   if ((options.judge_groups || options.relax) && !input.annotation.regions.empty()) {
-    judge_groups(input, *start, options, context, result);
+    judge_groups(input, start, options, context, result);
     watch.finished("groups");
   }
 

@@ -104,6 +104,8 @@ INSTANTIATE_TEST_SUITE_P(
     Usage, RefusedCall,
     testing::Values(
         Refusal{"NoCommand", "", 2, "a command is needed"},
+        Refusal{"UnknownRegion", "fit cube.ply cube.ply --annotation cube.json --without 99 -o out.ply", 2,
+                "the annotation has no region 99"},
         Refusal{"UnknownCommand", "polish cube.ply", 2, "unknown command 'polish'"},
         Refusal{"UnknownOption", "info cube.ply --sharp", 2, "unexpected argument --sharp"},
         Refusal{"MissingArgument", "detect", 2, "MESH is required"},
