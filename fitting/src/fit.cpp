@@ -6,11 +6,14 @@
 #include <numeric>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/closable.h"
+#include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/displacement_field.h"
 
 #include "fit_assessment.h"
@@ -24,8 +27,10 @@ namespace {
 // Share of explained points of a scan from which what is not the template's has been taken: a scan of something else,
 // onto which the template was put as well as can be, leaves more.
 constexpr double kLeastOfPlaced = 0.8;
+constexpr double kLeastSeen = 0.04;    // of the fitted surface: an edge lies along any line
 constexpr double kWell = 0.995;        // confidence from which another scale is not tried,
 constexpr double kOtherScale = 0.02;   // which must differ so much, by its logarithm,
+constexpr double kSameKind = 0.4;      // and not more than shapes of one kind do,
 constexpr double kWorthwhile = 0.005;  // and explain so much more
 
 class Stopwatch {
@@ -120,18 +125,43 @@ struct Deformation {
   Mesh fitted;    // in the scan's
 };
 
-Deformation deformation_of(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
-                           const FitOptions& options, const RunContext& context) {
+// \param state  where to begin \param first_level  of the stiffness: a state that is deformed already starts softer
+Deformation deformation_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
+                             const Subspace& subspace, const FitOptions& options, const RunContext& context) {
   Deformation result;
-  result.state = {start.pose, Eigen::VectorXd::Zero(subspace.degrees_of_freedom())};
+  result.state = std::move(state);
   FitLoop loop(input, start.scan, subspace, options, context);
-  result.stopped_because = loop.run(result.state, result.iterations);
+  result.stopped_because = loop.run(result.state, first_level, result.iterations);
   result.deformed = input.mesh;
   result.deformed.vertices += vertex_displacements(subspace, result.state.q);
   result.fitted = result.deformed;
   for (Eigen::Index v = 0; v < result.fitted.vertices.rows(); ++v) {
     result.fitted.vertices.row(v) = result.state.pose(result.deformed.vertices.row(v).transpose()).transpose();
   }
+  return result;
+}
+
+Deformation deformation_of(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
+                           const FitOptions& options, const RunContext& context) {
+  const FitState rest{start.pose, Eigen::VectorXd::Zero(subspace.degrees_of_freedom())};
+  return deformation_from(rest, 0, input, start, subspace, options, context);
+}
+
+// The same shape with another scale as deformation: scaling keeps all groups, whose centres go along.
+FitState at_scale(double scale, const FitState& state, const Subspace& subspace, const Mesh& mesh) {
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  FitState result;
+  result.pose = {scale, state.pose.linear, state.pose(centre) - scale * (state.pose.linear * centre)};
+  const Points& rest = subspace.sampling.points;
+  const Points posed = rest + sample_displacements(subspace, state.q);
+  Points target(rest.rows(), 3);
+  const Similarity back = inverse(result.pose);
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    target.row(i) = (back(state.pose(posed.row(i).transpose())) - rest.row(i).transpose()).transpose();
+  }
+  const Eigen::SparseMatrix<double>& columns = subspace.basis.columns;
+  const Eigen::MatrixXd gram = columns.transpose() * columns;
+  result.q = gram.ldlt().solve(columns.transpose() * stacked(target));
   return result;
 }
 
@@ -211,19 +241,32 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   PlacedScan start;
   FitResult best;
   int iterations = 0;
-  const auto attempt = [&](const PlacedScan& from, double least_gain) {
+  const auto attempt = [&](const PlacedScan& from, Deformation&& found, double least_gain) {
     FitResult trial;
-    take(input, deformation_of(input, from, subspace, options, context), from, subspace, options, context, trial);
+    take(input, std::move(found), from, subspace, options, context, trial);
     iterations += static_cast<int>(trial.iterations.size());
     const double better = trial.confidence * trial.used_fraction - best.confidence * best.used_fraction;
     if (iterations > static_cast<int>(trial.iterations.size()) && better <= least_gain) return;
     best = std::move(trial);
     start = from;
   };
-  for (const PlacedScan& each : starts) attempt(each, 0);
+  for (const PlacedScan& each : starts) {
+    attempt(each, deformation_of(input, each, subspace, options, context), 0);
+  }
   if (best.confidence < kWell && input.landmarks.empty() && input.handles.empty()) {
     const PlacedScan other = rescaled(input, start);
-    if (std::abs(std::log(other.pose.scale / start.pose.scale)) > kOtherScale) attempt(other, kWorthwhile);
+    const double growth = std::abs(std::log(other.pose.scale / start.pose.scale));
+    if (growth > kOtherScale && growth < kSameKind) {
+      Deformation found = deformation_of(input, other, subspace, options, context);
+      // Back at the template's scale, so that what is not seen keeps the template's thickness.
+      const FitState same_shape = at_scale(start.pose.scale, found.state, subspace, input.mesh);
+      const double before = best.confidence * best.used_fraction;
+      attempt(other, std::move(found), kWorthwhile);
+      if (best.confidence * best.used_fraction > before) {
+        const int level = 3 * options.levels / 4;
+        attempt(other, deformation_from(same_shape, level, input, other, subspace, options, context), -kWorthwhile);
+      }
+    }
   }
   best.times = std::move(result.times);
   best.placements = std::move(result.placements);
@@ -238,12 +281,14 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   }
 
   const double explained = result.inlier_fraction * result.used_fraction;
-  result.converged = !result.iterations.empty() && explained >= options.least_inliers &&
-                     (result.placements.empty() || result.inlier_fraction >= kLeastOfPlaced);
-  if (!result.iterations.empty() && !result.converged) {
-    result.stopped_because +=
-        "; only " + std::to_string(static_cast<int>(100 * explained)) + " % of the scan is explained";
-  }
+  const double seen = 1 - result.hidden_fraction;
+  const bool explains =
+      explained >= options.least_inliers && (result.placements.empty() || result.inlier_fraction >= kLeastOfPlaced);
+  result.converged = !result.iterations.empty() && explains && seen >= kLeastSeen;
+  if (result.iterations.empty() || result.converged) return result;
+  const auto percent = [](double fraction) { return std::to_string(static_cast<int>(100 * fraction)) + " % of the "; };
+  result.stopped_because +=
+      explains ? "; only " + percent(seen) + "surface is seen" : "; only " + percent(explained) + "scan is explained";
   return result;
 }
 

@@ -187,10 +187,10 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
   return reason;
 }
 
-std::string FitLoop::run(FitState& state, std::vector<FitIteration>& iterations) {
+std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIteration>& iterations) {
   move_to(state, 0);
   Stage now = stage(0);
-  for (int i = 0; i < options_.levels * options_.iterations; ++i) {
+  for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.most_iterations);
     now = stage(i);
     const Matches matches = match(state, now);

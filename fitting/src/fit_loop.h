@@ -30,8 +30,8 @@ class FitLoop {
   FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
           const RunContext& context);
 
-  /// Improves the state in place. \return why it stopped
-  std::string run(FitState& state, std::vector<FitIteration>& iterations);
+  /// Improves the state in place. \param first_level  of FitOptions::levels, where to begin \return why it stopped
+  std::string run(FitState& state, int first_level, std::vector<FitIteration>& iterations);
 
  private:
   struct Stage {
