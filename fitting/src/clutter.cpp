@@ -116,6 +116,7 @@ PreparedScan without_planes(const SurfaceIndex& surface, double template_diagona
   }
   result.normals_oriented = scan.normals_oriented;
   result.spacing = scan.spacing;
+  result.noise = scan.noise;
   return result;
 }
 

@@ -22,6 +22,10 @@ constexpr double kDirectionNoise = 0.003;  // of the diagonal
 constexpr double kFirstRobust = 0.05;
 constexpr double kSoftRobust = 0.02;
 constexpr std::array<double, 3> kSettling{0.02, 0.012, 0.007};
+// The energy weighs data of this noise, a fraction of the diagonal, as the least stiffness is meant for; noisier data
+// count by the inverse of their variance, up to a share of the first stiffness.
+constexpr double kLittleNoise = 0.001;
+constexpr double kStiffest = 0.05;
 constexpr double kSlack = 0.3;           // robust scales: see SurfaceIndex::move
 constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is settled by then
 constexpr double kStill = 1e-4;          // of the diagonal: the fit has settled when no sample moves more,
@@ -71,7 +75,7 @@ FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace
 FitLoop::Stage FitLoop::stage(int iteration) const {
   Stage now;
   now.progress = std::min(1.0, double(iteration / options_.iterations) / std::max(1, options_.levels - 1));
-  now.stiffness = options_.first_stiffness * std::pow(options_.last_stiffness / options_.first_stiffness, now.progress);
+  now.stiffness = options_.first_stiffness * std::pow(last_stiffness_ / options_.first_stiffness, now.progress);
   now.robust = kFirstRobust * std::pow(kSoftRobust / kFirstRobust, now.progress) * size_;
   return now;
 }
@@ -189,6 +193,9 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
 
 std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIteration>& iterations) {
   move_to(state, 0);
+  const double noise = scan_.noise / (state.pose.scale * size_) / kLittleNoise;
+  const double softest = std::max(options_.last_stiffness, kStiffest * options_.first_stiffness);
+  last_stiffness_ = std::clamp(options_.last_stiffness * noise * noise, options_.last_stiffness, softest);
   Stage now = stage(0);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.most_iterations);

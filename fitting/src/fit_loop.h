@@ -63,8 +63,9 @@ class FitLoop {
   const Subspace& subspace_;
   const FitOptions& options_;
   const RunContext& context_;
-  double size_;     // the template's diagonal
-  double samples_;  // of the subspace
+  double size_;                // the template's diagonal
+  double samples_;             // of the subspace
+  double last_stiffness_ = 0;  // as the scan's noise allows
   bool signed_normals_;
   FitSystem system_;
   SilhouettePulls silhouette_;

@@ -9,6 +9,8 @@
 #include <unordered_set>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
+
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
@@ -85,6 +87,28 @@ double median_spacing(const Points& points) {
   return *middle;
 }
 
+// Of planes through the nearest points: on a smooth surface that is scanned finely, what the scanner adds.
+double noise_of(const Points& points, int neighbours, std::uint64_t seed) {
+  constexpr int kMostPoints = 200000;  // of which neighbours are sought
+  constexpr int kPlanes = 400;
+  const Points some = points(some_of(points.rows(), kMostPoints, seed), Eigen::all);
+  const PointIndex index(some);
+  std::vector<double> offsets;
+  for (const int i : some_of(some.rows(), kPlanes, seed)) {
+    std::vector<int> near;
+    for (const auto& neighbour : index.nearest(some.row(i).transpose(), neighbours)) near.push_back(neighbour.index);
+    const Points patch = some(near, Eigen::all);
+    const Points centred = patch.rowwise() - patch.colwise().mean();
+    const Eigen::Matrix3d spread = centred.transpose() * centred;
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    offsets.push_back(std::sqrt(std::max(0.0, least) / std::max(1.0, static_cast<double>(near.size()) - 3)));
+  }
+  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+  std::nth_element(offsets.begin(), middle, offsets.end());
+  return *middle;
+}
+
 }  // namespace
 
 PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context) {
@@ -100,6 +124,7 @@ PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& 
   PreparedScan result;
   result.points = scan.points(kept, Eigen::all);
   result.spacing = median_spacing(result.points);
+  result.noise = noise_of(scan.points, options.neighbours, context.seed);
   if (scan.normals.rows() == scan.points.rows()) {
     result.normals = scan.normals(kept, Eigen::all);
     result.normals_oriented = true;

@@ -67,7 +67,7 @@ TEST_P(FitOfModel, ComesToRest) {
   EXPECT_EQ(result_.stopped_because.substr(0, 7), "settled") << result_.stopped_because;
   // Steps that do not lower the energy are taken back, so that it ends as low as it ever was with what was far then.
   const FitIteration& last = result_.iterations.back();
-  EXPECT_EQ(last.stiffness, FitOptions{}.last_stiffness);
+  EXPECT_GE(last.stiffness, FitOptions{}.last_stiffness);
   EXPECT_LT(last.energy, result_.iterations.front().energy);
   EXPECT_LT(result_.iterations[result_.iterations.size() - 2].change, 0.01);
 }

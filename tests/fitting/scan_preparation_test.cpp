@@ -33,6 +33,15 @@ TEST_P(PreparedSphere, HasTheSpheresNormalsHoweverFarItLies) {
 
 INSTANTIATE_TEST_SUITE_P(Offsets, PreparedSphere, testing::Values(0.0, 1e4));
 
+TEST(ScanPreparation, TellsTheNoiseOfAScan) {
+  for (const double noise : {0.0, 0.002, 0.01}) {
+    Random random(6);
+    PointCloud scan = sphere_scan(20000, {0, 0, 0});
+    for (Eigen::Index i = 0; i < scan.points.rows(); ++i) scan.points.row(i) *= 1 + noise * random.normal();
+    EXPECT_NEAR(prepare_scan(scan, {}, RunContext{}).noise, noise, 0.2 * noise + 1e-3);  // curved by 1e-3 at that size
+  }
+}
+
 TEST(ScanPreparation, TurnsNormalsTowardsTheViewpoint) {
   PointCloud scan = sphere_scan(1000, {0, 0, 0});
   scan.viewpoints.resize(1, 3);

@@ -19,6 +19,7 @@ struct PreparedScan {
   Points viewpoints;              ///< of the points: #P by 3, 1 by 3 for all, or 0 rows when unknown
   bool normals_oriented = false;  ///< they point outwards: given with the scan, or turned towards the viewpoints
   double spacing = 0;             ///< median distance to the nearest other point kept, scan units
+  double noise = 0;  ///< median of the root mean square distances of neighbours from their plane, scan units
 };
 
 /// Keeps at most `most_points` (the first point of each cell of a grid whose width is searched, or random ones), with
