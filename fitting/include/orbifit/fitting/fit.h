@@ -35,7 +35,8 @@ struct FitOptions {
   bool judge_groups = false;  ///< compare with a fit without groups: see group_agreement(); takes as long again
   /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
   bool relax = false;
-  bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
+  bool condition = false;  ///< estimate the condition number of the last linear system
+  bool align = true;       ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
@@ -47,6 +48,7 @@ struct FitIteration {
   double energy = 0;   ///< robust data and regularisation before this iteration's step, in mean squared diagonals
   double damping = 0;  ///< of the step; grows in the end where a step did not lower the energy and was taken back
   double change = 0;   ///< largest movement of a sample by the step, fraction of the diagonal
+  double seconds = 0;  ///< of this iteration: correspondences, solve and the surface's move
 };
 
 struct StageTime {
@@ -62,6 +64,7 @@ struct FitResult {
   std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
   Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
   int samples = 0, degrees_of_freedom = 0;
+  double condition = 0;  ///< of the last linear system, where FitOptions::condition asked for it
   std::vector<FitIteration> iterations;
   int iterations_in_all = 0;  ///< with those from other placements, which were not kept
   bool converged = false;
