@@ -7,6 +7,7 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "orbifit/subspace/carried_regions.h"
 
@@ -212,8 +213,9 @@ class PairResidual {
     // An odd stride near the golden section spreads every beginning of the sequence.
     auto stride = static_cast<std::size_t>(0.618 * static_cast<double>(count));
     while (std::gcd(++stride, count) > 1) continue;
+    const std::size_t seen_before = field_.points_seen();
     for (std::size_t i = 0; i < std::min(most, count); ++i) {
-      if (i >= kFewest && field_.points_seen() > kMostPoints) break;
+      if (i >= kFewest && field_.points_seen() - seen_before > kMostPoints) break;
       const std::size_t k = i * stride % count;
       context.check();
       const Pair& pair = off_vertices_[k];
@@ -229,9 +231,11 @@ class PairResidual {
     off_vertices_.clear();
   }
 
-  Residual residual() const {
-    Residual result = residual_;
+  /// Of what was measured since the last call.
+  Residual take() {
+    Residual result = std::exchange(residual_, {});
     if (count_ > 0) result.rms = std::sqrt(squares_ / count_);
+    squares_ = count_ = 0;
     return result;
   }
 
@@ -270,6 +274,24 @@ std::size_t most_off_vertices(int pairs) {
   return static_cast<std::size_t>(std::max(pairs / 20, std::min(pairs, 200)));
 }
 
+Residual residual_of(PairResidual& residual, const Subspace& subspace, const Mesh& mesh, const Region& region,
+                     int region_number, const SubspaceState& state, const RunContext& context, int pairs) {
+  const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
+  const std::vector<Motion> elements = subspace.regions->test_elements(region_number);
+  const std::size_t components = subspace.regions->elements(region_number).size();
+  const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
+  const Motion carried = carried_motion(subspace, state, region_number);
+  for (std::size_t v = 0; v < vertices.size(); v += step) {
+    context.check();
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      residual.add(vertices[v], elements[e], conjugate(carried, elements[e]), region_number,
+                   static_cast<int>(e % components));
+    }
+  }
+  residual.finish(most_off_vertices(pairs), context);
+  return residual.take();
+}
+
 }  // namespace
 
 Points displacement_field(const Subspace& subspace, const SubspaceState& state, const Points& points,
@@ -285,26 +307,34 @@ Points displacement_field(const Subspace& subspace, const SubspaceState& state, 
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const SubspaceState& state, const RunContext& context, int pairs) {
-  const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
-  const std::vector<Motion> elements = subspace.regions->test_elements(region_number);
-  const std::size_t components = subspace.regions->elements(region_number).size();
-  const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
-  const Motion carried = carried_motion(subspace, state, region_number);
   PairResidual residual(subspace, mesh, state);
-  for (std::size_t v = 0; v < vertices.size(); v += step) {
-    context.check();
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      residual.add(vertices[v], elements[e], conjugate(carried, elements[e]), region_number,
-                   static_cast<int>(e % components));
-    }
-  }
-  residual.finish(most_off_vertices(pairs), context);
-  return residual.residual();
+  return residual_of(residual, subspace, mesh, region, region_number, state, context, pairs);
 }
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const Eigen::VectorXd& q, const RunContext& context) {
   return field_residual(subspace, mesh, region, region_number, SubspaceState{q, nullptr}, context);
+}
+
+std::vector<Residual> field_residuals(const Subspace& subspace, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                                      const SubspaceState& state, const RunContext& context, int pairs) {
+  PairResidual residual(subspace, mesh, state);
+  std::vector<Residual> result;
+  for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
+    const auto number = static_cast<int>(i);
+    context.progress("residuals", double(i) / static_cast<double>(annotation.regions.size()));
+    result.push_back(residual_of(residual, subspace, mesh, annotation.regions[i], number, state, context, pairs));
+  }
+  return result;
+}
+
+double worst_field_residual(const Subspace& subspace, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                            const SubspaceState& state, const RunContext& context) {
+  double worst = 0;
+  for (const Residual& each : field_residuals(subspace, mesh, annotation, state, context)) {
+    worst = std::max(worst, each.max);
+  }
+  return worst;
 }
 
 Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Pattern& pattern, int pattern_number,
@@ -326,7 +356,7 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
     }
   }
   residual.finish(most_off_vertices(kPatternPairs), context);
-  return residual.residual();
+  return residual.take();
 }
 
 }  // namespace orbifit

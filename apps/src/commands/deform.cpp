@@ -82,12 +82,7 @@ CommandBody deform(CLI::App& app) {
     Mesh edited = mesh;
     edited.vertices += vertex_displacements(built, deformation.state, context.run);
     const auto lifted = Clock::now();
-    double worst_field = 0;
-    for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
-      const Residual residual =
-          field_residual(built, mesh, annotation.regions[i], static_cast<int>(i), deformation.state, context.run);
-      worst_field = std::max(worst_field, residual.max);
-    }
+    const double worst_field = worst_field_residual(built, mesh, annotation, deformation.state, context.run);
     context.run.check();
     write_mesh(arguments->output, edited);
     if (!arguments->annotation_output.empty()) {

@@ -120,9 +120,10 @@ CommandBody fit(CLI::App& app) {
         arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
                                       : read_annotation(arguments->annotation, mesh);
     if (!arguments->without.empty()) annotation = without(arguments->without, mesh, annotation, context.run);
-    if (!arguments->annotation.empty()) build_closable(mesh, annotation, chosen.subspace, context.run);
+    const auto subspace = std::make_shared<Subspace>(build_closable(mesh, annotation, chosen.subspace, context.run));
     chosen.judge_groups = !arguments->report.empty() || !arguments->html.empty() || context.json;
-    FitInput input{mesh, annotation, scan, Similarity{}, {}, {}};
+    FitInput input{mesh, annotation, scan, Similarity{}};
+    input.subspace = subspace;
     if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
     if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;
 

@@ -39,12 +39,7 @@ LiftResiduals random_field_residuals(const Mesh& mesh, const SymmetryAnnotation&
   Eigen::VectorXd q(subspace.degrees_of_freedom());
   const double size = 0.05 * subspace.diagonal;
   for (double& coordinate : q) coordinate = size * random.normal();
-  LiftResiduals residuals{subspace.lift_kind, {}};
-  for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
-    run.progress("residuals", static_cast<double>(i) / static_cast<double>(annotation.regions.size()));
-    residuals.regions.push_back(field_residual(subspace, mesh, annotation.regions[i], static_cast<int>(i), q, run));
-  }
-  return residuals;
+  return {subspace.lift_kind, field_residuals(subspace, mesh, annotation, {q, nullptr}, run)};
 }
 
 // The same samples and coordinates under the lift that was not chosen.

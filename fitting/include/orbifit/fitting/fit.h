@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,11 @@ struct FitInput {
   Similarity pose;                       ///< rough pose, template -> scan
   std::vector<Landmark> landmarks = {};  ///< take precedence over `pose`
   std::vector<Handle> handles = {};      ///< their motions give places in the template's frame posed by `pose`
+  /// Of the mesh and the annotation, as FitOptions::subspace says, where it is built already; null: built by fit().
+  std::shared_ptr<const Subspace> subspace = nullptr;
+
+  /// The same to be fitted with another annotation, which is kept by reference.
+  FitInput with(const SymmetryAnnotation& other) const { return {mesh, other, scan, pose, landmarks, handles}; }
 };
 
 /// Deforms a template to a scan within its symmetric subspace (method notes, section 5): alternates correspondences and

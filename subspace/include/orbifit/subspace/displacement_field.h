@@ -27,7 +27,15 @@ Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const Eigen::VectorXd& q, const RunContext& context);
 
-/// The same of a pattern's instances: each against instance 0.
+/// The same of all regions of an annotation, in its order; what they share is made once.
+std::vector<Residual> field_residuals(const Subspace& subspace, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                                      const SubspaceState& state, const RunContext& context, int pairs = 20000);
+
+/// The largest `max` of field_residuals(), 0 without regions.
+double worst_field_residual(const Subspace& subspace, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                            const SubspaceState& state, const RunContext& context);
+
+/// As field_residual() of a pattern's instances: each against instance 0.
 Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Pattern& pattern, int pattern_number,
                           const SubspaceState& state, const RunContext& context);
 

@@ -1,0 +1,43 @@
+#include "other_scale.h"
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "orbifit/fitting/alignment.h"
+#include "orbifit/subspace/corotation.h"
+
+namespace orbifit {
+
+std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan& start) {
+  constexpr double kMuchTheSame = 0.02;  // logarithms of the scales' quotient
+  constexpr double kOneKind = 0.4;
+  std::vector<int> all(static_cast<std::size_t>(start.scan.points.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  PlacedScan result = start;
+  result.pose = align_with_scale(input.mesh, MatchSurface(input.mesh), start.scan, all, start.pose, {});
+  const double growth = std::abs(std::log(result.pose.scale / start.pose.scale));
+  if (growth < kMuchTheSame || growth > kOneKind) return std::nullopt;
+  return result;
+}
+
+FitState with_scale(double scale, const FitState& state, const Subspace& subspace, const Mesh& mesh) {
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  FitState result;
+  result.pose = {scale, state.pose.linear, state.pose(centre) - scale * (state.pose.linear * centre)};
+  const Points& rest = subspace.sampling.points;
+  const Points posed = rest + sample_displacements(subspace, state.q);
+  Points target(rest.rows(), 3);
+  const Similarity back = inverse(result.pose);
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    target.row(i) = (back(state.pose(posed.row(i).transpose())) - rest.row(i).transpose()).transpose();
+  }
+  const Eigen::SparseMatrix<double>& columns = subspace.basis.columns;
+  const Eigen::MatrixXd gram = columns.transpose() * columns;
+  result.q = gram.ldlt().solve(columns.transpose() * stacked(target));
+  return result;
+}
+
+}  // namespace orbifit

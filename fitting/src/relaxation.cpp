@@ -1,0 +1,61 @@
+#include "relaxation.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "orbifit/subspace/closable.h"
+#include "orbifit/subspace/displacement_field.h"
+#include "orbifit/subspace/subspace.h"
+
+#include "fit_trial.h"
+
+namespace orbifit {
+
+namespace {
+
+// The template fitted without any group, finely enough that parts may move by themselves.
+Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context) {
+  constexpr int kSamples = 150;
+  const SymmetryAnnotation none = empty_annotation(input.mesh, input.annotation.tolerance);
+  FitOptions free = options;
+  free.subspace = SubspaceOptions{};
+  free.subspace.samples = kSamples;
+  const FitInput without = input.with(none);
+  return fit_from(without, start, build_subspace(input.mesh, none, free.subspace, context), free, context).fitted;
+}
+
+// The fit without these regions: what the whole of a fit has found, such as placements, stays.
+void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input, const PlacedScan& start,
+               const FitOptions& options, const RunContext& context, FitResult& result) {
+  for (const GroupAgreement& group : groups) {
+    result.relaxed.push_back(group.region);
+    context.message("left out region " + std::to_string(group.region) + ": the scan has not its symmetry");
+  }
+  const SymmetryAnnotation rest = closable(input.mesh, without_regions(input.annotation, result.relaxed), context);
+  const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
+  FitResult found = fit_from(input.with(rest), start, subspace, options, context);
+  found.field_residual = worst_field_residual(subspace, input.mesh, rest, {found.q, nullptr}, context);
+  found.iterations_in_all += result.iterations_in_all;
+  found.placements = std::move(result.placements);
+  found.groups = std::move(result.groups);
+  found.relaxed = std::move(result.relaxed);
+  result = std::move(found);
+}
+
+}  // namespace
+
+void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
+                  FitResult& result) {
+  constexpr int kMostRelaxations = 5;
+  const Mesh free = free_fit(input, start, options, context);
+  for (int round = 0;; ++round) {
+    std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);
+    if (round == 0) result.groups = groups;
+    std::erase_if(groups, [](const GroupAgreement& group) { return !group.disagrees; });
+    if (!options.relax || groups.empty() || round == kMostRelaxations) return;
+    leave_out(groups, input, start, options, context, result);
+  }
+}
+
+}  // namespace orbifit

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "orbifit/fitting/fit.h"
+#include "orbifit/model/run_context.h"
+
+#include "placed_scan.h"
+
+namespace orbifit {
+
+/// Compares a fit with one that keeps no group, and fills in `groups`. Where FitOptions::relax asks for it, fits anew
+/// without the regions whose groups disagree, from the same start, until none of those left does: then `result` is
+/// the last such fit, and `relaxed` names what was left out.
+void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
+                  FitResult& result);
+
+}  // namespace orbifit
