@@ -43,12 +43,15 @@ void check_output(const fs::path& output, const std::vector<std::string>& ending
   }
 }
 
-Eigen::Vector3d to_direction(const std::string& option, const std::vector<double>& values) {
+Eigen::Vector3d to_point(const std::string& option, const std::vector<double>& values) {
   const bool finite = std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-  const Eigen::Vector3d vector = values.size() == 3 ? Eigen::Vector3d(values.data()) : Eigen::Vector3d::Zero();
-  if (!finite || !(vector.stableNorm() > 0)) {
-    throw UsageError(option + " must be three numbers, not all 0");
-  }
+  if (values.size() != 3 || !finite) throw UsageError(option + " must be three numbers");
+  return Eigen::Vector3d(values.data());
+}
+
+Eigen::Vector3d to_direction(const std::string& option, const std::vector<double>& values) {
+  const Eigen::Vector3d vector = to_point(option, values);
+  if (!(vector.stableNorm() > 0)) throw UsageError(option + " must be three numbers, not all 0");
   return vector.stableNormalized();
 }
 
@@ -60,6 +63,10 @@ std::string short_number(double number, int digits) {
   std::array<char, 64> buffer;
   const int length = std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, number == 0 ? 0.0 : number);
   return {buffer.data(), static_cast<std::size_t>(std::clamp(length, 0, 63))};
+}
+
+std::string percent(double fraction) {
+  return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3) + " %";
 }
 
 std::string TextTable::text() const {

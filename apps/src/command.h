@@ -53,11 +53,17 @@ void check_output(const std::filesystem::path& output, const std::vector<std::st
 /// "--up 0 0 1" as a unit vector. \throw UsageError unless three numbers that are not all 0
 Eigen::Vector3d to_direction(const std::string& option, const std::vector<double>& values);
 
+/// "--viewpoint 0 0 0" as a point. \throw UsageError unless three finite numbers
+Eigen::Vector3d to_point(const std::string& option, const std::vector<double>& values);
+
 /// "1 face", "2 faces"; the plural is the singular with an s unless given.
 std::string count_of(long long count, const std::string& singular, const std::string& plural = "");
 
 /// Short text of a number for people: `digits` significant ones.
 std::string short_number(double number, int digits = 4);
+
+/// "12.3 %" of a fraction of 0.123; rounding errors are 0 %.
+std::string percent(double fraction);
 
 /// A table for people: columns aligned, text to the left, numbers to the right.
 class TextTable {

@@ -24,30 +24,51 @@ Json matrix_rows(const Eigen::Matrix3d& matrix) {
 }
 
 ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
-  const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
-  ReportTable table{{"figure", "value"}, {}};
-  table.rows.push_back({"converged", result.converged ? "yes" : "no"});
-  table.rows.push_back({"stopped because", result.stopped_because});
-  table.rows.push_back({"iterations", std::to_string(result.iterations.size())});
-  table.rows.push_back({"degrees of freedom", std::to_string(result.degrees_of_freedom)});
-  table.rows.push_back({"of the scan taken for the template's", percent(result.used_fraction)});
-  table.rows.push_back({"of that explained (within 1 %)", percent(result.inlier_fraction)});
-  table.rows.push_back({"their rms distance, of the diagonal", percent(result.rms)});
-  table.rows.push_back({"of what the viewpoints should have seen, seen", percent(result.covered)});
-  table.rows.push_back({"confidence", short_number(result.confidence, 2)});
-  table.rows.push_back({"surface that the scan did not see", percent(result.hidden_fraction)});
-  table.rows.push_back({"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)});
-  return table;
+  return {{"figure", "value"},
+          {{"converged", result.converged ? "yes" : "no"},
+           {"stopped because", result.stopped_because},
+           {"iterations", std::to_string(result.iterations.size())},
+           {"degrees of freedom", std::to_string(result.degrees_of_freedom)},
+           {"of the scan taken for the template's", percent(result.used_fraction)},
+           {"of that explained (within 1 %)", percent(result.inlier_fraction)},
+           {"their rms distance, of the diagonal", percent(result.rms)},
+           {"of what the viewpoints should have seen, seen", percent(result.covered)},
+           {"confidence", short_number(result.confidence, 2)},
+           {"surface that the scan did not see", percent(result.hidden_fraction)},
+           {"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)}}};
 }
-
-}  // namespace
-
-namespace {
 
 Json pose_to_json(const Similarity& pose) {
   return {{"scale", pose.scale},
           {"rotation", matrix_rows(pose.linear)},
           {"translation", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
+}
+
+// Which groups the scan supports; those that it says nothing of are left out.
+ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry) {
+  ReportTable table{{"region", "group", "pairs", "differs by", "rms with it", "without", "the scan"}, {}};
+  for (const GroupAgreement& group : result.groups) {
+    if (group.pairs == 0) continue;
+    const auto region = std::ranges::find(symmetry.regions, group.region, &RegionResidual::id);
+    const bool known = region != symmetry.regions.end();
+    const bool left_out = std::ranges::find(result.relaxed, group.region) != result.relaxed.end();
+    std::string verdict = "agrees";
+    if (group.disagrees) verdict = left_out ? "disagrees: left out" : "disagrees";
+    table.rows.push_back({known && !region->name.empty() ? region->name : std::to_string(group.region),
+                          known ? region->group : "", std::to_string(group.pairs), percent(group.disagreement),
+                          percent(group.held), percent(group.free), verdict});
+  }
+  return table;
+}
+
+ReportTable placement_table(const FitResult& result) {
+  ReportTable table{{"placement", "scale", "explained", "covered", "score"}, {}};
+  for (std::size_t i = 0; i < result.placements.size(); ++i) {
+    const Placement& each = result.placements[i];
+    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), short_number(each.explained, 3),
+                          short_number(each.covered, 3), short_number(each.score(), 3)});
+  }
+  return table;
 }
 
 }  // namespace
@@ -108,38 +129,6 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
           {"seconds", times},
           {"iterations", iterations}};
 }
-
-namespace {
-
-// Which groups the scan supports; those that it says nothing of are left out.
-ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry) {
-  const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
-  ReportTable table{{"region", "group", "pairs", "differs by", "rms with it", "without", "the scan"}, {}};
-  for (const GroupAgreement& group : result.groups) {
-    if (group.pairs == 0) continue;
-    const auto region = std::ranges::find(symmetry.regions, group.region, &RegionResidual::id);
-    const bool known = region != symmetry.regions.end();
-    const bool left_out = std::ranges::find(result.relaxed, group.region) != result.relaxed.end();
-    std::string verdict = "agrees";
-    if (group.disagrees) verdict = left_out ? "disagrees: left out" : "disagrees";
-    table.rows.push_back({known && !region->name.empty() ? region->name : std::to_string(group.region),
-                          known ? region->group : "", std::to_string(group.pairs), percent(group.disagreement),
-                          percent(group.held), percent(group.free), verdict});
-  }
-  return table;
-}
-
-ReportTable placement_table(const FitResult& result) {
-  ReportTable table{{"placement", "scale", "explained", "covered", "score"}, {}};
-  for (std::size_t i = 0; i < result.placements.size(); ++i) {
-    const Placement& each = result.placements[i];
-    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), short_number(each.explained, 3),
-                          short_number(each.covered, 3), short_number(each.score(), 3)});
-  }
-  return table;
-}
-
-}  // namespace
 
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
                         const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run) {

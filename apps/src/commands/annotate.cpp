@@ -84,10 +84,6 @@ double area_fraction(const PreparedMesh& prepared, const std::vector<int>& faces
   return area / prepared.area;
 }
 
-std::string percent(double fraction) {
-  return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3) + " %";
-}
-
 std::string reason_against(const GuidedRegion& found, const Mesh& mesh) {
   const std::string group = found.region.placement.group.symbol();
   if (found.region.faces.empty()) return group + " does not hold: the surface around the seed faces is empty";

@@ -27,6 +27,7 @@ namespace {
 struct FitArguments {
   std::string mesh, scan, annotation, output, report, html, landmarks, handles, annotation_output;
   std::vector<double> up{0, 0, 1};
+  std::vector<double> viewpoint;
   bool aligned = false;
   std::vector<int> without;
   FitOptions options;
@@ -52,7 +53,6 @@ SymmetryAnnotation without(const std::vector<int>& ids, const Mesh& mesh, const 
 }
 
 std::string to_text(const FitArguments& arguments, const FitResult& result, const SymmetryReport& symmetry) {
-  const auto percent = [](double fraction) { return short_number(100 * fraction, 3) + " %"; };
   double seconds = 0;
   for (const StageTime& time : result.times) seconds += time.seconds;
   std::string text = arguments.output + ": " + percent(result.inlier_fraction) + " of the scan " +
@@ -93,6 +93,10 @@ CommandBody fit(CLI::App& app) {
   app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
   app.add_flag("--aligned", arguments->aligned,
                "The scan is in the template's frame: neither find nor refine its pose");
+  app.add_option("--viewpoint", arguments->viewpoint,
+                 "From where all of the scan was seen, where its file does not say: 0 0 0 in a camera's frame")
+      ->expected(3)
+      ->type_name("X Y Z");
   app.add_option("--without", arguments->without, "Do not keep the groups of these regions (their ids)")
       ->delimiter(',')
       ->type_name("ID,...");
@@ -112,7 +116,8 @@ CommandBody fit(CLI::App& app) {
     check_outputs(*arguments);
     const Mesh mesh = read_mesh(arguments->mesh);
     chosen.subspace = subspace_options(arguments->subspace, mesh, context.run);
-    const PointCloud scan = read_scan(arguments->scan);
+    PointCloud scan = read_scan(arguments->scan);
+    if (!arguments->viewpoint.empty()) scan.viewpoints = to_point("--viewpoint", arguments->viewpoint).transpose();
     if (scan.dropped > 0) {
       context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
     }
