@@ -35,7 +35,8 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOption
     const double reach = std::max(2 * options.inlier_distance * size, 2 * scan.spacing);
     result.covered = views.covered(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
   }
-  result.confidence = result.inlier_fraction * result.covered;
+  const double whole = result.used_fraction / (result.used_fraction + result.torn_off);
+  result.confidence = result.inlier_fraction * result.covered * whole;
 
   const PointIndex points(scan.points);
   const double near = std::max(2 * scan.spacing, options.inlier_distance * size);

@@ -7,7 +7,7 @@ namespace orbifit {
 
 /// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
 /// `inlier_fraction`, `rms`, `covered`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms` from `fitted` and
-/// `pose`.
+/// `pose`, `used_fraction` and `torn_off`.
 void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, const RunContext& context,
                 FitResult& result);
 

@@ -23,7 +23,8 @@ constexpr double kFirstRobust = 0.05;
 constexpr double kSoftRobust = 0.02;
 constexpr std::array<double, 3> kSettling{0.02, 0.012, 0.007};
 // The energy weighs data of this noise, a fraction of the diagonal, as the least stiffness is meant for; noisier data
-// count by the inverse of their variance, up to a share of the first stiffness.
+// count by the inverse of their variance, up to a share of the first stiffness. What is left unexplained where the
+// stiffness has fallen so far tells of noise that neighbours share, which is not seen among them.
 constexpr double kLittleNoise = 0.001;
 constexpr double kStiffest = 0.05;
 constexpr double kSlack = 0.3;           // robust scales: see SurfaceIndex::move
@@ -75,9 +76,16 @@ FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace
 FitLoop::Stage FitLoop::stage(int iteration) const {
   Stage now;
   now.progress = std::min(1.0, double(iteration / options_.iterations) / std::max(1, options_.levels - 1));
-  now.stiffness = options_.first_stiffness * std::pow(last_stiffness_ / options_.first_stiffness, now.progress);
+  const double falling = options_.first_stiffness * std::pow(last_stiffness_ / options_.first_stiffness, now.progress);
+  now.stiffness = std::max(falling, least_stiffness_);
   now.robust = kFirstRobust * std::pow(kSoftRobust / kFirstRobust, now.progress) * size_;
   return now;
+}
+
+double FitLoop::stiffness_for(double noise) const {
+  const double most = std::max(options_.last_stiffness, kStiffest * options_.first_stiffness);
+  const double ratio = noise / kLittleNoise;
+  return std::clamp(options_.last_stiffness * ratio * ratio, options_.last_stiffness, most);
 }
 
 FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
@@ -193,9 +201,7 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
 
 std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIteration>& iterations) {
   move_to(state, 0);
-  const double noise = scan_.noise / (state.pose.scale * size_) / kLittleNoise;
-  const double softest = std::max(options_.last_stiffness, kStiffest * options_.first_stiffness);
-  last_stiffness_ = std::clamp(options_.last_stiffness * noise * noise, options_.last_stiffness, softest);
+  last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(0);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.most_iterations);
@@ -206,6 +212,7 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
     }
     const double share = share_of(matches);
     iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
+    least_stiffness_ = stiffness_for(matches.rms);
     step(state, matches, now, share, 0, iterations.back());
   }
   std::string reason = kUsedUp;

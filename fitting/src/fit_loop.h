@@ -47,6 +47,8 @@ class FitLoop {
     double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared template units
   };
   Stage stage(int iteration) const;
+  // The least that offsets of this size from the surface, fractions of the diagonal, warrant.
+  double stiffness_for(double noise) const;
   Matches match(const FitState& state, const Stage& now);
   double share_of(const Matches& matches) const;
   double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
@@ -65,7 +67,8 @@ class FitLoop {
   const RunContext& context_;
   double size_;                // the template's diagonal
   double samples_;             // of the subspace
-  double last_stiffness_ = 0;  // as the scan's noise allows
+  double last_stiffness_ = 0;   // as the scan's noise allows
+  double least_stiffness_ = 0;  // as what is left unexplained allows
   bool signed_normals_;
   FitSystem system_;
   SilhouettePulls silhouette_;

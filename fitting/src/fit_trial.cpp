@@ -17,6 +17,7 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   result.samples = static_cast<int>(subspace.sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   result.used_fraction = start.used_fraction;
+  result.torn_off = start.torn_off;
 
   Mesh deformed = input.mesh;
   deformed.vertices += vertex_displacements(subspace, result.q);

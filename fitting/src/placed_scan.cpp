@@ -1,6 +1,8 @@
 #include "placed_scan.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/clutter.h"
@@ -24,17 +26,53 @@ bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& giv
          (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
 }
 
-// The share of the scan's points that stand where points were kept; planes that were taken out leave none.
-double share_near(const PointCloud& cloud, const PreparedScan& kept, const RunContext& context) {
-  constexpr std::uint64_t kLooks = 4000;
-  const PointIndex index(kept.points);
+struct Shares {
+  double used = 0;  // of the scan's points, that stand where points were kept; planes that were taken out leave none
+  double torn_off = 0;  // far from the template, and yet joined to those by others like them
+};
+
+// \param reach  of the template's points, scan units: farther ones were left out for that
+Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const SurfaceIndex& surface, const Similarity& pose,
+                 double reach, const RunContext& context) {
+  constexpr Eigen::Index kMostLooks = 4000;
+  constexpr double kJoined = 3;  // spacings
   Random random(context.seed, "share of a scan");
-  int near = 0;
-  for (std::uint64_t i = 0; i < kLooks; ++i) {
-    const auto row = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(cloud.points.rows())));
-    near += index.nearest(cloud.points.row(row), 1).front().distance <= 2 * kept.spacing ? 1 : 0;
+  const auto count = static_cast<std::size_t>(std::min(kMostLooks, cloud.points.rows()));
+  Points looks = cloud.points.topRows(static_cast<Eigen::Index>(count));
+  if (cloud.points.rows() > kMostLooks) {
+    for (auto look : looks.rowwise()) {
+      const auto row = random.below(static_cast<std::uint64_t>(cloud.points.rows()));
+      look = cloud.points.row(static_cast<Eigen::Index>(row));
+    }
   }
-  return near / static_cast<double>(kLooks);
+  const PointIndex index(kept.points);
+  const Similarity back = inverse(pose);
+  std::vector<char> may_join(count, 0);
+  std::vector<int> front;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d point = looks.row(static_cast<Eigen::Index>(i));
+    if (index.nearest(point, 1).front().distance <= 2 * kept.spacing) {
+      front.push_back(static_cast<int>(i));
+    } else if (surface.nearest(back(point), reach / pose.scale).face < 0) {
+      may_join[i] = 1;
+    }
+  }
+  Shares result;
+  result.used = static_cast<double>(front.size()) / static_cast<double>(count);
+  const PointIndex others(looks);
+  const double joined = kJoined * median_spacing(looks);
+  while (!front.empty()) {
+    const int i = front.back();
+    front.pop_back();
+    for (const auto& neighbour : others.within(looks.row(i).transpose(), joined)) {
+      char& open = may_join[static_cast<std::size_t>(neighbour.index)];
+      if (open == 0) continue;
+      open = 0;
+      result.torn_off += 1.0 / static_cast<double>(count);
+      front.push_back(neighbour.index);
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -54,7 +92,9 @@ std::optional<PlacedScan> placed_scan(const Mesh& mesh, const PointCloud& cloud,
   PlacedScan result;
   result.scan = without_planes(surface, size, prepare_scan(near, more, context), pose, options.reach, context);
   if (result.scan.points.rows() < kFewestNear) return std::nullopt;
-  result.used_fraction = share_near(cloud, result.scan, context);
+  const Shares shares = shares_of(cloud, result.scan, surface, pose, kNear * size * pose.scale, context);
+  result.used_fraction = shares.used;
+  result.torn_off = shares.torn_off;
   result.pose = near_given(mesh, pose, given) ? align_rigidly(mesh, result.scan, given, context) : pose;
   return result;
 }

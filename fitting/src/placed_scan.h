@@ -15,6 +15,7 @@ struct PlacedScan {
   PreparedScan scan;
   Similarity pose;           ///< template -> scan
   double used_fraction = 1;  ///< share of the scan's points near those that are left
+  double torn_off = 0;       ///< share that is not, being far from the template, but hangs together with those
 };
 
 /// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain.

@@ -76,17 +76,6 @@ std::vector<int> some_of(Eigen::Index total, int most, std::uint64_t seed) {
   return all;
 }
 
-double median_spacing(const Points& points) {
-  const PointIndex index(points);
-  std::vector<double> distances;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    distances.push_back(index.nearest(points.row(i).transpose(), 2).back().distance);
-  }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
-}
-
 // Of planes through the nearest points: on a smooth surface that is scanned finely, what the scanner adds.
 double noise_of(const Points& points, int neighbours, std::uint64_t seed) {
   constexpr int kMostPoints = 200000;  // of which neighbours are sought
@@ -110,6 +99,17 @@ double noise_of(const Points& points, int neighbours, std::uint64_t seed) {
 }
 
 }  // namespace
+
+double median_spacing(const Points& points) {
+  const PointIndex index(points);
+  std::vector<double> distances;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    distances.push_back(index.nearest(points.row(i).transpose(), 2).back().distance);
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
 
 PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context) {
   if (scan.points.rows() < kFewestPoints) {

@@ -1,5 +1,7 @@
 #include "orbifit/fitting/fit.h"
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -67,8 +69,10 @@ TEST_P(FitOfModel, ComesToRest) {
   EXPECT_EQ(result_.stopped_because.substr(0, 7), "settled") << result_.stopped_because;
   // Steps that do not lower the energy are taken back, so that it ends as low as it ever was with what was far then.
   const FitIteration& last = result_.iterations.back();
-  EXPECT_GE(last.stiffness, FitOptions{}.last_stiffness);
   EXPECT_LT(last.energy, result_.iterations.front().energy);
+  // White noise of 0.05 % warrants hardly more than the least stiffness.
+  EXPECT_GE(last.stiffness, FitOptions{}.last_stiffness);
+  EXPECT_LT(last.stiffness, 5 * FitOptions{}.last_stiffness);
   EXPECT_LT(result_.iterations[result_.iterations.size() - 2].change, 0.01);
 }
 
@@ -99,6 +103,43 @@ TEST(Fit, OfTheTemplateToItsOwnScanIsTheTemplate) {
   EXPECT_TRUE(result.converged);
   const double worst = (result.fitted.vertices - model.mesh.vertices).rowwise().norm().maxCoeff();
   EXPECT_LT(worst, 0.01 * diagonal(model.mesh.vertices));
+}
+
+// Depth cameras err alike at neighbouring points: waves along the rays, which no average over neighbours takes out.
+TEST(Fit, DoesNotFollowNoiseThatNeighboursShare) {
+  constexpr double kHeight = 0.01;  // of the diagonal
+  constexpr double kLength = 0.1;
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  const double size = diagonal(model.mesh.vertices);
+  PointCloud scan = virtual_scan(model.mesh, {}, context);
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    const Eigen::Vector3d point = scan.points.row(i);
+    const Eigen::Vector3d phase = 2 * std::numbers::pi / (kLength * size) * point;
+    const double wave = kHeight * size * std::sin(phase.x()) * std::sin(phase.y() + phase.z());
+    scan.points.row(i) += wave * (scan.viewpoints.row(i) - scan.points.row(i)).normalized();
+  }
+  const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, {}, context);
+  EXPECT_TRUE(result.converged) << result.stopped_because;
+  EXPECT_GT(result.iterations.back().stiffness, 3 * FitOptions{}.last_stiffness);
+  const Points off = result.fitted.vertices - model.mesh.vertices;
+  EXPECT_LT(std::sqrt(off.rowwise().squaredNorm().mean()), kHeight / 2 * size);
+}
+
+// The crest of the taller back is nearer to the slat below it than to the template's crest.
+TEST(Fit, OfAChairWithATallerBackFindsTheRightSlats) {
+  RunContext context;
+  const GeneratedModel model = generate("chair");
+  const GeneratedModel truth =
+      generate("chair", {{"back_height", 0.55}, {"leg_height", 0.5}, {"seat_width", 0.5}, {"seat_depth", 0.5}});
+  ScanOptions scanner;
+  scanner.views = 3;
+  const PointCloud scan = virtual_scan(truth.mesh, scanner, context);
+  const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, {}, context);
+  EXPECT_TRUE(result.converged) << result.stopped_because;
+  EXPECT_EQ(result.pose.scale, 1);
+  const Points off = result.fitted.vertices - truth.mesh.vertices;
+  EXPECT_LT(off.rowwise().norm().mean(), 0.005 * diagonal(truth.mesh.vertices));
 }
 
 TEST(Fit, OfAScanOfSomethingElseSaysThatItFailed) {

@@ -71,10 +71,11 @@ struct FitResult {
   bool converged = false;
   std::string stopped_because;
   double used_fraction = 1;    ///< share of the scan taken for the template's; the rest was left out as other things
+  double torn_off = 0;         ///< share left out though it hangs together with that, and so may be the template's
   double inlier_fraction = 0;  ///< of the scan points used, within inlier_distance of the fitted surface
   double rms = 0;              ///< of those, fraction of the fitted mesh's diagonal
   double covered = 1;          ///< of the fitted surface that the viewpoints should have seen, the share that they saw
-  double confidence = 0;       ///< inlier_fraction * covered, in [0, 1]
+  double confidence = 0;       ///< inlier_fraction * covered, less what was torn off, in [0, 1]
   double landmark_rms = 0;     ///< of landmarks and handles, fraction of the fitted mesh's diagonal
   std::vector<char> seen;      ///< #V: a scan point lies near the fitted vertex
   double hidden_fraction = 0;  ///< share of the fitted area around vertices not seen

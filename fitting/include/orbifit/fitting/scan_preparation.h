@@ -22,6 +22,9 @@ struct PreparedScan {
   double noise = 0;  ///< median of the root mean square distances of neighbours from their plane, scan units
 };
 
+/// Median distance of points to their nearest other one. O(P log P). \pre two points or more
+double median_spacing(const Points& points);
+
 /// Keeps at most `most_points` (the first point of each cell of a grid whose width is searched, or random ones), with
 /// normals from the file or from a plane through the nearest points of the whole scan, turned towards the viewpoint
 /// where one is known. \throw InputError when fewer than 10 points are given
