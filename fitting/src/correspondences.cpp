@@ -73,4 +73,14 @@ double weighted_rms(const std::vector<Correspondence>& correspondences) {
   return weights > 0 ? std::sqrt(squares / weights) : 0;
 }
 
+double typical_distance(const std::vector<Correspondence>& correspondences) {
+  constexpr double kOfMedian = 1.4826;
+  if (correspondences.empty()) return 0;
+  std::vector<double> distances;
+  for (const Correspondence& each : correspondences) distances.push_back(each.distance);
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return kOfMedian * *middle;
+}
+
 }  // namespace orbifit

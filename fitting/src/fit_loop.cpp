@@ -103,6 +103,7 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
                                       context_, &likely_);
   result.of_scan = static_cast<int>(result.pairs.size());
   result.rms = weighted_rms(result.pairs) / size_;
+  result.spread = typical_distance(result.pairs) / size_;
   result.energy = static_cast<double>(scan_.points.rows() - result.of_scan) * now.robust * now.robust;
   for (const Correspondence& pair : result.pairs) result.energy += robust_error(pair.distance, now.robust);
   if (now.progress >= kSilhouetteFrom && silhouette_.knows_viewpoints()) {
@@ -212,7 +213,7 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
     }
     const double share = share_of(matches);
     iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
-    least_stiffness_ = stiffness_for(matches.rms);
+    least_stiffness_ = stiffness_for(matches.spread);
     step(state, matches, now, share, 0, iterations.back());
   }
   std::string reason = kUsedUp;

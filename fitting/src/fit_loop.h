@@ -44,6 +44,7 @@ class FitLoop {
     Points points;                      // the scan's, in the template's frame
     int of_scan = 0;
     double rms = 0;     // fraction of the diagonal
+    double spread = 0;  // likewise, of the distances, whatever the outliers
     double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared template units
   };
   Stage stage(int iteration) const;

@@ -65,4 +65,7 @@ std::vector<Correspondence> find_correspondences(const MatchSurface& surface, co
 /// Root of the weighted mean square of the distances along the normals' planes; 0 for none.
 double weighted_rms(const std::vector<Correspondence>& correspondences);
 
+/// The standard deviation that normally distributed distances of the same median have; 0 for none.
+double typical_distance(const std::vector<Correspondence>& correspondences);
+
 }  // namespace orbifit
