@@ -17,7 +17,8 @@ std::string percent(double fraction) {
 
 std::vector<std::string> cells(const FittingRow& row) {
   std::vector<std::string> result{row.family, row.level, row.method, row.fitted ? "yes" : "no"};
-  for (const double value : {row.score.visible, row.score.hidden, row.score.correspondence, row.score.f_score}) {
+  const FitScore& score = row.score;
+  for (const double value : {score.visible, score.hidden, score.correspondence.value_or(0), score.f_score}) {
     result.push_back(percent(value));
   }
   result.push_back(short_number(row.symmetry, 2));
@@ -46,7 +47,7 @@ std::vector<FittingRow> means_of(const std::vector<FittingRow>& rows) {
     successes[index] += row.fitted ? 1 : 0;
     mean.score.visible += row.score.visible;
     mean.score.hidden += row.score.hidden;
-    mean.score.correspondence += row.score.correspondence;
+    mean.score.correspondence = mean.score.correspondence.value_or(0) + row.score.correspondence.value_or(0);
     mean.score.f_score += row.score.f_score;
     mean.symmetry = std::max(mean.symmetry, row.symmetry);
     mean.seconds += row.seconds;
@@ -58,7 +59,7 @@ std::vector<FittingRow> means_of(const std::vector<FittingRow>& rows) {
     FittingRow& mean = means[i];
     mean.family = std::to_string(successes[i]) + " of " + std::to_string(counts[i]);
     mean.fitted = successes[i] == counts[i];
-    for (double* value : {&mean.score.visible, &mean.score.hidden, &mean.score.correspondence, &mean.score.f_score,
+    for (double* value : {&mean.score.visible, &mean.score.hidden, &*mean.score.correspondence, &mean.score.f_score,
                           &mean.seconds, &mean.placing, &mean.iteration}) {
       *value /= counts[i];
     }
@@ -74,7 +75,7 @@ nlohmann::ordered_json to_json(const FittingRow& row) {
           {"failure", row.failure},
           {"visible", row.score.visible},
           {"hidden", row.score.hidden},
-          {"hidden_correspondence", row.score.correspondence},
+          {"hidden_correspondence", row.score.correspondence.value_or(0)},
           {"f_score", row.score.f_score},
           {"symmetry_residual", row.symmetry},
           {"degrees_of_freedom", row.degrees_of_freedom},

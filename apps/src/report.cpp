@@ -7,6 +7,8 @@
 
 #include "orbifit/model/errors.h"
 
+#include "html_text.h"
+
 namespace orbifit {
 
 namespace {
@@ -34,7 +36,7 @@ section > p { max-width: 46rem; margin: 0 0 1rem; }
   grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); }
 .pictures.one { grid-template-columns: minmax(0, 46rem); }
 figure { margin: 0; border: 1px solid var(--line); border-radius: .6rem; overflow: hidden; background: #fff; }
-figure img { display: block; width: 100%; height: auto; }
+figure img, figure svg { display: block; width: 100%; height: auto; }
 figcaption { padding: .5rem .8rem .6rem; font-size: .88rem; line-height: 1.45; color: var(--soft);
   border-top: 1px solid var(--line); }
 .table { overflow-x: auto; margin: 0 0 1.3rem; }
@@ -53,33 +55,6 @@ footer { padding-top: 1.4rem; padding-bottom: 2.5rem; color: var(--soft); font-s
   .pictures { grid-template-columns: repeat(2, 1fr); } .table { overflow: visible; }
 }
 )";
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  result.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 // Paragraphs are parted by blank lines.
 std::string paragraphs(const std::string& text) {
@@ -151,6 +126,13 @@ std::string html(const ReportSection& section, std::size_t number) {
   if (!section.pictures.empty()) {
     result += section.pictures.size() == 1 ? "<div class=\"pictures one\">\n" : "<div class=\"pictures\">\n";
     for (const ReportPicture& picture : section.pictures) result += figure(picture);
+    result += "</div>\n";
+  }
+  if (!section.charts.empty()) {
+    result += "<div class=\"pictures\">\n";
+    for (const Chart& chart : section.charts) {
+      result += "<figure>" + to_svg(chart) + "<figcaption>" + escaped(chart.title) + "</figcaption></figure>\n";
+    }
     result += "</div>\n";
   }
   for (const ReportTable& table : section.tables) result += html(table);

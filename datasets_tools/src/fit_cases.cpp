@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "orbifit/datasets_tools/virtual_scan.h"
-#include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {
 
 namespace {
-
-constexpr double kVisibleDistance = 0.01;  // of the diagonal
 
 std::string name_of(FitLevel level) {
   if (level == FitLevel::three_views) return "three views";
@@ -64,11 +61,7 @@ FitCase fit_case(const FitFamily& family, FitLevel level, RunContext& context) {
   result.scan = virtual_scan(result.truth, options, context);
   ScanOptions clean = options;
   clean.noise = clean.outliers = clean.clutter = 0;
-  const PointIndex seen(virtual_scan(result.truth, clean, context).points);
-  const double near = kVisibleDistance * diagonal(result.truth.vertices);
-  for (Eigen::Index v = 0; v < result.truth.vertices.rows(); ++v) {
-    result.visible.push_back(seen.nearest(result.truth.vertices.row(v), 1).front().distance <= near ? 1 : 0);
-  }
+  result.visible = visible_vertices(result.truth, virtual_scan(result.truth, clean, context).points);
   if (level == FitLevel::anywhere) {
     Random random(context.seed, "pose of " + family.name + ", " + name_of(level));
     const Eigen::Matrix3d rotation = random.rotation();
@@ -79,6 +72,10 @@ FitCase fit_case(const FitFamily& family, FitLevel level, RunContext& context) {
     result.scan.viewpoints = moved(result.scan.viewpoints, result.pose);
   }
   return result;
+}
+
+FitScore score_fit(const FitCase& truth, const Mesh& fitted, const RunContext& context) {
+  return score_fit(truth.model.mesh, truth.model.truth, truth.truth, truth.visible, fitted, context);
 }
 
 }  // namespace orbifit

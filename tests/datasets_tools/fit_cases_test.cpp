@@ -25,7 +25,7 @@ TEST_P(CaseOf, TruthIsThePosedShapeAndTheScanLiesOnIt) {
   const FitScore perfect = score_fit(each, each.truth, context);
   EXPECT_LT(perfect.visible, 1e-9);
   EXPECT_LT(perfect.hidden, 1e-9);
-  EXPECT_LT(perfect.correspondence, 1e-9);
+  EXPECT_LT(perfect.correspondence.value(), 1e-9);
   EXPECT_NEAR(perfect.f_score, 1, 1e-12);
   Mesh posed = each.model.mesh;
   for (Eigen::Index v = 0; v < posed.vertices.rows(); ++v) {
@@ -49,7 +49,7 @@ TEST_P(CaseOf, ASymmetricCopyIsAsGood) {
     turned.vertices.row(v) = there(turned.vertices.row(v).transpose()).transpose();
   }
   EXPECT_GT((turned.vertices - each.truth.vertices).norm(), 0.1 * diagonal(each.truth.vertices));
-  EXPECT_LT(score_fit(each, turned, context).correspondence, 1e-6);
+  EXPECT_LT(score_fit(each, turned, context).correspondence.value(), 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, CaseOf,

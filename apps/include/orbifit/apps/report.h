@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "orbifit/apps/chart.h"
 #include "orbifit/apps/render.h"
 
 namespace orbifit {
@@ -22,7 +23,8 @@ struct ReportSection {
   std::string title, text;
   std::vector<ReportPicture> pictures;
   std::vector<ReportTable> tables;
-  std::vector<std::string> notes;  ///< small print
+  std::vector<std::string> notes = {};  ///< small print
+  std::vector<Chart> charts = {};       ///< shown after the pictures
 };
 
 struct Report {

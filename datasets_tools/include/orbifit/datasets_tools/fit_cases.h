@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "orbifit/datasets_tools/fit_score.h"
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
@@ -41,16 +42,7 @@ struct FitCase {
 /// The same seed gives the same case.
 FitCase fit_case(const FitFamily& family, FitLevel level, RunContext& context);
 
-/// How near a fit came to the truth. Lengths are fractions of the truth's diagonal.
-struct FitScore {
-  double visible = 0;         ///< mean distance from the truth's visible surface to the fitted one
-  double hidden = 0;          ///< likewise of what no view saw, though it can be seen from outside
-  double correspondence = 0;  ///< mean distance of the fitted hidden vertices from where they belong
-  double f_score = 0;         ///< at 1 %: harmonic mean of the shares of either surface that lie near the other
-};
-
-/// Correspondences are those of the symmetric copy that fits best: a table turned by a quarter is the same table.
-/// \param fitted with the truth's connectivity, in the scan's frame
+/// score_fit() of a fit of the case's template.
 FitScore score_fit(const FitCase& truth, const Mesh& fitted, const RunContext& context);
 
 }  // namespace orbifit
