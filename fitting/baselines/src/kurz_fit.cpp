@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kurz_ceres.h"
 #include "lattice.h"
 #include "outward_faces.h"
 #include "pulls.h"
@@ -72,7 +73,7 @@ void KurzFit::run(GridBasis basis, int most) {
       break;
     }
   }
-  if (options_.condition) condition_ = normal.condition();
+  if (options_.condition && options_.solver == KurzSolver::normal_equations) condition_ = normal.condition();
 }
 
 PullTerm KurzFit::pull_term() const {
@@ -133,7 +134,11 @@ void KurzFit::iterate(KurzNormal& normal, bool first) {
   record.correspondences = static_cast<int>(pairs.size());
   record.rms = weighted_rms(pairs) / size_;
   const KurzState before = state_;
-  normal.solve(data, state_);
+  if (options_.solver == KurzSolver::ceres) {
+    solve_with_ceres(terms_, data, state_);
+  } else {
+    normal.solve(data, state_);
+  }
   // A stage has no coefficients before its first step, and being linear needs none.
   const KurzEnergy energy = kurz_energy(terms_, plate_, data, first ? state_ : before);
   record.energy = energy.sum() / (options_.scan_points * size_ * size_);

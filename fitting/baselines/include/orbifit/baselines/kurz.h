@@ -6,6 +6,12 @@
 
 namespace orbifit {
 
+/// How the linear least-squares problem of an iteration is solved; both to the same solution.
+enum class KurzSolver {
+  normal_equations,  ///< products of what stays made once, CHOLMOD
+  ceres              ///< residual by residual, Ceres' sparse normal Cholesky (CHOLMOD as well): slower
+};
+
 /// Kurz et al. 2014. Lengths are those of a template whose longest side is 1. The weights stand before
 ///   handles       sum of squared distances; a landmark counts as 1, the vertices of a handle share 3
 ///   data          sum over the scan's points, <n, f(p) - d>^2 with the scan's normals, scaled to `scan_points` of them
@@ -38,7 +44,8 @@ struct KurzOptions {
   int scan_points = 4000;         ///< points of the scan used, >= 10
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
   bool align = true;              ///< as FitOptions::align
-  bool condition = false;         ///< estimate the condition number of the last linear system
+  KurzSolver solver = KurzSolver::normal_equations;
+  bool condition = false;         ///< estimate the condition number of the last linear system; not with Ceres
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
