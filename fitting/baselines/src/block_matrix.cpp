@@ -113,8 +113,8 @@ double BlockMatrix::condition() const {
     }
     return factor;
   };
-  const double largest = growth(
-      [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return scalars_.selfadjointView<Eigen::Lower>() * x; });
+  const double largest =
+      growth([&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return scalars_.selfadjointView<Eigen::Lower>() * x; });
   const double inverse = growth([&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return solve(x); });
   return largest * inverse;
 }

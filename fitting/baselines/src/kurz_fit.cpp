@@ -51,7 +51,8 @@ void KurzFit::begin(GridBasis basis) {
 
 // From stiff to soft by equal factors.
 double KurzFit::thin_plate_at(int iteration) const {
-  const bool stiff = terms_.grid.basis == GridBasis::linear && !handles_alone() && iteration < options_.stiff_iterations;
+  const bool stiff =
+      terms_.grid.basis == GridBasis::linear && !handles_alone() && iteration < options_.stiff_iterations;
   if (!stiff) return options_.thin_plate_weight;
   const double left = 1 - double(iteration) / options_.stiff_iterations;
   return options_.thin_plate_weight * std::pow(options_.first_thin_plate / options_.thin_plate_weight, left);

@@ -43,8 +43,8 @@ KurzEnergy kurz_energy(const KurzTerms& terms, const Eigen::SparseMatrix<double>
   }
   energy.thin_plate = terms.thin_plate * state.nodes.cwiseProduct(plate * state.nodes).sum();
   for (std::size_t d = 0; d < terms.symmetry.demands.size(); ++d) {
-    energy.symmetry += terms.symmetry_weight * terms.symmetry.demands[d].weight *
-                       symmetry_differences(terms, d, state).squaredNorm();
+    energy.symmetry +=
+        terms.symmetry_weight * terms.symmetry.demands[d].weight * symmetry_differences(terms, d, state).squaredNorm();
   }
   return energy;
 }

@@ -50,8 +50,9 @@ SymmetryDemands symmetry_demands(const Mesh& mesh, const SymmetryAnnotation& ann
     result.carrier_of_region.push_back(carried ? result.carriers++ : -1);
     for (const Motion& generator : region.generators) {
       if (is_identity(generator)) continue;
-      SymmetryDemand demand{static_cast<int>(r), generator,   region.centre, {}, each.points,
-                            images_of(generator, each.points), each.weight};
+      SymmetryDemand demand{
+          static_cast<int>(r), generator, region.centre, {}, each.points, images_of(generator, each.points),
+          each.weight};
       if (carried) demand.shift = {{result.carrier_of_region.back(), Eigen::Matrix3d::Identity() - generator.linear}};
       result.demands.push_back(std::move(demand));
     }
@@ -63,8 +64,8 @@ SymmetryDemands symmetry_demands(const Mesh& mesh, const SymmetryAnnotation& ann
     const Quadrature each = quadrature(mesh, shares, pattern.instances[0].faces, points, random);
     for (std::size_t i = 1; i < pattern.instances.size(); ++i) {
       const Motion& motion = lattice.motions[i];
-      SymmetryDemand demand{-1, motion, Eigen::Vector3d::Zero(), {}, each.points, images_of(motion, each.points),
-                            each.weight};
+      SymmetryDemand demand{
+          -1, motion, Eigen::Vector3d::Zero(), {}, each.points, images_of(motion, each.points), each.weight};
       for (const auto& [variable, matrix] : lattice.shifts[i]) {
         if (carried) demand.shift.emplace_back(result.carriers + variable, matrix);
       }

@@ -1,8 +1,7 @@
 #include "thin_plate.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
 
 namespace orbifit {
 namespace {

@@ -19,23 +19,23 @@ enum class KurzSolver {
 ///   symmetry      for each generator of each region, the integral of |T f(x) - f(g x)|^2 over the region, divided by
 ///                 the template's area and times `scan_points`: a whole shape's symmetry counts as a whole scan
 struct KurzOptions {
-  double handle_weight = 100;    ///< >= 0
-  double data_weight = 1;        ///< >= 0
-  double thin_plate_weight = 1;  ///< > 0
-  double symmetry_weight = 3;    ///< >= 0; 0: deformation without symmetry
+  double handle_weight = 100;       ///< >= 0
+  double data_weight = 1;           ///< >= 0
+  double thin_plate_weight = 0.01;  ///< > 0; the paper's 1 stands before the sum over all points of its scans
+  double symmetry_weight = 3;       ///< >= 0; 0: deformation without symmetry
   /// What becomes of T: that of the template; carried by a translation of each region, which is solved for; or by a
   /// rigid motion of each region, whose rotation is estimated anew in each iteration. The paper's is free.
   GroupMode mode = GroupMode::moving;
-  double spacing = 0.1;           ///< of the grid, in (0, 1]
-  int linear_iterations = 100;    ///< at most, of piecewise linear functions, >= 1
-  int smooth_iterations = 1;      ///< with cubic B-splines after them, >= 0
-  int stiff_iterations = 20;      ///< in which the thin plate's weight falls from first_thin_plate, >= 0
-  double first_thin_plate = 1e4;  ///< that of an affine map, >= thin_plate_weight
-  double still = 1e-4;            ///< the linear iterations end when no vertex moves by more, >= 0
-  int quadrature_points = 2000;   ///< on a region that is the whole template, >= 64; at least 64 on any
-  double trim = 0.8;              ///< share of the nearest correspondences kept, in (0, 1]
-  double never_trim = 0.05;       ///< distances below this are always kept, >= 0
-  double min_normal_cosine = 0.5; ///< of compatible normals, in [0, 1)
+  double spacing = 0.1;            ///< of the grid, in (0, 1]
+  int linear_iterations = 100;     ///< at most, of piecewise linear functions, >= 1
+  int smooth_iterations = 1;       ///< with cubic B-splines after them, >= 0
+  int stiff_iterations = 20;       ///< in which the thin plate's weight falls from first_thin_plate, >= 0
+  double first_thin_plate = 1e4;   ///< that of an affine map, >= thin_plate_weight
+  double still = 1e-4;             ///< the linear iterations end when no vertex moves by more, >= 0
+  int quadrature_points = 2000;    ///< on a region that is the whole template, >= 64; at least 64 on any
+  double trim = 0.8;               ///< share of the nearest correspondences kept, in (0, 1]
+  double never_trim = 0.05;        ///< distances below this are always kept, >= 0
+  double min_normal_cosine = 0.5;  ///< of compatible normals, in [0, 1)
   /// Normals are compatible in sign too, where both the scan's and the template's look outwards: as in fit().
   bool signed_normals = true;
   /// Distances are along the surface's normals, or from its edges: as in fit(). Else along the scan's normals, as in
@@ -45,7 +45,7 @@ struct KurzOptions {
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
   bool align = true;              ///< as FitOptions::align
   KurzSolver solver = KurzSolver::normal_equations;
-  bool condition = false;         ///< estimate the condition number of the last linear system; not with Ceres
+  bool condition = false;  ///< estimate the condition number of the last linear system; not with Ceres
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
