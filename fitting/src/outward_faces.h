@@ -1,0 +1,12 @@
+#pragma once
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// Whether the faces look outwards, so that a scan's oriented normals must agree with theirs in sign: a ray into the
+/// body meets its far side from within.
+bool faces_outwards(const Mesh& mesh, const RunContext& context);
+
+}  // namespace orbifit
