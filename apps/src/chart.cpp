@@ -110,7 +110,8 @@ std::string to_svg(const Chart& chart) {
   result +=
       text(16, (y.from + y.to) / 2, "middle", escaped(chart.vertical), " transform=\"rotate(-90 16 " + middle + ")\"");
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    const std::string colour = kColours[i % kColours.size()];
+    const int chosen = chart.series[i].colour;
+    const std::string colour = kColours[(chosen < 0 ? i : static_cast<std::size_t>(chosen)) % kColours.size()];
     const double beside = kTop + 14 + 20 * static_cast<double>(i);
     result += curve(chart.series[i], x, y, colour);
     result += "<circle cx=\"" + number(x.to + 20) + "\" cy=\"" + number(beside - 4) + "\" r=\"4\" fill=\"" + colour +

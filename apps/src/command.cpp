@@ -43,6 +43,14 @@ void check_output(const fs::path& output, const std::vector<std::string>& ending
   }
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code code;
+  std::filesystem::create_directory(folder, code);
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(folder.string(), "", "is no folder and cannot be made" + (code ? ": " + code.message() : ""));
+  }
+}
+
 Eigen::Vector3d to_point(const std::string& option, const std::vector<double>& values) {
   const bool finite = std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   if (values.size() != 3 || !finite) throw UsageError(option + " must be three numbers");

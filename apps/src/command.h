@@ -50,6 +50,9 @@ struct Command {
 void check_output(const std::filesystem::path& output, const std::vector<std::string>& endings = {},
                   const std::vector<std::filesystem::path>& inputs = {});
 
+/// Makes a folder for outputs where there is none. \throw InputError where that cannot be
+void make_folder(const std::filesystem::path& folder);
+
 /// "--up 0 0 1" as a unit vector. \throw UsageError unless three numbers that are not all 0
 Eigen::Vector3d to_direction(const std::string& option, const std::vector<double>& values);
 

@@ -8,6 +8,7 @@ namespace orbifit::commands {
 
 CommandBody annotate(CLI::App& app);
 CommandBody check(CLI::App& app);
+CommandBody compare(CLI::App& app);
 CommandBody convert(CLI::App& app);
 CommandBody deform(CLI::App& app);
 CommandBody detect(CLI::App& app);

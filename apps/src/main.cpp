@@ -57,6 +57,12 @@ constexpr std::array kCommands{
             "orbifit fit chair.obj scan.ply --annotation chair.json -o fitted.obj --report fit.json --html fit.html\n"
             "orbifit fit chair.obj scan.ply --landmarks landmarks.json -o fitted.obj",
             commands::fit},
+    Command{
+        "compare", "Fit by ours and by least-squares methods, and set their figures side by side.",
+        "orbifit compare fan.ply scan.ply --annotation fan.json -o comparison\n"
+        "orbifit compare chair.ply scan.ply --annotation chair.json --truth chair_true.ply --aligned -o comparison\n"
+        "orbifit compare chair.ply scan.ply --annotation chair.json --methods ours,kurz --brief -o comparison",
+        commands::compare},
     Command{"generate", "Build a model whose symmetries are known.",
             "orbifit generate --list\n"
             "orbifit generate chair -o models\n"

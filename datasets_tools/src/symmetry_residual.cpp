@@ -156,7 +156,7 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
 }
 
 RegionResidual region_residual(const Mesh& mesh, const Mesh* deformed, const Region& region, const RegionPairs& pairs,
-                               const CarriedFrame& carried, const RunContext& context) {
+                               const CarriedFrame& carried, const RunContext& context, Eigen::VectorXd& vertex_excess) {
   RegionResidual result;
   result.id = region.id;
   result.name = region.name;
@@ -170,7 +170,12 @@ RegionResidual region_residual(const Mesh& mesh, const Mesh* deformed, const Reg
   if (deformed != nullptr) {
     ranked = distances(*deformed, pairs, carried, context) / diagonal(deformed->vertices);
     result.deformed = summary(ranked);
-    result.excess = summary((ranked - floor).cwiseMax(0));
+    const Eigen::VectorXd excess = (ranked - floor).cwiseMax(0);
+    result.excess = summary(excess);
+    for (Index i = 0; i < excess.size(); ++i) {
+      double& most = vertex_excess[pairs.vertices[static_cast<std::size_t>(i) % pairs.vertices.size()]];
+      most = std::max(most, excess[i]);
+    }
   }
   if (ranked.size() > 0) {
     Index worst = 0;
@@ -257,9 +262,10 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
 
   SymmetryReport report;
   report.vertices_onto_vertices = true;
+  report.vertex_excess.setZero(mesh.vertices.rows());
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
     const RegionResidual& region = report.regions.emplace_back(
-        region_residual(mesh, deformed, annotation.regions[r], pairs[r], frames[r], context));
+        region_residual(mesh, deformed, annotation.regions[r], pairs[r], frames[r], context, report.vertex_excess));
     report.vertices_onto_vertices = report.vertices_onto_vertices && region.mapped == region.pairs;
     report.worst_floor = std::max(report.worst_floor, region.floor.max);
     report.worst_deformed = std::max(report.worst_deformed, region.deformed.max);

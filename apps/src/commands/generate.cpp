@@ -94,11 +94,7 @@ CommandBody generate(CLI::App& app) {
     const GeneratedModel model = orbifit::generate(arguments->name, parse_parameters(arguments->parameters));
     context.run.check();
     const fs::path folder = arguments->folder;
-    std::error_code code;
-    fs::create_directory(folder, code);
-    if (!fs::is_directory(folder)) {
-      throw InputError(arguments->folder, "", "is no folder and cannot be made" + (code ? ": " + code.message() : ""));
-    }
+    make_folder(folder);
     const fs::path mesh_file = folder / (arguments->name + ".ply");
     const fs::path annotation_file = folder / (arguments->name + ".annotation.json");
     check_output(mesh_file);

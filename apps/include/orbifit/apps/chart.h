@@ -11,6 +11,7 @@ struct Chart {
   struct Series {
     std::string name;
     std::vector<std::pair<double, double>> points;  ///< in the order in which they are joined
+    int colour = -1;  ///< the same number is the same colour; below 0: its place among the series
   };
 
   std::string title, horizontal, vertical;  ///< what the axes show, with units

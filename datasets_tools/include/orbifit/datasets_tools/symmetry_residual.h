@@ -44,6 +44,7 @@ struct SymmetryReport {
   std::vector<RegionResidual> regions;
   std::vector<PatternResidual> patterns;
   double worst_floor = 0, worst_deformed = 0, worst_excess = 0;  ///< over the regions
+  Eigen::VectorXd vertex_excess;  ///< #V: the largest excess of a vertex in any region; 0 at rest and outside of them
 };
 
 /// How far the regions and patterns are from symmetric, at rest and, if `deformed` is not null, after a deformation

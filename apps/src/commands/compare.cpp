@@ -1,0 +1,114 @@
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/fitting/alignment.h"
+#include "orbifit/fitting/clutter.h"
+#include "orbifit/fitting/placement.h"
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/model/file.h"
+#include "orbifit/model/mesh_io.h"
+#include "orbifit/model/scan_io.h"
+#include "orbifit/subspace/handles.h"
+
+#include "../commands.h"
+#include "../subspace_arguments.h"
+#include "comparison.h"
+#include "comparison_report.h"
+
+namespace orbifit::commands {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CompareArguments {
+  std::string mesh, scan, annotation, truth, handles, folder;
+  std::vector<double> up{0, 0, 1};
+  bool aligned = false;
+  bool brief = false;
+  ComparisonOptions options;
+  SubspaceArguments subspace;
+};
+
+// All methods start from the same pose, and see the same part of the scan.
+void place(const Mesh& mesh, const FitOptions& options, const RunContext& context, PointCloud& scan, Similarity& pose) {
+  constexpr double kNear = 0.12;  // of the diagonal, as in fit()
+  const auto found = find_placements(mesh, scan, options.placement, context, pose);
+  if (found.empty()) throw NoResultError("the template was not found in the scan: give it aligned (--aligned)");
+  pose = found.front().pose;
+  scan = points_near(SurfaceIndex(mesh), diagonal(mesh.vertices), scan, pose, kNear, context);
+}
+
+}  // namespace
+
+CommandBody compare(CLI::App& app) {
+  const auto arguments = std::make_shared<CompareArguments>();
+  app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
+  app.add_option("SCAN", arguments->scan, "Points to fit it to")->required();
+  app.add_option("--annotation", arguments->annotation, "The template's symmetries")->required()->type_name("FILE");
+  app.add_option("--truth", arguments->truth, "All of the shape that was scanned, in the scan's frame")
+      ->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
+  app.add_option("-o,--output", arguments->folder, "Folder for the table, the page and the fitted meshes")
+      ->required()
+      ->type_name("DIR");
+  app.add_option("--methods", arguments->options.methods, "Only these methods")
+      ->delimiter(',')
+      ->type_name("METHOD,...");
+  app.add_option("--weights", arguments->options.weights, "Of the symmetry penalty, swept")
+      ->delimiter(',')
+      ->type_name("W,...");
+  app.add_option("--sizes", arguments->options.samples, "Samples of the surface, to time against")
+      ->delimiter(',')
+      ->type_name("N,...");
+  app.add_flag("--brief", arguments->brief, "Only the table: no sweep of weights, no timing against sizes");
+  app.add_flag("--aligned", arguments->aligned, "The scan is in the template's frame");
+  app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
+  add_subspace_options(app, arguments->subspace);
+  return [arguments](CommandContext& context) {
+    ComparisonOptions& options = arguments->options;
+    options.fit.subspace = arguments->subspace.options;
+    options.validate();
+    const Eigen::Vector3d up = to_direction("--up", arguments->up);
+    const Mesh mesh = read_mesh(arguments->mesh);
+    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    options.fit.subspace = subspace_options(arguments->subspace, mesh, context.run);
+    build_closable(mesh, annotation, options.fit.subspace, context.run);
+    PointCloud scan = read_scan(arguments->scan);
+    std::vector<Handle> handles;
+    if (!arguments->handles.empty()) handles = read_handles(arguments->handles, mesh).handles;
+    std::unique_ptr<ComparisonTruth> truth;
+    if (!arguments->truth.empty()) {
+      truth = std::make_unique<ComparisonTruth>();
+      truth->mesh = read_mesh(arguments->truth);
+      truth->visible = visible_vertices(truth->mesh, scan.points);
+    }
+    const fs::path folder = arguments->folder;
+    make_folder(folder);
+    Similarity pose;
+    if (!arguments->aligned && handles.empty()) place(mesh, options.fit, context.run, scan, pose);
+    const FitInput input{mesh, annotation, scan, pose, {}, handles};
+    if (arguments->brief) {
+      options.weights.clear();
+      options.samples.clear();
+      options.meshes = 0;
+    }
+    const Comparison comparison = orbifit::compare(input, options, truth.get(), context.run);
+    context.run.check();
+    write_file(folder / "comparison.csv", comparison_csv(comparison));
+    write_file(folder / "comparison.json", comparison_json(comparison));
+    write_file(folder / "comparison.txt", comparison_text(comparison));
+    write_file(folder / "index.html", comparison_html(comparison, scan, up, context.run));
+    for (const MethodRun& run : comparison.runs) {
+      if (run.failure.empty()) write_mesh(folder / (run.method + ".ply"), run.result.fitted);
+    }
+    print(context.json ? comparison_json(comparison) : comparison_text(comparison));
+    return kDone;
+  };
+}
+
+}  // namespace orbifit::commands
