@@ -18,6 +18,7 @@
 
 #include "fit_assessment.h"
 #include "fit_loop.h"
+#include "fit_system.h"
 #include "placed_scan.h"
 
 namespace orbifit {
@@ -94,7 +95,7 @@ std::vector<PlacedScan> starts_of(const FitInput& input, const FitOptions& optio
     watch.finished("placement");
   }
   if (starts.empty()) {
-    starts.push_back({prepare_scan(input.scan, preparation, context), input.pose, 1});
+    starts.push_back({prepare_scan(input.scan, preparation, context), input.pose, 1, {}});
     watch.finished("scan");
     if (!input.landmarks.empty()) {
       starts.front().pose = align_landmarks(input.mesh, input.landmarks);
@@ -102,6 +103,9 @@ std::vector<PlacedScan> starts_of(const FitInput& input, const FitOptions& optio
       starts.front().pose = align_rigidly(input.mesh, starts.front().scan, input.pose, context);
     }
     watch.finished("alignment");
+  }
+  for (PlacedScan& start : starts) {
+    start.views = std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, context);
   }
   return starts;
 }
@@ -121,6 +125,7 @@ struct Deformation {
   FitState state;
   std::vector<FitIteration> iterations;
   std::string stopped_because;
+  double condition = 0;
   Mesh deformed;  // in the template's frame
   Mesh fitted;    // in the scan's
 };
@@ -130,8 +135,10 @@ Deformation deformation_from(FitState state, int first_level, const FitInput& in
                              const Subspace& subspace, const FitOptions& options, const RunContext& context) {
   Deformation result;
   result.state = std::move(state);
-  FitLoop loop(input, start.scan, subspace, options, context);
+  FitSystem system(subspace, input.mesh, options.stretch);
+  FitLoop loop(input, start.scan, *start.views, system, options, context);
   result.stopped_because = loop.run(result.state, first_level, result.iterations);
+  if (options.condition && !result.iterations.empty()) result.condition = system.condition();
   result.deformed = input.mesh;
   result.deformed.vertices += vertex_displacements(subspace, result.state.q);
   result.fitted = result.deformed;
@@ -186,6 +193,7 @@ void take(const FitInput& input, Deformation&& found, const PlacedScan& start, c
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   result.iterations = std::move(found.iterations);
   result.stopped_because = std::move(found.stopped_because);
+  result.condition = found.condition;
   result.used_fraction = start.used_fraction;
   result.rest_annotation = input.annotation;
   result.annotation =

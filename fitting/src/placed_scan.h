@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "orbifit/fitting/placement.h"
@@ -8,13 +9,16 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 
+#include "scan_views.h"
+
 namespace orbifit {
 
 /// A placement of a template, and what of the scan may be the template's there.
 struct PlacedScan {
   PreparedScan scan;
-  Similarity pose;           ///< template -> scan
-  double used_fraction = 1;  ///< share of the scan's points near those that are left
+  Similarity pose;                              ///< template -> scan
+  double used_fraction = 1;                     ///< share of the scan's points near those that are left
+  std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
 };
 
 /// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain.
