@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "orbifit/fitting/alignment.h"
-
-#include "outward_faces.h"
+#include "orbifit/model/surface_index.h"
 
 namespace orbifit {
 
@@ -36,20 +36,25 @@ constexpr double kDamping = 1e-3;  // the least, of one sample's share of the da
 constexpr double kDampingStep = 4;
 constexpr const char* kUsedUp = "the iterations allowed are used up";
 
+class Clock {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 }  // namespace
 
-FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
-                 const RunContext& context)
+FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
+                 const FitOptions& options, const RunContext& context)
     : input_(input),
       scan_(scan),
-      subspace_(subspace),
+      views_(views),
+      system_(system),
       options_(options),
       context_(context),
       size_(diagonal(input.mesh.vertices)),
-      samples_(static_cast<double>(subspace.sampling.points.rows())),
-      signed_normals_(scan.normals_oriented && faces_outwards(input.mesh, context)),
-      system_(subspace, input.mesh, options.stretch),
-      silhouette_(input.mesh, input.scan, scan, context),
       deformed_(input.mesh),
       surface_(MatchSurface::of_moving(deformed_)) {}
 
@@ -71,7 +76,7 @@ double FitLoop::stiffness_for(double noise) const {
 FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   CorrespondenceOptions options;
   options.max_distance = (kFirstReach + (kLastReach - kFirstReach) * now.progress) * size_;
-  options.signed_normals = signed_normals_;
+  options.signed_normals = views_.signed_normals;
   // Far points are left out while the template is far; in the end the robust weights judge each by itself.
   options.trim = options_.trim + (1 - options_.trim) * now.progress;
   options.never_trim = 0.005 * size_;
@@ -86,20 +91,21 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.spread = typical_distance(result.pairs) / size_;
   result.energy = static_cast<double>(scan_.points.rows() - result.of_scan) * now.robust * now.robust;
   for (const Correspondence& pair : result.pairs) result.energy += robust_error(pair.distance, now.robust);
-  if (now.progress >= kSilhouetteFrom && silhouette_.knows_viewpoints()) {
+  if (now.progress >= kSilhouetteFrom && views_.silhouette.knows_viewpoints()) {
     result.energy +=
-        silhouette_.add(deformed_, surface_, result.points, state.pose, now.robust, result.pairs, context_);
+        views_.silhouette.add(deformed_, surface_, result.points, state.pose, now.robust, result.pairs, context_);
   }
   return result;
 }
 
 // All pairs together weigh as many as there are samples.
 double FitLoop::share_of(const Matches& matches) const {
-  return samples_ / static_cast<double>(std::max<std::size_t>(1, matches.pairs.size()));
+  return static_cast<double>(system_.samples()) / static_cast<double>(std::max<std::size_t>(1, matches.pairs.size()));
 }
 
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
-  double result = share * matches.energy + now.stiffness * system_.regularity(state.q);
+  double result =
+      share * matches.energy + now.stiffness * system_.regularity(state.q) + system_.symmetry_energy(state.q);
   for (const Pull& pull : pulls_towards(input_, state.pose, options_.landmark_weight)) {
     result += pull.weight * (deformed_.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm();
   }
@@ -108,22 +114,23 @@ double FitLoop::energy(const FitState& state, const Matches& matches, double sha
 
 void FitLoop::move_to(const FitState& state, double slack) {
   system_.rotate(state.q);
-  deformed_.vertices = input_.mesh.vertices + vertex_displacements(subspace_, {state.q, nullptr}, context_);
+  deformed_.vertices = input_.mesh.vertices + system_.vertices_at(state.q, context_);
   surface_.index.move(deformed_, slack, context_);
 }
 
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
                    FitIteration& record) {
   const auto pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
-  const FitSystem::Hold hold{now.stiffness, damping, state.q};
-  const FitSystem::Solution solution = system_.solve(matches.pairs, share, matches.points, pulls, hold, context_);
-  const Points before = sample_displacements(subspace_, state.q);
+  const DeformationSystem::Hold hold{now.stiffness, damping, state.q};
+  const DeformationSystem::Solution solution =
+      system_.solve(matches.pairs, share, matches.points, pulls, hold, context_);
+  const Points before = system_.samples_at(state.q);
   state.q = solution.q;
   const Motion back = inverse(solution.scan_step);
   state.pose = state.pose * Similarity{1, back.linear, back.translation};
   move_to(state, kSlack * now.robust);
   record.damping = damping;
-  record.change = (sample_displacements(subspace_, state.q) - before).rowwise().norm().maxCoeff() / size_;
+  record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;
 }
 
 FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double energy) const {
@@ -131,14 +138,14 @@ FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double
   record.stiffness = now.stiffness;
   record.correspondences = matches.of_scan;
   record.rms = matches.rms;
-  record.energy = energy / (samples_ * size_ * size_);
+  record.energy = energy / (static_cast<double>(system_.samples()) * size_ * size_);
   return record;
 }
 
 std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations) {
   struct Best {
     FitState state;
-    FitSystem::Rotations rotations;
+    DeformationSystem::Rotations rotations;
     Matches matches;
     double energy;
   };
@@ -149,6 +156,7 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
   std::string reason = kUsedUp;
   while (static_cast<int>(iterations.size()) < options_.most_iterations) {
     context_.progress("fit", double(iterations.size()) / options_.most_iterations);
+    const Clock clock;
     Matches matches = match(state, now);
     if (!best) share = share_of(matches);  // the same from then on: energies are compared
     const double energy_now = energy(state, matches, share, now);
@@ -163,10 +171,12 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
       damping *= kDampingStep;
     }
     if (stalled >= kStalled) {
+      iterations.back().seconds = clock.seconds();
       reason = "settled: the energy no longer falls";
       break;
     }
     step(state, best->matches, now, share, damping, iterations.back());
+    iterations.back().seconds = clock.seconds();
     if (iterations.back().change < kStill) {
       reason = "settled: no sample moves by more than 0.01 % of the diagonal";
       break;
@@ -186,6 +196,7 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
   Stage now = stage(0);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.most_iterations);
+    const Clock clock;
     now = stage(i);
     const Matches matches = match(state, now);
     if (matches.pairs.empty() && input_.landmarks.empty() && input_.handles.empty()) {
@@ -195,6 +206,7 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
     iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
     least_stiffness_ = stiffness_for(matches.spread);
     step(state, matches, now, share, 0, iterations.back());
+    iterations.back().seconds = clock.seconds();
   }
   std::string reason = kUsedUp;
   for (const double robust : kSettling) {

@@ -9,15 +9,15 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
-#include "fit_system.h"
-#include "silhouette_pulls.h"
+#include "deformation_system.h"
+#include "scan_views.h"
 
 namespace orbifit {
 
 /// Where a fit has come to.
 struct FitState {
-  Similarity pose;  ///< template -> scan
-  Eigen::VectorXd q;
+  Similarity pose;    ///< template -> scan
+  Eigen::VectorXd q;  ///< of the system's unknowns
 };
 
 /// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it. Then the
@@ -26,9 +26,9 @@ struct FitState {
 /// holds still instead of swaying from one iteration to the next.
 class FitLoop {
  public:
-  /// All references are kept.
-  FitLoop(const FitInput& input, const PreparedScan& scan, const Subspace& subspace, const FitOptions& options,
-          const RunContext& context);
+  /// All references are kept. \param views  of the same scan \param system  turned as the iterations go
+  FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
+          const FitOptions& options, const RunContext& context);
 
   /// Improves the state in place. \param first_level  of FitOptions::levels, where to begin \return why it stopped
   std::string run(FitState& state, int first_level, std::vector<FitIteration>& iterations);
@@ -63,16 +63,13 @@ class FitLoop {
 
   const FitInput& input_;
   const PreparedScan& scan_;
-  const Subspace& subspace_;
+  const ScanViews& views_;
+  DeformationSystem& system_;
   const FitOptions& options_;
   const RunContext& context_;
-  double size_;                // the template's diagonal
-  double samples_;             // of the subspace
+  double size_;                 // the template's diagonal
   double last_stiffness_ = 0;   // as the scan's noise allows
   double least_stiffness_ = 0;  // as what is left unexplained allows
-  bool signed_normals_;
-  FitSystem system_;
-  SilhouettePulls silhouette_;
   Mesh deformed_;
   MatchSurface surface_;  // of deformed_
   std::vector<int> likely_;

@@ -23,9 +23,7 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
   return result;
 }
 
-}  // namespace
-
-FitStarts find_starts(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
+FitStarts starts_of(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
   FitStarts result;
@@ -35,7 +33,9 @@ FitStarts find_starts(const FitInput& input, const FitOptions& options, const Ru
     clock.finished("placement");
     if (!result.places.empty()) return result;
   }
-  PlacedScan start{prepare_scan(input.scan, preparation, context), input.pose};
+  PlacedScan start;
+  start.scan = prepare_scan(input.scan, preparation, context);
+  start.pose = input.pose;
   clock.finished("scan");
   if (!input.landmarks.empty()) {
     start.pose = align_landmarks(input.mesh, input.landmarks);
@@ -44,6 +44,16 @@ FitStarts find_starts(const FitInput& input, const FitOptions& options, const Ru
   }
   clock.finished("alignment");
   result.places.push_back(std::move(start));
+  return result;
+}
+
+}  // namespace
+
+FitStarts find_starts(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
+  FitStarts result = starts_of(input, options, context, clock);
+  for (PlacedScan& start : result.places) {
+    start.views = std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, context);
+  }
   return result;
 }
 

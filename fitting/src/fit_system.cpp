@@ -4,55 +4,31 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
+#include "orbifit/subspace/corotation.h"
+
+#include "condition.h"
 
 namespace orbifit {
 
-namespace {
-
-// Prefers the pose to a deformation that does the same, relative to one sample's share of the data.
-constexpr double kPreferPose = 1e-6;
-
-// Sum over neighbours of (R_i + R_j) / 2 (x_i - x_j) less the same unrotated: what stretching pulls towards.
-Points stretch_pull(const Corotation& corotation, const std::vector<Eigen::Matrix3d>& rotations) {
-  Points pull = Points::Zero(corotation.rest.rows(), 3);
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (const int j : corotation.neighbours[i]) {
-      const Eigen::Vector3d edge = (corotation.rest.row(row) - corotation.rest.row(j)).transpose();
-      const Eigen::Matrix3d mean = 0.5 * (rotations[i] + rotations[static_cast<std::size_t>(j)]);
-      pull.row(row) += (mean * edge - edge).transpose();
-    }
-  }
-  return pull;
-}
-
-}  // namespace
-
 FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
-    : subspace_(subspace),
+    : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
+      subspace_(subspace),
       rows_(subspace),
       mesh_(mesh),
       diagonal_(diagonal(mesh.vertices)),
       pivot_(bounding_box_centre(mesh.vertices)),
-      corotation_(corotation(subspace.sampling.points, 2 * subspace.sampling.radius)),
-      rotations_(static_cast<std::size_t>(subspace.sampling.points.rows()), Eigen::Matrix3d::Identity()) {
-  // Per sample and neighbour, so that the stiffness means the same on every sampling.
-  const double degree = std::max(1.0, corotation_.laplacian.diagonal().mean());
-  corotation_.laplacian /= degree;
-  corotation_.delta /= degree;
-  stretch_ = stretch / degree;
-  const Eigen::SparseMatrix<double> bending = corotation_.laplacian.transpose() * corotation_.laplacian;
-  const Eigen::SparseMatrix<double> stretching = corotation_.laplacian * (degree * stretch_);
-  stiffness_matrix_ = restricted(subspace.basis.columns, bending + stretching);
+      stiffness_matrix_(restricted(subspace.basis.columns, energy_.matrix())) {}
+
+Points FitSystem::samples_at(const Eigen::VectorXd& q) const {
+  return sample_displacements(subspace_, q);
 }
 
-void FitSystem::rotate(const Eigen::VectorXd& q) {
-  rotations_ = local_rotations(corotation_, corotation_.rest + sample_displacements(subspace_, q), rotations_);
+Points FitSystem::vertices_at(const Eigen::VectorXd& q, const RunContext& context) const {
+  return vertex_displacements(subspace_, {q, nullptr}, context);
 }
 
 // Rows of a least-squares problem that have much the same columns: multiplied out together, on those columns alone.
@@ -191,38 +167,31 @@ FitSystem::Normal FitSystem::normal_of(const std::vector<Correspondence>& pairs,
 FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
                                      const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context) {
   const Eigen::Index dof = subspace_.degrees_of_freedom();
+  const auto all_samples = static_cast<double>(samples());
   Normal normal = normal_of(pairs, share, scan_points, pulls, context);
   normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() += hold.stiffness * stiffness_matrix_;
-  normal.matrix.diagonal().head(dof).array() += kPreferPose * static_cast<double>(rotations_.size()) + hold.damping;
-  normal.matrix.diagonal().tail<6>().array() += 1e-9 * static_cast<double>(rotations_.size()) + hold.damping;
-  const Points pull = corotated_pull(corotation_, rotations_) + stretch_ * stretch_pull(corotation_, rotations_);
-  normal.side.head(dof) += hold.stiffness * (subspace_.basis.columns.transpose() * stacked(pull));
+  normal.matrix.diagonal().head(dof).array() += kPreferPose * all_samples + hold.damping;
+  normal.matrix.diagonal().tail<6>().array() += kHoldPose * all_samples + hold.damping;
+  normal.side.head(dof) += hold.stiffness * (subspace_.basis.columns.transpose() * stacked(energy_.pull()));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
 
-  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor(normal.matrix);
-  const Eigen::VectorXd unknowns = factor.solve(normal.side);
-  if (factor.info() != Eigen::Success || !unknowns.allFinite()) {
+  matrix_ = std::move(normal.matrix);
+  factor_.compute(matrix_);
+  const Eigen::VectorXd solved = factor_.solve(normal.side);
+  if (factor_.info() != Eigen::Success || !solved.allFinite()) {
     throw NoResultError("the fit's linear system has no finite solution");
   }
   Solution solution;
-  solution.q = unknowns.head(dof);
-  solution.scan_step = small_motion(unknowns.segment<3>(dof) / diagonal_, unknowns.tail<3>(), pivot_);
+  solution.q = solved.head(dof);
+  solution.scan_step = small_motion(solved.segment<3>(dof) / diagonal_, solved.tail<3>(), pivot_);
   return solution;
 }
 
-double FitSystem::regularity(const Eigen::VectorXd& q) const {
-  const Points moved = sample_displacements(subspace_, q);
-  double stretching = 0;
-  for (std::size_t i = 0; i < rotations_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (const int j : corotation_.neighbours[i]) {
-      if (j <= static_cast<int>(i)) continue;
-      const Eigen::Vector3d edge = (corotation_.rest.row(row) - corotation_.rest.row(j)).transpose();
-      const Eigen::Vector3d now = edge + (moved.row(row) - moved.row(j)).transpose();
-      stretching += (now - 0.5 * (rotations_[i] + rotations_[static_cast<std::size_t>(j)]) * edge).squaredNorm();
-    }
-  }
-  return laplace_energy(corotation_, rotations_, moved) + stretch_ * stretching;
+double FitSystem::condition() const {
+  return condition_estimate(
+      matrix_.cols(),
+      [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return matrix_.selfadjointView<Eigen::Lower>() * x; },
+      [&](const Eigen::VectorXd& b) -> Eigen::VectorXd { return factor_.solve(b); });
 }
 
 }  // namespace orbifit

@@ -3,14 +3,17 @@
 #include <utility>
 
 #include "fit_assessment.h"
+#include "fit_system.h"
 
 namespace orbifit {
 
 FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
                    const Subspace& subspace, const FitOptions& options, const RunContext& context) {
   FitResult result;
-  FitLoop loop(input, start.scan, subspace, options, context);
+  FitSystem system(subspace, input.mesh, options.stretch);
+  FitLoop loop(input, start.scan, *start.views, system, options, context);
   result.stopped_because = loop.run(state, first_level, result.iterations);
+  if (options.condition && !result.iterations.empty()) result.condition = system.condition();
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   result.pose = state.pose;
   result.q = std::move(state.q);

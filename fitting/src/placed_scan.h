@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "orbifit/fitting/placement.h"
@@ -7,6 +8,8 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
+
+#include "scan_views.h"
 
 namespace orbifit {
 
@@ -16,6 +19,7 @@ struct PlacedScan {
   Similarity pose;           ///< template -> scan
   double used_fraction = 1;  ///< share of the scan's points near those that are left
   double torn_off = 0;       ///< share that is not, being far from the template, but hangs together with those
+  std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
 };
 
 /// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain.

@@ -19,37 +19,41 @@ constexpr double kWeight = 2;          // there are fewer samples than points of
 
 SilhouettePulls::SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan,
                                  const RunContext& context)
-    : size_(diagonal(mesh.vertices)), scan_(scan), seen_(cloud, scan.points) {
+    : size_(diagonal(mesh.vertices)), spacing_(scan.spacing), seen_(cloud, scan.points) {
   Random random(context.seed, "silhouette");
-  samples_ = sample_surface(mesh, kSamples, random);
-  for (Eigen::Index i = 0; i < samples_.points.rows(); ++i) {
+  const SurfaceSamples samples = sample_surface(mesh, kSamples, random);
+  faces_ = samples.faces;
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const auto corner = [&](int k) -> Eigen::Vector3d {
-      return mesh.vertices.row(mesh.faces(samples_.faces[static_cast<std::size_t>(i)], k));
+      return mesh.vertices.row(mesh.faces(faces_[static_cast<std::size_t>(i)], k));
     };
-    barycentric_.push_back(nearest_on_triangle(samples_.points.row(i), corner(0), corner(1), corner(2)));
+    barycentric_.push_back(nearest_on_triangle(samples.points.row(i), corner(0), corner(1), corner(2)));
   }
 }
 
 double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, const Points& points,
                             const Similarity& pose, double robust, std::vector<Correspondence>& pairs,
-                            const RunContext& context) {
-  for (Eigen::Index i = 0; i < samples_.points.rows(); ++i) {
+                            const RunContext& context) const {
+  SurfaceSamples samples;
+  samples.points.resize(static_cast<Eigen::Index>(faces_.size()), 3);
+  samples.normals.resize(samples.points.rows(), 3);
+  samples.faces = faces_;
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const auto s = static_cast<std::size_t>(i);
-    samples_.points.row(i) =
-        barycentric_[s].transpose() * deformed.vertices(deformed.faces.row(samples_.faces[s]), Eigen::all);
-    samples_.normals.row(i) = surface.normal(samples_.faces[s]).transpose();
+    samples.points.row(i) = barycentric_[s].transpose() * deformed.vertices(deformed.faces.row(faces_[s]), Eigen::all);
+    samples.normals.row(i) = surface.normal(faces_[s]).transpose();
   }
-  const double reach = std::max(kReach * size_ * pose.scale, 1.5 * scan_.spacing);
+  const double reach = std::max(kReach * size_ * pose.scale, 1.5 * spacing_);
   const double scale = std::max(robust, kLeastRobust * size_);
   double error = 0;
-  for (const SeenSurface::Missed& each : seen_.missed(samples_, surface.index, pose, reach, context)) {
+  for (const SeenSurface::Missed& each : seen_.missed(samples, surface.index, pose, reach, context)) {
     const auto s = static_cast<std::size_t>(each.sample);
-    const Eigen::Vector3d offset = (points.row(each.point) - samples_.points.row(each.sample)).transpose();
+    const Eigen::Vector3d offset = (points.row(each.point) - samples.points.row(each.sample)).transpose();
     const double distance = offset.norm();
     if (!(distance > 0) || distance > kFarthest * size_) continue;
     Correspondence pair;
     pair.scan_point = each.point;
-    pair.face = samples_.faces[s];
+    pair.face = faces_[s];
     pair.barycentric = barycentric_[s];
     pair.normal = offset / distance;
     pair.distance = distance;

@@ -16,7 +16,7 @@ namespace orbifit {
 /// Points of the template that the scan should have seen: where it saw through them they are pulled to what it saw.
 class SilhouettePulls {
  public:
-  /// \param cloud  all of the scan, with its viewpoints \param scan  the points that are matched; kept by reference
+  /// \param cloud  all of the scan, with its viewpoints \param scan  the points that are matched
   SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan, const RunContext& context);
 
   bool knows_viewpoints() const { return seen_.knows_viewpoints(); }
@@ -26,13 +26,13 @@ class SilhouettePulls {
   /// \param pose template -> scan \param robust  Geman-McClure's scale, template units
   /// \return their robust_error(), weighted
   double add(const Mesh& deformed, const MatchSurface& surface, const Points& points, const Similarity& pose,
-             double robust, std::vector<Correspondence>& pairs, const RunContext& context);
+             double robust, std::vector<Correspondence>& pairs, const RunContext& context) const;
 
  private:
-  double size_;  // the template's diagonal
-  const PreparedScan& scan_;
+  double size_;     // the template's diagonal
+  double spacing_;  // the scan's
   SeenSurface seen_;
-  SurfaceSamples samples_;
+  std::vector<int> faces_;  // of the samples
   std::vector<Eigen::Vector3d> barycentric_;
 };
 
