@@ -63,7 +63,7 @@ void KurzFit::run(GridBasis basis, int most) {
   begin(basis);
   KurzNormal normal(terms_, plate_);
   const std::chrono::duration<double> begun = std::chrono::steady_clock::now() - start;
-  stopped_because_ = "the iterations allowed are used up";
+  if (basis == GridBasis::linear) stopped_because_ = "the iterations allowed are used up";
   for (int i = 0; i < most; ++i) {
     context_.progress("fit", double(i) / most);
     terms_.thin_plate = thin_plate_at(i);
