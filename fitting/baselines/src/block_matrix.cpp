@@ -41,7 +41,12 @@ BlockMatrix::BlockMatrix(const Sparse& pattern) : solver_(std::make_unique<Solve
     }
   }
   scalars_.makeCompressed();
-  solver_->cholesky.cholmod().print = 0;
+  cholmod_common& common = solver_->cholesky.cholmod();
+  common.print = 0;
+  // The better of both: symmetries link far parts of a grid, so neither always is.
+  common.nmethods = 2;
+  common.method[0].ordering = CHOLMOD_AMD;
+  common.method[1].ordering = CHOLMOD_METIS;
   solver_->cholesky.analyzePattern(scalars_);
 }
 

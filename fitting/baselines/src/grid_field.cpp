@@ -16,6 +16,10 @@ std::array<double, 4> values_along(GridBasis basis, double t) {
 
 }  // namespace
 
+Eigen::Array3i place_of(int number, const Eigen::Array3i& counts) {
+  return {number / (counts[1] * counts[2]), number / counts[2] % counts[1], number % counts[2]};
+}
+
 Grid grid_around(const Points& points, double spacing, GridBasis basis) {
   const Eigen::Array3d low = points.colwise().minCoeff().transpose();
   const Eigen::Array3d high = points.colwise().maxCoeff().transpose();
@@ -61,8 +65,7 @@ Points affine_coefficients(const Grid& grid, const Eigen::Matrix3d& linear, cons
   const double first = grid.basis == GridBasis::linear ? 0 : -1;
   Points result(nodes.prod(), 3);
   for (Eigen::Index n = 0; n < result.rows(); ++n) {
-    const auto number = static_cast<int>(n);
-    const Eigen::Array3d at(number / (nodes[1] * nodes[2]), number / nodes[2] % nodes[1], number % nodes[2]);
+    const Eigen::Array3d at = place_of(static_cast<int>(n), nodes).cast<double>();
     const Eigen::Vector3d place = grid.corner + (grid.spacing * (at + first)).matrix();
     result.row(n) = (linear * place + translation).transpose();
   }

@@ -25,6 +25,9 @@ struct Grid {
   int node_count() const { return nodes().prod(); }
 };
 
+/// Where number k stands among counts in x by y by z, z first.
+Eigen::Array3i place_of(int number, const Eigen::Array3i& counts);
+
 /// The grid whose cells, with half a spacing to spare, hold the points, and whose centre is that of their box.
 Grid grid_around(const Points& points, double spacing, GridBasis basis);
 

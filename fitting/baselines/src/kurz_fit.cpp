@@ -63,14 +63,15 @@ void KurzFit::run(GridBasis basis, int most) {
   begin(basis);
   KurzNormal normal(terms_, plate_);
   const std::chrono::duration<double> begun = std::chrono::steady_clock::now() - start;
-  stopped_because_ = "the iterations allowed are used up";
+  if (basis == GridBasis::linear) stopped_because_ = "the iterations allowed are used up";
   for (int i = 0; i < most; ++i) {
     context_.progress("fit", double(i) / most);
     terms_.thin_plate = thin_plate_at(i);
     iterate(normal, i == 0);
     if (i == 0) iterations_.back().seconds += begun.count();
     if (terms_.thin_plate == options_.thin_plate_weight && iterations_.back().change < options_.still / size_) {
-      stopped_because_ = "settled: no vertex moves by more than " + std::to_string(options_.still);
+      stopped_because_ =
+          "settled: no vertex moves by more than " + std::to_string(options_.still) + " of the longest side";
       break;
     }
   }

@@ -52,7 +52,7 @@ class KurzFit {
   MatchSurface surface_;  // of deformed_
   std::vector<int> likely_;
   std::vector<FitIteration> iterations_;
-  std::string stopped_because_;
+  std::string stopped_because_;  // of the linear functions, or of the smooth ones where those came to rest
   double condition_ = 0;
 };
 

@@ -21,9 +21,7 @@ Sparse weighted_product(const SparseRows& left, const Eigen::VectorXd& weights, 
 Sparse cell_pattern(const Grid& grid) {
   Points centres(grid.cells.prod(), 3);
   for (Eigen::Index c = 0; c < centres.rows(); ++c) {
-    const auto number = static_cast<int>(c);
-    const Eigen::Array3d at(number / (grid.cells[1] * grid.cells[2]), number / grid.cells[2] % grid.cells[1],
-                            number % grid.cells[2]);
+    const Eigen::Array3d at = place_of(static_cast<int>(c), grid.cells).cast<double>();
     centres.row(c) = (grid.corner.array() + grid.spacing * (at + 0.5)).matrix().transpose();
   }
   const SparseRows values = basis_values(grid, centres);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/model/errors.h"
 
@@ -135,6 +136,20 @@ TEST_F(KurzWithHandles, EditIsTheSameInAnotherPoseAndUnit) {
       fit_kurz({model_.mesh, annotation_, nothing_, motion, {}, handles()}, options_, {}).fitted.vertices;
   for (Eigen::Index v = 0; v < here.rows(); ++v) {
     EXPECT_LT((motion(here.row(v).transpose()) - there.row(v).transpose()).norm(), 1e-9);
+  }
+}
+
+TEST_F(KurzWithHandles, AnnotationHasTheSymmetriesAsTheyWereCarried) {
+  const Similarity pose{20, axis_rotation(Eigen::Vector3d(1, 2, 3).normalized(), 0.7), {5, -6, 7}};
+  options_.symmetry_weight = 1e6;
+  for (const GroupMode mode : {GroupMode::fixed, GroupMode::floating, GroupMode::moving}) {
+    options_.mode = mode;
+    const FitResult result = fit_kurz({model_.mesh, annotation_, nothing_, pose, {}, handles()}, options_, {});
+    RunContext context;
+    const SymmetryReport report =
+        symmetry_residual(result.fitted, result.annotation, nullptr, CarriedMotions::fixed, context);
+    EXPECT_LT(report.worst_floor, 1e-5) << to_string(mode);
+    EXPECT_LT(result.field_residual, 1e-6) << to_string(mode);
   }
 }
 

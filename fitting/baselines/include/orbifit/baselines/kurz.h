@@ -14,7 +14,7 @@ enum class KurzSolver {
 
 /// Kurz et al. 2014. Lengths are those of a template whose longest side is 1. The weights stand before
 ///   handles       sum of squared distances; a landmark counts as 1, the vertices of a handle share 3
-///   data          sum over the scan's points, <n, f(p) - d>^2 with the scan's normals, scaled to `scan_points` of them
+///   data          sum over the scan's points, <n, f(p) - d>^2, scaled as if there were `scan_points` of them
 ///   thin plate    integral over the grid of the squared Hessian of f
 ///   symmetry      for each generator of each region, the integral of |T f(x) - f(g x)|^2 over the region, divided by
 ///                 the template's area and times `scan_points`: a whole shape's symmetry counts as a whole scan
@@ -50,8 +50,8 @@ struct KurzOptions {
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
 
-/// Template deformation and fitting with symmetry as transfinite least-squares constraints: Kurz, Wu, Wand, Seidel,
-/// Kohli, "Symmetry-Aware Template Deformation and Fitting", 2014. The unknowns are the coefficients of basis functions
+/// Template deformation and fitting with symmetry as transfinite least-squares constraints: Kurz et al.,
+/// "Symmetry-Aware Template Deformation and Fitting", 2014. The unknowns are the coefficients of basis functions
 /// on a grid around the template and the translations of the symmetries; the normal equations are solved by sparse
 /// Cholesky. A scan without points and with handles asks for an edit by those handles.
 /// Of the result, `samples` counts the grid's nodes, `degrees_of_freedom` the last stage's unknowns, `q` is empty, and
