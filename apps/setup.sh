@@ -9,7 +9,7 @@ build=$root/build/release
 # Everything that a bare Debian 12 lacks; the only list of packages.
 packages=(
   g++ cmake ninja-build
-  libeigen3-dev libpcl-dev libflann-dev liblz4-dev libgtest-dev
+  libeigen3-dev libceres-dev libpcl-dev libflann-dev liblz4-dev libgtest-dev
   libembree-dev libcli11-dev nlohmann-json3-dev libstb-dev
   libcgal-demo # real meshes
 )
