@@ -49,6 +49,7 @@ SaddleSystem::SaddleSystem(Sparse constraints)
 }
 
 SaddleSystem::~SaddleSystem() = default;
+SaddleSystem::SaddleSystem(SaddleSystem&&) noexcept = default;
 
 void SaddleSystem::factorise(const Sparse& lower, const Eigen::MatrixXd& border, const Eigen::MatrixXd& corner) {
   matrix_ = lower;

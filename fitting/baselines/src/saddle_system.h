@@ -21,6 +21,7 @@ class SaddleSystem {
   /// \param constraints C, any number of rows
   explicit SaddleSystem(Sparse constraints);
   ~SaddleSystem();
+  SaddleSystem(SaddleSystem&&) noexcept;
 
   /// \param lower  lower half of A without its border, n by n; while its pattern stays, so does the symbolic analysis
   /// \param border n by k \param corner k by k
