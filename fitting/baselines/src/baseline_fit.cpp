@@ -84,7 +84,8 @@ void carry_annotation(const FitInput& input, const Subspace* subspace, const Eig
     const auto basis = std::make_shared<CarriedBasis>();
     basis->carried = carriers;
     basis->carried_offset = Eigen::VectorXd::Zero(carriers.size());
-    carried = carried_annotation(input.annotation, *subspace, SubspaceState{Eigen::VectorXd::Ones(1), basis}, input.mesh);
+    carried =
+        carried_annotation(input.annotation, *subspace, SubspaceState{Eigen::VectorXd::Ones(1), basis}, input.mesh);
   }
   result.annotation = transformed(carried, result.pose);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);

@@ -17,7 +17,10 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kWeight = 1e3;     // of C^T C, relative to the mean of A's diagonal
+constexpr double kWeight = 1e3;  // of C^T C, relative to the mean of A's diagonal
+// What no constraint holds, nor A (groups carried along their axes), still gives a positive pivot; refinement takes
+// this out again. Relative to w C^T C.
+constexpr double kShift = 1e-10;
 constexpr double kSettled = 1e-15;  // of the solution: refinement stops at smaller steps,
 constexpr int kMostSteps = 30;
 constexpr double kSlowest = 0.5;  // or when they no longer shrink by this
@@ -57,7 +60,10 @@ void SaddleSystem::factorise(const Sparse& lower, const Eigen::MatrixXd& border,
   corner_ = corner;
   weight_ = kWeight * matrix_.diagonal().mean();
   Sparse system = matrix_;
-  if (constraints_.rows() > 0) system += weight_ * gram_;
+  if (constraints_.rows() > 0) {
+    system += weight_ * gram_;
+    system.diagonal() += kShift * weight_ * gram_.diagonal();
+  }
   system.makeCompressed();
   if (!factor_->analysed(system)) factor_->analyse(system);
   factor_->cholesky.factorize(system);
@@ -117,10 +123,26 @@ VectorXd SaddleSystem::solve(const VectorXd& right) const {
   return solve(right, VectorXd::Zero(constraints_.rows())).x;
 }
 
+// The part of a vector in the range of C: rounding elsewhere would make multipliers grow.
+VectorXd SaddleSystem::in_range(const VectorXd& of_constraints, const RangeFactor& factor) const {
+  constexpr int kSteps = 3;
+  VectorXd combination = VectorXd::Zero(constraints_.cols());
+  for (int step = 0; step < kSteps; ++step) {
+    combination += factor.solve(constraints_.transpose() * (of_constraints - constraints_ * combination));
+  }
+  return constraints_ * combination;
+}
+
 double SaddleSystem::condition() const {
   const Eigen::Index n = matrix_.cols();
   const Eigen::Index size = n + border_.cols();
   const Eigen::Index rows = constraints_.rows();
+  RangeFactor range;
+  if (rows > 0) {
+    Sparse shifted = gram_;
+    shifted.diagonal().array() += kShift * gram_.diagonal().mean();
+    range.compute(shifted);
+  }
   const auto multiply_all = [&](const VectorXd& x) -> VectorXd {
     VectorXd result(size + rows);
     result.head(size) = multiply(x.head(size));
@@ -129,7 +151,7 @@ double SaddleSystem::condition() const {
     return result;
   };
   const auto solve_all = [&](const VectorXd& right) -> VectorXd {
-    const Pair pair = solve(right.head(size), right.tail(rows));
+    const Pair pair = solve(right.head(size), rows > 0 ? in_range(right.tail(rows), range) : VectorXd(0));
     VectorXd result(size + rows);
     result << pair.x, pair.multipliers;
     return result;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
 namespace orbifit {
@@ -43,6 +44,8 @@ class SaddleSystem {
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;  // by A
   Eigen::VectorXd eliminate(const Eigen::VectorXd& right) const;
   void prepare_border();
+  using RangeFactor = Eigen::SimplicialLDLT<Sparse, Eigen::Lower>;
+  Eigen::VectorXd in_range(const Eigen::VectorXd& of_constraints, const RangeFactor& factor) const;
 
   Sparse constraints_;
   Sparse gram_;  // lower half of C^T C

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 
 #include "orbifit/baselines/symmetry_constraints.h"
 #include "orbifit/model/errors.h"
@@ -24,17 +24,19 @@ constexpr double kMoving = 1e-6;  // share of a null vector that moves samples
 Eigen::MatrixXd svd_nullspace(const Eigen::SparseMatrix<double>& constraints) {
   const Eigen::Index columns = constraints.cols();
   if (constraints.rows() == 0) return Eigen::MatrixXd::Identity(columns, columns);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(constraints), Eigen::ComputeFullV);
-  const Eigen::Index rank = (svd.singularValues().array() > kFree).count();
-  return svd.matrixV().rightCols(columns - rank);
+  // The right singular vectors are the eigenvectors of C^T C. Eigen's divide and conquer mixes them up where singular
+  // values are many times the same, as they are here.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> svd(Eigen::MatrixXd(constraints.transpose() * constraints));
+  return svd.eigenvectors().leftCols((svd.eigenvalues().array() < kFree * kFree).count());
 }
 
 Subspace with_svd_basis(Subspace subspace) {
   const Eigen::MatrixXd all = svd_nullspace(symmetry_constraints(subspace));
   const Eigen::Index moved = 3 * subspace.sampling.points.rows();
-  const Eigen::BDCSVD<Eigen::MatrixXd> parts(all.topRows(moved), Eigen::ComputeThinV);
-  const Eigen::Index free = (parts.singularValues().array() > kMoving).count();
-  const Eigen::MatrixXd basis = all * parts.matrixV().leftCols(free);
+  const Eigen::MatrixXd gram = all.topRows(moved).transpose() * all.topRows(moved);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(gram);
+  const Eigen::Index free = (parts.eigenvalues().array() > kMoving * kMoving).count();
+  const Eigen::MatrixXd basis = all * parts.eigenvectors().rightCols(free);
   subspace.basis.columns = basis.topRows(moved).sparseView(0, 0);
   subspace.basis.carried = basis.bottomRows(basis.rows() - moved);
   subspace.basis.atoms = subspace.basis.columns;  // the plain lift's atoms are the samples
