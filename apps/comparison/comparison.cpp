@@ -1,10 +1,15 @@
 #include "comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
+#include <string_view>
 
+#include "orbifit/baselines/full_sampling.h"
 #include "orbifit/baselines/kurz.h"
+#include "orbifit/baselines/similarity_fit.h"
+#include "orbifit/baselines/svd_nullspace.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
 
@@ -32,10 +37,41 @@ FitResult run_kurz(const FitInput& input, const FitOptions& options, double weig
   return fit_kurz(input, kurz, context);
 }
 
+Run on_full_sampling(FullSymmetry symmetry) {
+  return [symmetry](const FitInput& input, const FitOptions& options, double weight, const RunContext& context) {
+    FullSamplingOptions chosen;
+    chosen.fit = options;
+    chosen.symmetry = symmetry;
+    if (weight > 0) chosen.weight = weight;
+    return fit_full_sampling(input, chosen, context);
+  };
+}
+
+FitResult run_svd(const FitInput& input, const FitOptions& options, double, const RunContext& context) {
+  SvdNullspaceOptions chosen;
+  chosen.fit = options;
+  return fit_svd_nullspace(input, chosen, context);
+}
+
+FitResult run_similarity(const FitInput& input, const FitOptions& options, double, const RunContext& context) {
+  SimilarityOptions chosen;
+  chosen.fit = options;
+  return fit_similarity(input, chosen, context);
+}
+
 const Run& run_of(const std::string& name) {
-  static const std::map<std::string, Run> runs{{"ours", run_ours}, {"kurz", run_kurz}};
+  static const std::map<std::string, Run> runs{{"ours", run_ours},
+                                               {"kurz", run_kurz},
+                                               {"soft", on_full_sampling(FullSymmetry::soft)},
+                                               {"full-constrained", on_full_sampling(FullSymmetry::constrained)},
+                                               {"svd-nullspace", run_svd},
+                                               {"none", on_full_sampling(FullSymmetry::none)},
+                                               {"similarity", run_similarity}};
   return runs.at(name);
 }
+
+// Stages before the iterations.
+constexpr std::array<std::string_view, 4> kBefore{"scan", "alignment", "subspace", "prepare"};
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -105,6 +141,11 @@ const std::vector<Method>& methods() {
   static const std::vector<Method> all{
       {"ours", "exact symmetric subspace", 0},
       {"kurz", "grid deformation, symmetry by least squares (Kurz et al. 2014)", 3},
+      {"soft", "all samples free, symmetry as a penalty", 100},
+      {"full-constrained", "all samples, symmetry by Lagrange multipliers", 0},
+      {"svd-nullspace", "null space of the constraints by SVD (Bokeloh et al. 2012)", 0},
+      {"none", "all samples free, no symmetry", 0},
+      {"similarity", "rigid motion and scale", 0},
   };
   return all;
 }
@@ -139,14 +180,11 @@ MethodRun run_method(const Method& method, double weight, const FitInput& input,
     return run;
   }
   std::vector<double> seconds;
-  double iterations = 0;
-  for (const FitIteration& iteration : run.result.iterations) {
-    seconds.push_back(iteration.seconds);
-    iterations += iteration.seconds;
-  }
+  for (const FitIteration& iteration : run.result.iterations) seconds.push_back(iteration.seconds);
   run.iteration = median(seconds);
-  for (const StageTime& time : run.result.times) run.prepare += time.seconds;
-  run.prepare = std::max(0.0, run.prepare - iterations);
+  for (const StageTime& time : run.result.times) {
+    if (std::ranges::find(kBefore, time.stage) != std::end(kBefore)) run.prepare += time.seconds;
+  }
   const SymmetryReport symmetry =
       symmetry_residual(input.mesh, input.annotation, &run.result.fitted, CarriedMotions::moving, context);
   run.symmetry = symmetry.worst_excess;

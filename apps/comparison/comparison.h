@@ -49,7 +49,7 @@ struct MethodRun {
   std::string worst_region;       ///< whose that is
   Eigen::VectorXd vertex_excess;  ///< #V: see SymmetryReport
   std::optional<FitScore> score;  ///< where the truth is known
-  double prepare = 0;             ///< seconds of all that is no iteration
+  double prepare = 0;             ///< seconds before the first iteration
   double iteration = 0;           ///< seconds of one, the median
 };
 

@@ -8,11 +8,12 @@ namespace orbifit {
 
 using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 
-/// Estimate of the 2-norm of a symmetric linear map: power iteration, always from the same vector. From below, mostly
-/// to a percent. \param size of its vectors
-double norm_estimate(Eigen::Index size, const LinearMap& map);
+/// Estimate of the 2-norm of a symmetric linear map by power iteration: from below, mostly to a percent.
+/// \param start any vector with a part in the direction that grows most
+double norm_estimate(Eigen::VectorXd start, const LinearMap& map);
 
-/// Estimate of the 2-norm condition number of a symmetric matrix. \param solve applies its inverse
+/// Estimate of the 2-norm condition number of a symmetric matrix, or of a singular one on its range. Deterministic.
+/// \param solve applies its inverse to vectors of its range, with results in its range
 double condition_estimate(Eigen::Index size, const LinearMap& multiply, const LinearMap& solve);
 
 }  // namespace orbifit

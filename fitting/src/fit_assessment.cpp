@@ -13,6 +13,16 @@
 
 namespace orbifit {
 
+double pulls_rms(const FitInput& input, const FitResult& result) {
+  const auto pulls = pulls_towards(input, result.pose, 1);
+  if (pulls.empty()) return 0;
+  double squares = 0;
+  for (const Pull& pull : pulls) {
+    squares += (result.fitted.vertices.row(pull.vertex).transpose() - result.pose(pull.target)).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(pulls.size())) / diagonal(result.fitted.vertices);
+}
+
 void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, const RunContext& context,
                 FitResult& result) {
   const double size = diagonal(result.fitted.vertices);
@@ -54,12 +64,7 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOption
   }
   result.hidden_fraction = hidden / areas.sum();
 
-  double missed = 0;
-  const auto pulls = pulls_towards(input, result.pose, 1);
-  for (const Pull& pull : pulls) {
-    missed += (result.fitted.vertices.row(pull.vertex).transpose() - result.pose(pull.target)).squaredNorm();
-  }
-  if (!pulls.empty()) result.landmark_rms = std::sqrt(missed / static_cast<double>(pulls.size())) / size;
+  result.landmark_rms = pulls_rms(input, result);
 }
 
 }  // namespace orbifit

@@ -5,6 +5,10 @@
 
 namespace orbifit {
 
+/// Root mean square distance of landmarks' and handles' vertices from where they belong, of the fitted mesh's diagonal;
+/// 0 without any. Reads `fitted` and `pose`.
+double pulls_rms(const FitInput& input, const FitResult& result);
+
 /// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
 /// `inlier_fraction`, `rms`, `covered`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms` from `fitted` and
 /// `pose`, `used_fraction` and `torn_off`.

@@ -9,7 +9,6 @@
 
 #include "fit_assessment.h"
 #include "kurz_fit.h"
-#include "pulls.h"
 #include "unit_input.h"
 
 namespace orbifit {
@@ -22,15 +21,6 @@ void require(bool holds, const std::string& field, double value, const std::stri
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double rms_of_pulls(const FitInput& input, const FitResult& result) {
-  const auto pulls = pulls_towards(input, result.pose, 1);
-  double squares = 0;
-  for (const Pull& pull : pulls) {
-    squares += (result.fitted.vertices.row(pull.vertex).transpose() - result.pose(pull.target)).squaredNorm();
-  }
-  return std::sqrt(squares / static_cast<double>(pulls.size())) / diagonal(result.fitted.vertices);
 }
 
 }  // namespace
@@ -68,7 +58,7 @@ FitResult fit_kurz(const FitInput& input, const KurzOptions& options, const RunC
   result.times = {{"prepare", prepared}, {"fit", seconds_since(start)}, {"smooth", seconds_since(smooth)}};
   result.converged = true;
   if (unit.points.rows() == 0) {
-    result.landmark_rms = rms_of_pulls(input, result);
+    result.landmark_rms = pulls_rms(input, result);
     return result;
   }
   FitOptions assessment;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "orbifit/fitting/fit.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/subspace/subspace.h"
+
+#include "placed_scan.h"
+#include "stage_clock.h"
+
+namespace orbifit {
+
+/// Whether the handles alone say what to do. \throw InputError where there is neither a scan nor a handle
+bool by_handles_alone(const FitInput& input);
+
+/// Where a baseline starts: the one of fit()'s starts that it tries first.
+PlacedScan baseline_start(const FitInput& input, const FitOptions& options, const RunContext& context);
+
+/// Fills in what follows from the vertices' displacements (#V by 3, template's frame) and result.pose: the fitted mesh,
+/// what it explains of the scan (`start`, null where there is none), and whether that is enough.
+void finish_baseline(const FitInput& input, const FitOptions& options, const Points& displacements,
+                     const PlacedScan* start, const RunContext& context, FitResult& result);
+
+/// The template's annotation with regions and patterns carried by translations t (3 #carriers; empty: as they are),
+/// then posed by result.pose, as result.annotation; and as it is, as result.rest_annotation.
+void carry_annotation(const FitInput& input, const Subspace* subspace, const Eigen::VectorXd& carriers,
+                      FitResult& result);
+
+}  // namespace orbifit

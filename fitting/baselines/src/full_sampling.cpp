@@ -1,0 +1,78 @@
+#include "orbifit/baselines/full_sampling.h"
+
+#include "orbifit/baselines/symmetry_constraints.h"
+#include "orbifit/model/errors.h"
+
+#include "baseline_fit.h"
+#include "fit_loop.h"
+#include "full_editing.h"
+#include "full_system.h"
+#include "plain_weights.h"
+
+namespace orbifit {
+
+namespace {
+
+// The largest residual of three rows.
+double worst_constraint(const Subspace& subspace, const Eigen::VectorXd& unknowns) {
+  const Eigen::SparseMatrix<double> constraints = symmetry_constraints(subspace);
+  if (constraints.rows() == 0) return 0;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(constraints.cols());
+  all.head(unknowns.size()) = unknowns;
+  const Eigen::VectorXd left = constraints * all;
+  return Eigen::Map<const Points>(left.data(), left.size() / 3, 3).rowwise().norm().maxCoeff() / subspace.diagonal;
+}
+
+}  // namespace
+
+std::string to_string(FullSymmetry symmetry) {
+  return symmetry == FullSymmetry::none ? "none" : symmetry == FullSymmetry::soft ? "soft" : "constrained";
+}
+
+void FullSamplingOptions::validate() const {
+  fit.validate();
+  if (!(weight > 0)) throw UsageError("weight is " + std::to_string(weight) + "; it must be positive");
+  if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be positive");
+  if (edit_iterations < 1) {
+    throw UsageError("edit_iterations is " + std::to_string(edit_iterations) + "; it must be at least 1");
+  }
+}
+
+FitResult fit_full_sampling(const FitInput& input, const FullSamplingOptions& options, const RunContext& context) {
+  options.validate();
+  FitResult result;
+  StageClock clock(result.times);
+  SubspaceOptions plain = options.fit.subspace;
+  plain.lift = LiftKind::paper;
+  PlacedScan start;
+  const bool edit = by_handles_alone(input);
+  if (!edit) start = baseline_start(input, options.fit, context);
+  const Subspace subspace = build_subspace(input.mesh, input.annotation, plain, context);
+  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  Points displacements;
+  if (edit) {
+    clock.finished("prepare");
+    result.pose = input.pose;
+    result.q = edit_full_sampling(subspace, input.mesh, input.handles, options, result);
+    displacements = plain_weights(subspace) * Eigen::Map<const Points>(result.q.data(), result.samples, 3);
+  } else {
+    FullSystem system(subspace, input.mesh, options.fit.stretch, options.symmetry, options.weight);
+    clock.finished("prepare");
+    FitState state{start.pose, Eigen::VectorXd::Zero(system.unknowns())};
+    FitLoop loop(input, start.scan, *start.views, system, options.fit, context);
+    result.stopped_because = loop.run(state, 0, result.iterations);
+    if (options.fit.condition && !result.iterations.empty()) result.condition = system.condition();
+    result.pose = state.pose;
+    result.q = state.q;
+    displacements = system.vertices_at(state.q, context);
+  }
+  clock.finished("fit");
+  result.degrees_of_freedom = static_cast<int>(result.q.size());
+  finish_baseline(input, options.fit, displacements, edit ? nullptr : &start, context, result);
+  const Eigen::Index carriers = result.q.size() - 3 * Eigen::Index{result.samples};
+  carry_annotation(input, &subspace, result.q.tail(carriers), result);
+  result.field_residual = worst_constraint(subspace, result.q);
+  return result;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,93 @@
+#include "orbifit/baselines/svd_nullspace.h"
+
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "orbifit/baselines/symmetry_constraints.h"
+#include "orbifit/model/errors.h"
+#include "orbifit/subspace/deformer.h"
+
+#include "baseline_fit.h"
+#include "fit_loop.h"
+#include "fit_system.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kFree = 3e-4;    // singular values below this: as symmetric_basis() sees them
+constexpr double kMoving = 1e-6;  // share of a null vector that moves samples
+
+}  // namespace
+
+Eigen::MatrixXd svd_nullspace(const Eigen::SparseMatrix<double>& constraints) {
+  const Eigen::Index columns = constraints.cols();
+  if (constraints.rows() == 0) return Eigen::MatrixXd::Identity(columns, columns);
+  // The right singular vectors are the eigenvectors of C^T C. Eigen's divide and conquer mixes them up where singular
+  // values are many times the same, as they are here.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> svd(Eigen::MatrixXd(constraints.transpose() * constraints));
+  return svd.eigenvectors().leftCols((svd.eigenvalues().array() < kFree * kFree).count());
+}
+
+Subspace with_svd_basis(Subspace subspace) {
+  const Eigen::MatrixXd all = svd_nullspace(symmetry_constraints(subspace));
+  const Eigen::Index moved = 3 * subspace.sampling.points.rows();
+  const Eigen::MatrixXd gram = all.topRows(moved).transpose() * all.topRows(moved);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(gram);
+  const Eigen::Index free = (parts.eigenvalues().array() > kMoving * kMoving).count();
+  const Eigen::MatrixXd basis = all * parts.eigenvectors().rightCols(free);
+  subspace.basis.columns = basis.topRows(moved).sparseView(0, 0);
+  subspace.basis.carried = basis.bottomRows(basis.rows() - moved);
+  subspace.basis.atoms = subspace.basis.columns;  // the plain lift's atoms are the samples
+  return subspace;
+}
+
+void SvdNullspaceOptions::validate() const {
+  fit.validate();
+  if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be positive");
+  if (edit_iterations < 1) {
+    throw UsageError("edit_iterations is " + std::to_string(edit_iterations) + "; it must be at least 1");
+  }
+}
+
+FitResult fit_svd_nullspace(const FitInput& input, const SvdNullspaceOptions& options, const RunContext& context) {
+  options.validate();
+  FitResult result;
+  StageClock clock(result.times);
+  SubspaceOptions plain = options.fit.subspace;
+  plain.lift = LiftKind::paper;
+  PlacedScan start;
+  const bool edit = by_handles_alone(input);
+  if (!edit) start = baseline_start(input, options.fit, context);
+  Subspace own = build_subspace(input.mesh, input.annotation, plain, context);
+  StageClock of_basis(result.times);
+  const Subspace subspace = with_svd_basis(std::move(own));
+  of_basis.finished("null space");
+  clock.finished("prepare");
+  result.pose = input.pose;
+  if (edit) {
+    Deformer deformer(subspace, input.mesh, {}, context);
+    deformer.set_handles(input.handles, options.alpha);
+    std::vector<Motion> motions;
+    for (const Handle& handle : input.handles) motions.push_back(handle.motion);
+    result.q = deformer.solve(motions, options.edit_iterations).state.q;
+  } else {
+    FitSystem system(subspace, input.mesh, options.fit.stretch);
+    FitState state{start.pose, Eigen::VectorXd::Zero(system.unknowns())};
+    FitLoop loop(input, start.scan, *start.views, system, options.fit, context);
+    result.stopped_because = loop.run(state, 0, result.iterations);
+    if (options.fit.condition && !result.iterations.empty()) result.condition = system.condition();
+    result.pose = state.pose;
+    result.q = state.q;
+  }
+  clock.finished("fit");
+  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  result.degrees_of_freedom = subspace.degrees_of_freedom();
+  finish_baseline(input, options.fit, vertex_displacements(subspace, {result.q, nullptr}, context),
+                  edit ? nullptr : &start, context, result);
+  carry_annotation(input, &subspace, subspace.basis.carried * result.q, result);
+  return result;
+}
+
+}  // namespace orbifit
