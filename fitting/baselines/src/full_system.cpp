@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "orbifit/baselines/symmetry_constraints.h"
 #include "orbifit/fitting/alignment.h"
@@ -45,6 +46,19 @@ VectorXd metric_of(const SymmetricSampling& sampling, bool shared, Index unknown
   return result;
 }
 
+std::vector<int> nearest_samples(const LiftWeights& weights) {
+  std::vector<int> result(static_cast<std::size_t>(weights.rows()), 0);
+  for (Index v = 0; v < weights.rows(); ++v) {
+    double largest = 0;
+    for (LiftWeights::InnerIterator entry(weights, v); entry; ++entry) {
+      if (entry.value() <= largest) continue;
+      largest = entry.value();
+      result[static_cast<std::size_t>(v)] = static_cast<int>(entry.col());
+    }
+  }
+  return result;
+}
+
 Sparse constraints_of(const Subspace& subspace, FullSymmetry symmetry) {
   if (symmetry == FullSymmetry::none) return Sparse(0, 3 * subspace.sampling.points.rows());
   return symmetry_constraints(subspace);
@@ -68,6 +82,7 @@ FullSystem::FullSystem(const Subspace& subspace, const Mesh& mesh, double stretc
     : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
       mesh_(mesh),
       weights_(plain_weights(subspace)),
+      nearest_(nearest_samples(weights_)),
       diagonal_(diagonal(mesh.vertices)),
       pivot_(bounding_box_centre(mesh.vertices)),
       constraints_(constraints_of(subspace, symmetry)),
@@ -75,6 +90,7 @@ FullSystem::FullSystem(const Subspace& subspace, const Mesh& mesh, double stretc
       metric_(metric_of(subspace.sampling, symmetry != FullSymmetry::none, unknowns_)),
       stiffness_(for_each_coordinate(energy_.matrix(), unknowns_)),
       coupled_(static_cast<std::size_t>(samples()), std::vector<bool>(static_cast<std::size_t>(samples()), false)),
+      known_(static_cast<std::size_t>(mesh.faces.rows()), 0),
       data_(unknowns_, unknowns_),
       saddle_(symmetry == FullSymmetry::constrained ? constraints_ : Sparse(0, unknowns_)) {
   if (symmetry != FullSymmetry::soft || constraints_.rows() == 0) return;
@@ -198,9 +214,8 @@ void FullSystem::couple(const std::vector<Correspondence>& pairs, const std::vec
     touched.clear();
   };
   for (const Correspondence& pair : pairs) {
-    for (int k = 0; k < 3; ++k) {
-      if (pair.barycentric[k] != 0) touch(mesh_.faces(pair.face, k));
-    }
+    if (std::exchange(known_[static_cast<std::size_t>(pair.face)], char{1}) != 0) continue;
+    for (int k = 0; k < 3; ++k) touch(mesh_.faces(pair.face, k));
     add();
   }
   for (const Pull& pull : pulls) {
@@ -233,11 +248,20 @@ void FullSystem::normal_of(const std::vector<Correspondence>& pairs, double shar
   };
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return pairs[i].face; });
+  // Those near one sample touch much the same ones.
+  const auto sample_of = [&](std::size_t i) {
+    return nearest_[static_cast<std::size_t>(mesh_.faces(pairs[i].face, 0))];
+  };
+  std::ranges::stable_sort(order, {}, sample_of);
   Batch batch(weights_, samples());
   std::vector<int> vertices;
-  for (std::size_t first = 0; first < pairs.size(); first += kRows) {
-    const std::size_t count = std::min(kRows, pairs.size() - first);
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < pairs.size(); first += count) {
+    count = 1;
+    while (count < kRows && first + count < pairs.size() &&
+           sample_of(order[first + count]) == sample_of(order[first])) {
+      ++count;
+    }
     vertices.clear();
     for (std::size_t i = 0; i < count; ++i) {
       for (int k = 0; k < 3; ++k) vertices.push_back(mesh_.faces(pairs[order[first + i]].face, k));

@@ -48,6 +48,7 @@ class FullSystem final : public DeformationSystem {
 
   const Mesh& mesh_;
   LiftWeights weights_;
+  std::vector<int> nearest_;  // of each vertex, the sample that weighs most
   double diagonal_;
   Eigen::Vector3d pivot_;
   Sparse constraints_;  // C; no rows without symmetry
@@ -57,6 +58,7 @@ class FullSystem final : public DeformationSystem {
   Eigen::VectorXd metric_;                  // of |q|^2
   Sparse stiffness_;                        // lower half
   std::vector<std::vector<bool>> coupled_;  // by pairs of samples, the lower first: which data rows have met
+  std::vector<char> known_;                 // faces whose samples are coupled
   Sparse data_;                             // lower half: the pattern that follows
   SaddleSystem saddle_;
 };

@@ -139,9 +139,9 @@ double SaddleSystem::condition() const {
   const Eigen::Index rows = constraints_.rows();
   RangeFactor range;
   if (rows > 0) {
-    Sparse shifted = gram_;
-    shifted.diagonal().array() += kShift * gram_.diagonal().mean();
-    range.compute(shifted);
+    Sparse shift(n, n);
+    shift.setIdentity();
+    range.compute(gram_ + kShift * gram_.diagonal().mean() * shift);
   }
   const auto multiply_all = [&](const VectorXd& x) -> VectorXd {
     VectorXd result(size + rows);
