@@ -160,24 +160,31 @@ class FullSystem::Batch {
       const Index to = Index{3} * samples_[j];
       normal.side.segment<3>(to) += side.segment<3>(from);
       normal.border.middleRows<3>(to) += border.middleRows<3>(from);
-      for (int c = 0; c < 3; ++c) scatter(j, c, normal.sparse);
+      scatter(j, normal.sparse);
     }
     normal.side.tail<6>() += pose_.transpose() * right_;
     normal.corner += pose_.transpose() * pose_;
   }
 
  private:
-  // One column of the local gram. Both ascend; what the pattern leaves out is zero.
-  void scatter(std::size_t sample, int coordinate, Sparse& matrix) const {
-    const Index local = 3 * static_cast<Index>(sample) + coordinate;
-    const Index column = Index{3} * samples_[sample] + coordinate;
-    Index at = matrix.outerIndexPtr()[column];
-    const Index end = matrix.outerIndexPtr()[column + 1];
-    for (Index i = local; i < gram_.rows(); ++i) {
-      const Index row = Index{3} * samples_[static_cast<std::size_t>(i / 3)] + i % 3;
-      while (at < end && matrix.innerIndexPtr()[at] < row) ++at;
-      if (at == end) return;
-      if (matrix.innerIndexPtr()[at] == row) matrix.valuePtr()[at] += gram_(i, local);
+  // The three columns of a sample, whose rows below the diagonal are three for each sample. Both ascend; what the
+  // pattern leaves out is zero.
+  void scatter(std::size_t sample, Sparse& matrix) const {
+    const Index column = Index{3} * samples_[sample];
+    const Index local = 3 * static_cast<Index>(sample);
+    const auto* starts = matrix.outerIndexPtr() + column;
+    const auto* rows = matrix.innerIndexPtr();
+    Index at = starts[0];
+    for (std::size_t i = sample; i < samples_.size(); ++i) {
+      const int row = 3 * samples_[i];
+      while (at < starts[1] && rows[at] < row) at += 3;
+      if (at >= starts[1]) return;
+      if (rows[at] != row) continue;
+      for (Index c = 0; c < 3; ++c) {
+        double* to = matrix.valuePtr() + starts[c] + (at - starts[0]) - c;
+        const double* from = gram_.data() + (local + c) * gram_.rows() + 3 * static_cast<Index>(i);
+        for (Index d = i == sample ? c : 0; d < 3; ++d) to[d] += from[d];
+      }
     }
   }
 
