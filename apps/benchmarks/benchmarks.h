@@ -7,6 +7,7 @@ namespace orbifit::benchmarks {
 /// The subcommands: each adds its options to `app` and returns what runs it.
 CommandBody table1(CLI::App& app);
 CommandBody scaling(CLI::App& app);
+CommandBody baselines(CLI::App& app);
 CommandBody detection(CLI::App& app);
 CommandBody fitting(CLI::App& app);
 

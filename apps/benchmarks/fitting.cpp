@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 
 #include <CLI/CLI.hpp>
 
+#include "orbifit/baselines/full_sampling.h"
+#include "orbifit/baselines/similarity_fit.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/clutter.h"
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/annotation_io.h"
@@ -40,7 +40,8 @@ struct Level {
 constexpr Level kLevels[] = {
     {"3views", FitLevel::three_views}, {"1view", FitLevel::one_view}, {"anywhere", FitLevel::anywhere}};
 
-constexpr const char* kMethods[] = {"ours", "rigid", "free", "copied"};
+constexpr double kSoftWeight = 100;  // of the symmetry's penalty against the data
+constexpr const char* kMethods[] = {"ours", "rigid", "free", "soft", "copied"};
 
 // The scan without what is far from the template as it was found.
 PointCloud own_scan(const FitCase& each, const Similarity& pose, const RunContext& context) {
@@ -77,20 +78,15 @@ SymmetryAnnotation without_symmetry(const GeneratedModel& model) {
   return none;
 }
 
-// Similarity ICP; nothing is deformed.
-FitResult rigid_fit(const FitCase& each, const Similarity& pose, RunContext& context) {
-  const PreparedScan scan = prepare_scan(each.scan, {}, context);
-  std::vector<int> all(static_cast<std::size_t>(scan.points.rows()));
-  std::iota(all.begin(), all.end(), 0);
-  const Mesh& mesh = each.model.mesh;
-  FitResult result;
-  result.pose = align_with_scale(mesh, MatchSurface(mesh), scan, all, pose, {});
-  result.fitted = mesh;
-  for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
-    result.fitted.vertices.row(v) = result.pose(mesh.vertices.row(v).transpose()).transpose();
+FitResult fitted_by(const std::string& method, const FitInput& input, const FitOptions& options,
+                    const RunContext& context) {
+  if (method == "rigid") return fit_similarity(input, {options}, context);
+  if (method == "soft") {
+    FullSamplingOptions soft{options, FullSymmetry::soft};
+    soft.weight = kSoftWeight;
+    return fit_full_sampling(input, soft, context);
   }
-  result.converged = true;
-  return result;
+  return fit(input, options, context);
 }
 
 FittingRow measure(const FitCase& each, const char* level, const std::string& method, const FittingOptions& options,
@@ -101,7 +97,8 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   row.method = method;
   FitOptions chosen;
   chosen.align = false;
-  const SymmetryAnnotation annotation = method == "ours" ? each.model.truth : without_symmetry(each.model);
+  const bool symmetric = method == "ours" || method == "soft";
+  const SymmetryAnnotation annotation = symmetric ? each.model.truth : without_symmetry(each.model);
   const double start = seconds_now();
   try {
     // All methods find the pose in the same way, where it is not known.
@@ -116,10 +113,11 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
       }
     }
     PointCloud scan = each.scan;
-    if (method == "copied")
-      scan = copied_scan(each, each.level == FitLevel::anywhere ? own_scan(each, pose, context) : scan, pose);
-    const FitInput input{each.model.mesh, annotation, scan, pose, {}, {}};
-    const FitResult result = method == "rigid" ? rigid_fit(each, pose, context) : fit(input, chosen, context);
+    const bool searches = method == "ours" || method == "free";
+    if (each.level == FitLevel::anywhere && !searches) scan = own_scan(each, pose, context);
+    if (method == "copied") scan = copied_scan(each, scan, pose);
+    const FitInput input{each.model.mesh, annotation, scan, pose};
+    const FitResult result = fitted_by(method, input, chosen, context);
     row.seconds = seconds_now() - start;
     row.fitted = result.converged;
     if (!result.converged) row.failure = result.stopped_because;
@@ -193,7 +191,7 @@ CommandBody fitting(CLI::App& app) {
       ->type_name("LEVEL,...");
   app.add_option("--methods", options->methods, "Only these methods")
       ->delimiter(',')
-      ->check(CLI::IsMember({"ours", "rigid", "free", "copied"}))
+      ->check(CLI::IsMember({"ours", "rigid", "free", "soft", "copied"}))
       ->type_name("METHOD,...");
   add_stage_run(app, options->stages, "poses, noise and the fit");
   app.add_option("--write", options->folder, "Write templates, scans, truths and fits into this folder")

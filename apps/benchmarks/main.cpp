@@ -31,6 +31,10 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark fitting\n"
             "orbifit-benchmark fitting --levels anywhere --methods ours --json fitting.json",
             benchmarks::fitting},
+    Command{"baselines", "Ours beside least-squares methods: a fan and an armchair, scans and handles, three sizes.",
+            "orbifit-benchmark baselines\n"
+            "orbifit-benchmark baselines --families armchair --sizes 1 --json baselines.json",
+            benchmarks::baselines},
 };
 
 int run(const CommandBody& body, bool quiet) {

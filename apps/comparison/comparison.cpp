@@ -80,16 +80,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Of which the mean iteration is told: as few as there may be.
-FitOptions of_few_iterations(FitOptions options) {
-  constexpr int kIterations = 3;
-  options.levels = 2;
-  options.iterations = kIterations;
-  options.most_iterations = 2 * kIterations;
-  options.condition = false;
-  return options;
-}
-
 std::vector<Method> asked(const std::vector<std::string>& names) {
   std::vector<Method> result;
   for (const Method& method : methods()) {
@@ -109,7 +99,7 @@ void time_samples(const Method& method, const FitInput& input, const ComparisonO
                   Comparison& result) {
   for (const int samples : options.samples) {
     if (!times_samples(method, samples)) continue;
-    FitOptions chosen = of_few_iterations(options.fit);
+    FitOptions chosen = with_few_iterations(options.fit);
     chosen.subspace.radius = 0;
     chosen.subspace.samples = samples;
     result.samples.push_back(run_method(method, method.weight, input, chosen, nullptr, context));
@@ -129,7 +119,7 @@ void time_meshes(const std::vector<Method>& chosen, const FitInput& input, const
     for (const Method& method : chosen) {
       if (method.name == "similarity") continue;
       result.meshes.push_back(
-          run_method(method, method.weight, other, of_few_iterations(options.fit), nullptr, context));
+          run_method(method, method.weight, other, with_few_iterations(options.fit), nullptr, context));
     }
   }
   std::ranges::stable_sort(result.meshes, {}, &MethodRun::method);
@@ -163,6 +153,15 @@ void ComparisonOptions::validate() const {
     if (count < 4) throw UsageError("samples has " + std::to_string(count) + "; each must be at least 4");
   }
   fit.validate();
+}
+
+FitOptions with_few_iterations(FitOptions options) {
+  constexpr int kIterations = 3;
+  options.levels = 2;
+  options.iterations = kIterations;
+  options.most_iterations = 2 * kIterations;
+  options.condition = false;
+  return options;
 }
 
 MethodRun run_method(const Method& method, double weight, const FitInput& input, const FitOptions& options,

@@ -60,6 +60,9 @@ struct Comparison {
   std::vector<MethodRun> meshes;   ///< likewise with the template's faces divided in 1, 4, 16
 };
 
+/// The options of a fit whose iterations are to be timed: six of them, without a condition number.
+FitOptions with_few_iterations(FitOptions options);
+
 /// Fits by one method. All find the scan where the input's pose says.
 /// \param weight of its penalty, where it has one
 MethodRun run_method(const Method& method, double weight, const FitInput& input, const FitOptions& options,

@@ -70,26 +70,9 @@ std::vector<std::string> cells(const MethodRun& run) {
   return result;
 }
 
-nlohmann::ordered_json to_json(const MethodRun& run) {
-  nlohmann::ordered_json result{
-      {"method", run.method}, {"weight", run.weight}, {"samples", run.result.samples}, {"faces", run.faces}};
-  for (const Figure& figure : kFigures) {
-    const std::optional<double> value = run.failure.empty() ? figure.value(run) : std::nullopt;
-    if (value) {
-      result[figure.name] = *value;
-    } else {
-      result[figure.name] = nullptr;
-    }
-  }
-  result["worst_region"] = run.worst_region;
-  result["stopped_because"] = run.result.stopped_because;
-  result["failure"] = run.failure;
-  return result;
-}
-
 nlohmann::ordered_json to_json(const std::vector<MethodRun>& runs) {
   nlohmann::ordered_json result = nlohmann::ordered_json::array();
-  for (const MethodRun& run : runs) result.push_back(to_json(run));
+  for (const MethodRun& run : runs) result.push_back(run_json(run));
   return result;
 }
 
@@ -152,6 +135,23 @@ Colour error_colour(double excess) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json run_json(const MethodRun& run) {
+  nlohmann::ordered_json result{
+      {"method", run.method}, {"weight", run.weight}, {"samples", run.result.samples}, {"faces", run.faces}};
+  for (const Figure& figure : kFigures) {
+    const std::optional<double> value = run.failure.empty() ? figure.value(run) : std::nullopt;
+    if (value) {
+      result[figure.name] = *value;
+    } else {
+      result[figure.name] = nullptr;
+    }
+  }
+  result["worst_region"] = run.worst_region;
+  result["stopped_because"] = run.result.stopped_because;
+  result["failure"] = run.failure;
+  return result;
+}
 
 std::string comparison_text(const Comparison& comparison) {
   TextTable table(headers());

@@ -62,7 +62,8 @@ void SaddleSystem::factorise(const Sparse& lower, const Eigen::MatrixXd& border,
   Sparse system = matrix_;
   if (constraints_.rows() > 0) {
     system += weight_ * gram_;
-    system.diagonal() += kShift * weight_ * gram_.diagonal();
+    const VectorXd shift = kShift * weight_ * gram_.diagonal();
+    system += Sparse(shift.asDiagonal());
   }
   system.makeCompressed();
   if (!factor_->analysed(system)) factor_->analyse(system);

@@ -1,0 +1,91 @@
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "orbifit/model/annotation_io.h"
+#include "orbifit/model/file.h"
+#include "orbifit/model/mesh_io.h"
+
+#include "program.h"
+
+namespace orbifit {
+namespace {
+
+using nlohmann::json;
+
+class OrbifitFit : public testing::Test {
+ protected:
+  void SetUp() override {
+    run("generate table -o . --quiet");
+    run("generate table --param width=1 -o wide --quiet");
+    run("scan wide/table.ply -o scan.ply --quiet");
+  }
+
+  std::filesystem::path file(const std::string& name) const { return program_.folder().file(name); }
+
+  std::string run(const std::string& line) const {
+    const ProgramResult result = program_.run(line);
+    EXPECT_EQ(result.code, 0) << line << "\n" << result.errors;
+    return result.output;
+  }
+
+  Program program_;
+  std::string fit_ = "fit table.ply scan.ply --annotation table.annotation.json --aligned --quiet ";
+};
+
+TEST_F(OrbifitFit, SaysOfEachGroupWhatTheScanSaysOfIt) {
+  run(fit_ + "-o fitted.ply --report report.json --html page.html --annotation-out fitted.json");
+  const json report = json::parse(read_file(file("report.json")));
+  const SymmetryAnnotation annotation = read_annotation(file("fitted.json"), read_mesh(file("fitted.ply")));
+  ASSERT_EQ(report["groups"].size(), annotation.regions.size());
+  for (const json& group : report["groups"]) EXPECT_EQ(group["disagrees"], false) << group;
+  EXPECT_GT(report["confidence"], 0.9);
+  EXPECT_EQ(report["torn_off"], 0);
+  const std::string page = read_file(file("page.html"));
+  EXPECT_NE(page.find("What the scan says of the groups"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+TEST_F(OrbifitFit, LeavesOutTheGroupsThatAreNamed) {
+  const SymmetryAnnotation before = read_annotation(file("table.annotation.json"), read_mesh(file("table.ply")));
+  const int whole = before.regions.front().id;
+  run(fit_ + "-o fitted.ply --annotation-out fitted.json --without " + std::to_string(whole));
+  const SymmetryAnnotation after = read_annotation(file("fitted.json"), read_mesh(file("fitted.ply")));
+  EXPECT_EQ(after.regions.size(), before.regions.size() - 1);
+  for (const Region& region : after.regions) EXPECT_NE(region.id, whole);
+}
+
+TEST_F(OrbifitFit, RelaxesNothingThatTheScanHas) {
+  const json report = json::parse(run(fit_ + "-o fitted.ply --auto-relax --json"));
+  EXPECT_EQ(report["relaxed"], json::array());
+}
+
+TEST_F(OrbifitFit, TakesAViewpoint) {
+  run("convert scan.ply bare.xyz --quiet");
+  const std::string bare =
+      "fit table.ply bare.xyz --annotation table.annotation.json --aligned --quiet --json -o f.ply";
+  EXPECT_EQ(json::parse(run(bare))["covered"], 1);
+  EXPECT_LT(json::parse(run(bare + " --viewpoint 2 -2 2"))["covered"], 1);
+}
+
+class OrbifitCompare : public OrbifitFit {};
+
+TEST_F(OrbifitCompare, WritesATableAPageAndTheMeshes) {
+  const std::string line =
+      "compare table.ply scan.ply --annotation table.annotation.json --truth wide/table.ply --aligned --samples 80 "
+      "--methods ours,none,similarity --brief --quiet --json -o all";
+  const json table = json::parse(run(line));
+  ASSERT_EQ(table["methods"].size(), 3U);
+  EXPECT_LT(table["methods"][0]["symmetry_residual"], 1e-9);
+  EXPECT_GT(table["methods"][1]["symmetry_residual"], 1e-4);
+  EXPECT_LT(table["methods"][0]["hidden"], table["methods"][2]["hidden"]);
+  for (const char* name :
+       {"comparison.csv", "comparison.json", "comparison.txt", "index.html", "ours.ply", "none.ply"}) {
+    EXPECT_TRUE(std::filesystem::exists(file("all") / name)) << name;
+  }
+  EXPECT_EQ(read_mesh(file("all") / "ours.ply").faces, read_mesh(file("table.ply")).faces);
+}
+
+}  // namespace
+}  // namespace orbifit
