@@ -17,6 +17,7 @@
 #include "orbifit/model/file.h"
 
 #include "benchmarks.h"
+#include "stage_run.h"
 #include "stopwatch.h"
 #include "subject.h"
 
@@ -31,7 +32,7 @@ struct ScalingOptions {
   double most = 1e7;
   std::string model = "plane";
   std::string json;
-  int threads = 1;
+  StageRun stages;
 };
 
 struct ScalingRow {
@@ -145,7 +146,7 @@ std::string text_of(const std::vector<ScalingRow>& rows, const ScalingOptions& o
                short_number(row.peak_bytes / row.vertices, 4)});
   }
   std::string text =
-      "Building the subspace of the " + options.model + ", " + count_of(options.threads, "thread") + "\n";
+      "Building the subspace of the " + options.model + ", " + count_of(options.stages.threads, "thread") + "\n";
   text += table.text();
   if (rows.size() > 1) {
     text += "  seconds ~ vertices^" + short_number(fitted_exponent(rows), 3) + " over all sizes, vertices^" +
@@ -160,7 +161,7 @@ std::string json_of(const std::vector<ScalingRow>& rows, const ScalingOptions& o
   nlohmann::json list = nlohmann::json::array();
   for (const ScalingRow& row : rows) {
     list.push_back({{"model", options.model},
-                    {"threads", options.threads},
+                    {"threads", options.stages.threads},
                     {"vertices", row.vertices},
                     {"samples", row.samples},
                     {"dof", row.degrees_of_freedom},
@@ -180,13 +181,8 @@ int run(const ScalingOptions& options, const CommandContext& context) {
   if (!(options.most >= 1e3 && options.most <= 1e9)) {
     throw UsageError("--most is " + short_number(options.most) + ": must be from 1000 to 1e9");
   }
-  if (options.threads < 1 || options.threads > 4096) {
-    throw UsageError("--threads is " + std::to_string(options.threads) + ": must be from 1 to 4096");
-  }
+  const RunContext stages = stage_context(context, options.stages);
   if (!options.json.empty()) check_output(options.json);
-  RunContext stages = context.run;
-  stages.on_message = nullptr;
-  stages.threads = options.threads;
   std::vector<ScalingRow> rows;
   int last = 0;
   double failed = 0;
@@ -221,7 +217,7 @@ CommandBody scaling(CLI::App& app) {
   app.add_option("--model", options->model, "A model that 'orbifit generate --list' names")
       ->type_name("NAME")
       ->capture_default_str();
-  app.add_option("--threads", options->threads, "Threads to use")->type_name("N")->capture_default_str();
+  add_stage_run(app, options->stages, "the sampling");
   app.add_option("--json", options->json, "Write the rows to a file")->type_name("FILE");
   return [options](CommandContext& context) { return run(*options, context); };
 }

@@ -60,7 +60,8 @@ FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const ScanView
 
 FitLoop::Stage FitLoop::stage(int iteration) const {
   Stage now;
-  now.progress = std::min(1.0, double(iteration / options_.iterations) / std::max(1, options_.levels - 1));
+  const int level = iteration / options_.iterations;
+  now.progress = std::min(1.0, static_cast<double>(level) / std::max(1, options_.levels - 1));
   const double falling = options_.first_stiffness * std::pow(last_stiffness_ / options_.first_stiffness, now.progress);
   now.stiffness = std::max(falling, least_stiffness_);
   now.robust = kFirstRobust * std::pow(kSoftRobust / kFirstRobust, now.progress) * size_;
