@@ -61,6 +61,13 @@ TEST_F(OrbifitFit, RelaxesNothingThatTheScanHas) {
   EXPECT_EQ(report["relaxed"], json::array());
 }
 
+TEST_F(OrbifitFit, SaysHowManyOfManyPointsAreUsed) {
+  const ProgramResult result = program_.run(
+      "fit table.ply scan.ply --annotation table.annotation.json --aligned --scan-points 500 -o fitted.ply");
+  EXPECT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("scan.ply: 500 of its "), std::string::npos) << result.errors;
+}
+
 TEST_F(OrbifitFit, TakesAViewpoint) {
   run("convert scan.ply bare.xyz --quiet");
   const std::string bare =

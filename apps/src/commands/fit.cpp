@@ -121,6 +121,10 @@ CommandBody fit(CLI::App& app) {
     if (scan.dropped > 0) {
       context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
     }
+    if (scan.points.rows() > chosen.scan_points) {
+      context.run.message(arguments->scan + ": " + std::to_string(chosen.scan_points) + " of its " +
+                          count_of(scan.points.rows(), "point") + " are used (--scan-points)");
+    }
     SymmetryAnnotation annotation =
         arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
                                       : read_annotation(arguments->annotation, mesh);
