@@ -122,7 +122,9 @@ void time_meshes(const std::vector<Method>& chosen, const FitInput& input, const
           run_method(method, method.weight, other, with_few_iterations(options.fit), nullptr, context));
     }
   }
-  std::ranges::stable_sort(result.meshes, {}, &MethodRun::method);
+  std::ranges::stable_sort(result.meshes, {}, [](const MethodRun& run) {
+    return std::ranges::find(methods(), run.method, &Method::name) - methods().begin();
+  });
 }
 
 }  // namespace
