@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "orbifit/baselines/full_sampling.h"
+#include "orbifit/baselines/handle_edit.h"
 #include "orbifit/baselines/kurz.h"
 #include "orbifit/baselines/similarity_fit.h"
 #include "orbifit/baselines/svd_nullspace.h"
@@ -14,7 +15,6 @@
 #include "orbifit/model/errors.h"
 
 #include "divided.h"
-#include "handle_edit.h"
 
 namespace orbifit {
 

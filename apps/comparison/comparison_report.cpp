@@ -25,6 +25,10 @@ struct Figure {
   std::optional<double> (*value)(const MethodRun&);
 };
 
+std::optional<double> if_iterated(const MethodRun& run, double value) {
+  return run.result.iterations.empty() ? std::nullopt : std::optional(value);
+}
+
 constexpr std::array kFigures{
     Figure{"symmetry_residual", "symmetry residual", 1,
            [](const MethodRun& run) { return std::optional(run.symmetry); }},
@@ -40,9 +44,9 @@ constexpr std::array kFigures{
            [](const MethodRun& run) { return std::optional(run.result.landmark_rms); }},
     Figure{"seconds_to_prepare", "prepare s", 1, [](const MethodRun& run) { return std::optional(run.prepare); }},
     Figure{"seconds_per_iteration", "iteration ms", 1000,
-           [](const MethodRun& run) { return std::optional(run.iteration); }},
+           [](const MethodRun& run) { return if_iterated(run, run.iteration); }},
     Figure{"iterations", "iterations", 1,
-           [](const MethodRun& run) { return std::optional(double(run.result.iterations_in_all)); }},
+           [](const MethodRun& run) { return if_iterated(run, double(run.result.iterations_in_all)); }},
     Figure{"unknowns", "unknowns", 1,
            [](const MethodRun& run) { return std::optional(double(run.result.degrees_of_freedom)); }},
     Figure{"condition", "condition", 1,

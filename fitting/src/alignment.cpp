@@ -165,6 +165,12 @@ Motion small_motion(const Eigen::Vector3d& rotation, const Eigen::Vector3d& tran
   return {linear, pivot - linear * pivot + translation};
 }
 
+Points from_template(const Similarity& pose, const Points& points) {
+  Points result(points.rows(), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) result.row(i) = pose(points.row(i).transpose()).transpose();
+  return result;
+}
+
 Points to_template(const Similarity& pose, const Points& points) {
   const Similarity back = inverse(pose);
   return (back.scale * (points * back.linear.transpose())).rowwise() + back.translation.transpose();

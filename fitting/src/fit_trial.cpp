@@ -2,21 +2,28 @@
 
 #include <utility>
 
+#include "orbifit/fitting/alignment.h"
+
 #include "fit_assessment.h"
 #include "fit_system.h"
 
 namespace orbifit {
 
+void run_fit(DeformationSystem& system, FitState state, int first_level, const FitInput& input, const PlacedScan& start,
+             const FitOptions& options, const RunContext& context, FitResult& result) {
+  FitLoop loop(input, start.scan, *start.views, system, options, context);
+  result.stopped_because = loop.run(state, first_level, result.iterations);
+  result.iterations_in_all = static_cast<int>(result.iterations.size());
+  if (options.condition && !result.iterations.empty()) result.condition = system.condition();
+  result.pose = state.pose;
+  result.q = std::move(state.q);
+}
+
 FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
                    const Subspace& subspace, const FitOptions& options, const RunContext& context) {
   FitResult result;
   FitSystem system(subspace, input.mesh, options.stretch);
-  FitLoop loop(input, start.scan, *start.views, system, options, context);
-  result.stopped_because = loop.run(state, first_level, result.iterations);
-  if (options.condition && !result.iterations.empty()) result.condition = system.condition();
-  result.iterations_in_all = static_cast<int>(result.iterations.size());
-  result.pose = state.pose;
-  result.q = std::move(state.q);
+  run_fit(system, std::move(state), first_level, input, start, options, context, result);
   result.samples = static_cast<int>(subspace.sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   result.used_fraction = start.used_fraction;
@@ -26,9 +33,7 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   deformed.vertices += vertex_displacements(subspace, result.q);
   result.rest_annotation = input.annotation;
   result.annotation = transformed(carried_annotation(input.annotation, subspace, result.q, deformed), result.pose);
-  for (Eigen::Index v = 0; v < deformed.vertices.rows(); ++v) {
-    deformed.vertices.row(v) = result.pose(deformed.vertices.row(v).transpose()).transpose();
-  }
+  deformed.vertices = from_template(result.pose, deformed.vertices);
   result.fitted = std::move(deformed);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
   assess_fit(input, start.scan, options, context, result);

@@ -9,9 +9,14 @@
 
 namespace orbifit {
 
-/// Deforms the template within a subspace, from one start, and says how well that explains the scan: all of a result
-/// but `converged`, `field_residual` and what concerns the whole of a fit.
+/// Runs the iterations on a system of unknowns, and fills in what they find: `pose`, `q`, `iterations`,
+/// `iterations_in_all`, `stopped_because` and, where FitOptions::condition asks for it, `condition`.
 /// \param state  where to begin \param first_level  of FitOptions::levels: a deformed state begins softer
+void run_fit(DeformationSystem& system, FitState state, int first_level, const FitInput& input, const PlacedScan& start,
+             const FitOptions& options, const RunContext& context, FitResult& result);
+
+/// Deforms the template within a subspace, from one start, and says how well that explains the scan: all of a result
+/// but `converged`, `field_residual` and what concerns the whole of a fit. State and level as in run_fit().
 FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
                    const Subspace& subspace, const FitOptions& options, const RunContext& context);
 

@@ -1,10 +1,14 @@
 #include "baseline_fit.h"
 
+#include <chrono>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
+#include "orbifit/subspace/deformer.h"
 
 #include "fit_assessment.h"
 #include "fit_starts.h"
@@ -23,13 +27,39 @@ PlacedScan baseline_start(const FitInput& input, const FitOptions& options, cons
   return std::move(find_starts(input, options, context, clock).places.front());
 }
 
+void validate_editing(double alpha, int iterations) {
+  if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be positive");
+  if (iterations < 1) throw UsageError("edit_iterations is " + std::to_string(iterations) + "; it must be at least 1");
+}
+
+Subspace plain_subspace(const FitInput& input, const FitOptions& options, const RunContext& context) {
+  SubspaceOptions plain = options.subspace;
+  plain.lift = LiftKind::paper;
+  return build_subspace(input.mesh, input.annotation, plain, context);
+}
+
+SubspaceState edit_in_subspace(const Subspace& subspace, const FitInput& input, double alpha, int iterations,
+                               const RunContext& context, StageClock& clock, FitResult& result) {
+  Deformer deformer(subspace, input.mesh, {}, context);
+  deformer.set_handles(input.handles, alpha);
+  std::vector<Motion> motions;
+  for (const Handle& handle : input.handles) motions.push_back(handle.motion);
+  clock.finished("prepare");
+  const auto start = std::chrono::steady_clock::now();
+  Deformation found = deformer.solve(motions, iterations);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  FitIteration each;
+  each.change = found.last_change / subspace.diagonal;
+  each.seconds = taken.count() / iterations;
+  result.iterations.assign(static_cast<std::size_t>(iterations), each);
+  result.q = found.state.q;
+  return std::move(found.state);
+}
+
 void finish_baseline(const FitInput& input, const FitOptions& options, const Points& displacements,
                      const PlacedScan* start, const RunContext& context, FitResult& result) {
   result.fitted = input.mesh;
-  for (Eigen::Index v = 0; v < displacements.rows(); ++v) {
-    const Eigen::Vector3d moved = (input.mesh.vertices.row(v) + displacements.row(v)).transpose();
-    result.fitted.vertices.row(v) = result.pose(moved).transpose();
-  }
+  result.fitted.vertices = from_template(result.pose, input.mesh.vertices + displacements);
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   if (start != nullptr) {
     result.used_fraction = start->used_fraction;

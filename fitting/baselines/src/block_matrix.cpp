@@ -4,7 +4,7 @@
 
 #include <Eigen/CholmodSupport>
 
-#include "orbifit/model/random.h"
+#include "condition.h"
 
 namespace orbifit {
 
@@ -104,24 +104,10 @@ Eigen::VectorXd BlockMatrix::solve(const Eigen::VectorXd& right) const {
 }
 
 double BlockMatrix::condition() const {
-  constexpr int kSteps = 60;
-  Random random(1, "condition");
-  Eigen::VectorXd start(scalars_.cols());
-  for (double& value : start) value = random.uniform(-1, 1);
-  const auto growth = [&](const auto& applied) {
-    Eigen::VectorXd direction = start.normalized();
-    double factor = 1;
-    for (int i = 0; i < kSteps; ++i) {
-      direction = applied(direction);
-      factor = direction.norm();
-      direction /= factor;
-    }
-    return factor;
-  };
-  const double largest =
-      growth([&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return scalars_.selfadjointView<Eigen::Lower>() * x; });
-  const double inverse = growth([&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return solve(x); });
-  return largest * inverse;
+  return condition_estimate(
+      scalars_.cols(),
+      [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return scalars_.selfadjointView<Eigen::Lower>() * x; },
+      [&](const Eigen::VectorXd& x) { return solve(x); });
 }
 
 }  // namespace orbifit

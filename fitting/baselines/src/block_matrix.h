@@ -40,7 +40,7 @@ class BlockMatrix {
   /// \pre factorise() was true
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
 
-  /// Largest by smallest eigenvalue, by powers of the matrix and of its inverse. \pre factorise() was true
+  /// condition_estimate(). \pre factorise() was true
   double condition() const;
 
  private:

@@ -6,6 +6,7 @@
 #include "orbifit/baselines/symmetry_constraints.h"
 #include "orbifit/subspace/corotation.h"
 
+#include "for_each_coordinate.h"
 #include "handle_rows.h"
 #include "plain_weights.h"
 #include "saddle_system.h"
@@ -22,18 +23,8 @@ constexpr double kHold = 1e-12;  // as Deformer's
 
 // Lower half of (K (x) I_3) + hold among more unknowns.
 Sparse system_of(const Sparse& scalar, Index unknowns) {
-  const double hold = kHold * scalar.diagonal().mean();
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Index k = 0; k < scalar.outerSize(); ++k) {
-    for (Sparse::InnerIterator entry(scalar, k); entry; ++entry) {
-      if (entry.row() < entry.col()) continue;
-      for (int c = 0; c < 3; ++c) entries.emplace_back(3 * entry.row() + c, 3 * entry.col() + c, entry.value());
-    }
-  }
-  for (Index i = 0; i < unknowns; ++i) entries.emplace_back(i, i, hold);
-  Sparse result(unknowns, unknowns);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
+  const VectorXd hold = VectorXd::Constant(unknowns, kHold * scalar.diagonal().mean());
+  return lower_for_each_coordinate(scalar, unknowns) + Sparse(hold.asDiagonal());
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include "orbifit/model/errors.h"
 
 #include "baseline_fit.h"
-#include "fit_loop.h"
+#include "fit_trial.h"
 #include "full_editing.h"
 #include "full_system.h"
 #include "plain_weights.h"
@@ -32,22 +32,17 @@ std::string to_string(FullSymmetry symmetry) {
 void FullSamplingOptions::validate() const {
   fit.validate();
   if (!(weight > 0)) throw UsageError("weight is " + std::to_string(weight) + "; it must be positive");
-  if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be positive");
-  if (edit_iterations < 1) {
-    throw UsageError("edit_iterations is " + std::to_string(edit_iterations) + "; it must be at least 1");
-  }
+  validate_editing(alpha, edit_iterations);
 }
 
 FitResult fit_full_sampling(const FitInput& input, const FullSamplingOptions& options, const RunContext& context) {
   options.validate();
   FitResult result;
   StageClock clock(result.times);
-  SubspaceOptions plain = options.fit.subspace;
-  plain.lift = LiftKind::paper;
   PlacedScan start;
   const bool edit = by_handles_alone(input);
   if (!edit) start = baseline_start(input, options.fit, context);
-  const Subspace subspace = build_subspace(input.mesh, input.annotation, plain, context);
+  const Subspace subspace = plain_subspace(input, options.fit, context);
   result.samples = static_cast<int>(subspace.sampling.points.rows());
   Points displacements;
   if (edit) {
@@ -58,13 +53,9 @@ FitResult fit_full_sampling(const FitInput& input, const FullSamplingOptions& op
   } else {
     FullSystem system(subspace, input.mesh, options.fit.stretch, options.symmetry, options.weight);
     clock.finished("prepare");
-    FitState state{start.pose, Eigen::VectorXd::Zero(system.unknowns())};
-    FitLoop loop(input, start.scan, *start.views, system, options.fit, context);
-    result.stopped_because = loop.run(state, 0, result.iterations);
-    if (options.fit.condition && !result.iterations.empty()) result.condition = system.condition();
-    result.pose = state.pose;
-    result.q = state.q;
-    displacements = system.vertices_at(state.q, context);
+    run_fit(system, {start.pose, Eigen::VectorXd::Zero(system.unknowns())}, 0, input, start, options.fit, context,
+            result);
+    displacements = system.vertices_at(result.q, context);
   }
   clock.finished("fit");
   result.degrees_of_freedom = static_cast<int>(result.q.size());

@@ -9,6 +9,7 @@
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
 
+#include "for_each_coordinate.h"
 #include "plain_weights.h"
 
 namespace orbifit {
@@ -19,20 +20,6 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
-
-// The lower half of K (x) I_3 among more unknowns.
-Sparse for_each_coordinate(const Sparse& scalar, Index unknowns) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Index k = 0; k < scalar.outerSize(); ++k) {
-    for (Sparse::InnerIterator entry(scalar, k); entry; ++entry) {
-      if (entry.row() < entry.col()) continue;
-      for (int c = 0; c < 3; ++c) entries.emplace_back(3 * entry.row() + c, 3 * entry.col() + c, entry.value());
-    }
-  }
-  Sparse result(unknowns, unknowns);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
 
 // Of each unknown: samples of one orbit share 1.
 VectorXd metric_of(const SymmetricSampling& sampling, bool shared, Index unknowns) {
@@ -88,7 +75,7 @@ FullSystem::FullSystem(const Subspace& subspace, const Mesh& mesh, double stretc
       constraints_(constraints_of(subspace, symmetry)),
       unknowns_(constraints_.cols()),
       metric_(metric_of(subspace.sampling, symmetry != FullSymmetry::none, unknowns_)),
-      stiffness_(for_each_coordinate(energy_.matrix(), unknowns_)),
+      stiffness_(lower_for_each_coordinate(energy_.matrix(), unknowns_)),
       coupled_(static_cast<std::size_t>(samples()), std::vector<bool>(static_cast<std::size_t>(samples()), false)),
       known_(static_cast<std::size_t>(mesh.faces.rows()), 0),
       data_(unknowns_, unknowns_),

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "orbifit/fitting/alignment.h"
+
 #include "kurz_ceres.h"
 #include "lattice.h"
 #include "outward_faces.h"
@@ -191,7 +193,7 @@ FitResult KurzFit::result() && {
   FitResult result;
   result.pose = unit_.pose * unit_.unit;
   result.fitted = input_.mesh;
-  result.fitted.vertices = moved(unit_.pose, deformed_.vertices);
+  result.fitted.vertices = from_template(unit_.pose, deformed_.vertices);
   result.rest_annotation = input_.annotation;
   result.annotation = transformed(carried(), unit_.pose);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);

@@ -5,12 +5,10 @@
 #include <Eigen/Eigenvalues>
 
 #include "orbifit/baselines/symmetry_constraints.h"
-#include "orbifit/model/errors.h"
-#include "orbifit/subspace/deformer.h"
 
 #include "baseline_fit.h"
-#include "fit_loop.h"
 #include "fit_system.h"
+#include "fit_trial.h"
 
 namespace orbifit {
 
@@ -45,41 +43,28 @@ Subspace with_svd_basis(Subspace subspace) {
 
 void SvdNullspaceOptions::validate() const {
   fit.validate();
-  if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be positive");
-  if (edit_iterations < 1) {
-    throw UsageError("edit_iterations is " + std::to_string(edit_iterations) + "; it must be at least 1");
-  }
+  validate_editing(alpha, edit_iterations);
 }
 
 FitResult fit_svd_nullspace(const FitInput& input, const SvdNullspaceOptions& options, const RunContext& context) {
   options.validate();
   FitResult result;
   StageClock clock(result.times);
-  SubspaceOptions plain = options.fit.subspace;
-  plain.lift = LiftKind::paper;
   PlacedScan start;
   const bool edit = by_handles_alone(input);
   if (!edit) start = baseline_start(input, options.fit, context);
-  Subspace own = build_subspace(input.mesh, input.annotation, plain, context);
+  Subspace own = plain_subspace(input, options.fit, context);
   StageClock of_basis(result.times);
   const Subspace subspace = with_svd_basis(std::move(own));
   of_basis.finished("null space");
-  clock.finished("prepare");
-  result.pose = input.pose;
   if (edit) {
-    Deformer deformer(subspace, input.mesh, {}, context);
-    deformer.set_handles(input.handles, options.alpha);
-    std::vector<Motion> motions;
-    for (const Handle& handle : input.handles) motions.push_back(handle.motion);
-    result.q = deformer.solve(motions, options.edit_iterations).state.q;
+    result.pose = input.pose;
+    edit_in_subspace(subspace, input, options.alpha, options.edit_iterations, context, clock, result);
   } else {
     FitSystem system(subspace, input.mesh, options.fit.stretch);
-    FitState state{start.pose, Eigen::VectorXd::Zero(system.unknowns())};
-    FitLoop loop(input, start.scan, *start.views, system, options.fit, context);
-    result.stopped_because = loop.run(state, 0, result.iterations);
-    if (options.fit.condition && !result.iterations.empty()) result.condition = system.condition();
-    result.pose = state.pose;
-    result.q = state.q;
+    clock.finished("prepare");
+    run_fit(system, {start.pose, Eigen::VectorXd::Zero(system.unknowns())}, 0, input, start, options.fit, context,
+            result);
   }
   clock.finished("fit");
   result.samples = static_cast<int>(subspace.sampling.points.rows());

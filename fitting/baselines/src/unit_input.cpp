@@ -5,14 +5,6 @@
 
 namespace orbifit {
 
-Points moved(const Similarity& similarity, const Points& points) {
-  Points result(points.rows(), 3);
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    result.row(i) = similarity(points.row(i).transpose()).transpose();
-  }
-  return result;
-}
-
 UnitInput unit_input(const FitInput& input, const KurzOptions& options, const RunContext& context) {
   UnitInput result;
   const Points& vertices = input.mesh.vertices;
@@ -21,7 +13,7 @@ UnitInput unit_input(const FitInput& input, const KurzOptions& options, const Ru
   const Eigen::Vector3d centre = bounding_box_centre(vertices);
   result.unit = {1 / length, Eigen::Matrix3d::Identity(), -centre / length};
   result.mesh = input.mesh;
-  result.mesh.vertices = moved(result.unit, vertices);
+  result.mesh.vertices = from_template(result.unit, vertices);
   result.annotation = transformed(input.annotation, result.unit);
   Similarity pose = input.pose;
   if (!input.landmarks.empty()) pose = align_landmarks(input.mesh, input.landmarks);
@@ -32,7 +24,7 @@ UnitInput unit_input(const FitInput& input, const KurzOptions& options, const Ru
     if (options.align && input.landmarks.empty() && input.handles.empty()) {
       pose = align_rigidly(input.mesh, result.scan, pose, context);
     }
-    result.points = moved(result.unit, to_template(pose, result.scan.points));
+    result.points = from_template(result.unit, to_template(pose, result.scan.points));
     result.normals = normals_to_template(pose, result.scan.normals);
   } else if (input.handles.empty() && input.landmarks.empty()) {
     throw InputError("", "scan", "has no points, and there are no handles");

@@ -22,6 +22,4 @@ struct UnitInput {
 /// \throw InputError for a template without extent, a scan of too few points, or none of them and no handles either
 UnitInput unit_input(const FitInput& input, const KurzOptions& options, const RunContext& context);
 
-Points moved(const Similarity& similarity, const Points& points);
-
 }  // namespace orbifit

@@ -37,6 +37,9 @@ Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const
 /// A small rotation vector about `pivot` and a translation as a motion.
 Motion small_motion(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation, const Eigen::Vector3d& pivot);
 
+/// The template's points in the scan's frame. \param pose template -> scan
+Points from_template(const Similarity& pose, const Points& points);
+
 /// The scan's points and normals in the template's frame.
 Points to_template(const Similarity& pose, const Points& points);
 Points normals_to_template(const Similarity& pose, const Points& normals);

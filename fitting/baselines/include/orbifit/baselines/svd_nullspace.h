@@ -10,7 +10,8 @@
 namespace orbifit {
 
 /// Orthonormal columns that span the null space of C, by a dense singular value decomposition (Bokeloh, Wand, Koltun,
-/// Seidel 2012). Memory quadratic, time cubic in the columns of C.
+/// Seidel 2012): the right singular vectors, as eigenvectors of C^T C. Memory quadratic, time cubic in the columns of
+/// C.
 Eigen::MatrixXd svd_nullspace(const Eigen::SparseMatrix<double>& constraints);
 
 /// A subspace whose basis is dense, from svd_nullspace() of its symmetry_constraints(): of the null space what moves
