@@ -5,14 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "count.h"
+
 namespace orbifit {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++found;
-  return found;
-}
 
 // Centres of the marks, but for those of the legend.
 std::vector<std::pair<double, double>> marks(const std::string& svg) {

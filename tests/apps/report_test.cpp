@@ -8,14 +8,10 @@
 
 #include "orbifit/model/errors.h"
 
+#include "count.h"
+
 namespace orbifit {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++found;
-  return found;
-}
 
 ReportPicture picture(const std::string& caption) {
   return {encode_png({2, 3, std::vector<std::uint8_t>(18, 7)}), caption};

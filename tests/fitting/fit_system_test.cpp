@@ -4,8 +4,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/fitting/alignment.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
+
+#include "random_pulls.h"
 
 namespace orbifit {
 namespace {
@@ -18,26 +18,12 @@ class System : public testing::TestWithParam<const char*> {
         subspace_(build_subspace(model_.mesh, model_.truth, {}, context_)),
         system_(subspace_, model_.mesh, 0.3),
         size_(diagonal(model_.mesh.vertices)),
-        pivot_(bounding_box_centre(model_.mesh.vertices)) {
-    Random random(7);
-    const SurfaceSamples samples = sample_surface(model_.mesh, 700, random);
-    points_ = samples.points;
-    for (Eigen::Index i = 0; i < points_.rows(); ++i) {
-      Correspondence pair;
-      pair.scan_point = static_cast<int>(i);
-      pair.face = samples.faces[static_cast<std::size_t>(i)];
-      pair.barycentric = Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform());
-      pair.barycentric /= pair.barycentric.sum();
-      pair.normal = random.direction();
-      pair.weight = random.uniform();
-      pairs_.push_back(pair);
-      points_.row(i) += 0.05 * size_ * random.direction().transpose();
-    }
-    pulls_.push_back({3, model_.mesh.vertices.row(3).transpose() + 0.1 * size_ * random.direction(), 4});
+        pivot_(bounding_box_centre(model_.mesh.vertices)),
+        data_(model_.mesh, random_) {
     hold_.stiffness = 0.3;
     hold_.damping = 0.2;
     hold_.around = Eigen::VectorXd::Zero(subspace_.degrees_of_freedom());
-    for (double& value : hold_.around) value = 0.01 * size_ * random.uniform(-1, 1);
+    for (double& value : hold_.around) value = 0.01 * size_ * random_.uniform(-1, 1);
     system_.rotate(hold_.around);
   }
 
@@ -52,12 +38,12 @@ class System : public testing::TestWithParam<const char*> {
     };
     double sum = hold_.stiffness * system_.regularity(q) + hold_.damping * (q - hold_.around).squaredNorm() +
                  hold_.damping * x.tail<6>().squaredNorm();
-    for (const Correspondence& pair : pairs_) {
+    for (const Correspondence& pair : data_.pairs) {
       const Eigen::Vector3d foot = moved(model_.mesh.faces.row(pair.face), Eigen::all).transpose() * pair.barycentric;
-      const double offset = pair.normal.dot(foot - scan(points_.row(pair.scan_point)));
+      const double offset = pair.normal.dot(foot - scan(data_.points.row(pair.scan_point)));
       sum += kShare * pair.weight * offset * offset;
     }
-    for (const Pull& pull : pulls_) {
+    for (const Pull& pull : data_.pulls) {
       sum += pull.weight * (moved.row(pull.vertex).transpose() - scan(pull.target)).squaredNorm();
     }
     return sum;
@@ -70,14 +56,13 @@ class System : public testing::TestWithParam<const char*> {
   FitSystem system_;
   double size_;
   Eigen::Vector3d pivot_;
-  Points points_;
-  std::vector<Correspondence> pairs_;
-  std::vector<Pull> pulls_;
+  Random random_{7};
+  RandomPulls data_;
   FitSystem::Hold hold_;
 };
 
 TEST_P(System, SolutionIsWhereTheEnergyIsLeast) {
-  const FitSystem::Solution solution = system_.solve(pairs_, kShare, points_, pulls_, hold_, context_);
+  const FitSystem::Solution solution = system_.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, context_);
   const Eigen::Index dof = subspace_.degrees_of_freedom();
   Eigen::VectorXd x(dof + 6);
   // Back from the motion to the unknowns: a rotation vector about the pivot, and a translation.
@@ -107,8 +92,8 @@ TEST_P(System, SolutionIsTheSameWithTwoThreads) {
   other.rotate(hold_.around);
   RunContext two;
   two.threads = 2;
-  const FitSystem::Solution one = system_.solve(pairs_, kShare, points_, pulls_, hold_, context_);
-  EXPECT_EQ(other.solve(pairs_, kShare, points_, pulls_, hold_, two).q, one.q);
+  const FitSystem::Solution one = system_.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, context_);
+  EXPECT_EQ(other.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, two).q, one.q);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, System, testing::Values("bar", "table"),

@@ -1,6 +1,5 @@
 #include "orbifit/baselines/symmetry_constraints.h"
 
-#include <ostream>
 #include <string>
 
 #include <Eigen/QR>
@@ -10,21 +9,14 @@
 #include "orbifit/baselines/svd_nullspace.h"
 #include "orbifit/datasets_tools/generate.h"
 
+#include "random_pulls.h"
+
 namespace orbifit {
 namespace {
 
 using Eigen::MatrixXd;
 
-struct Case {
-  const char* model;
-  GroupMode mode;
-};
-
-std::ostream& operator<<(std::ostream& out, const Case& each) {
-  return out << each.model << "_" << to_string(each.mode);
-}
-
-class Constraints : public testing::TestWithParam<Case> {
+class Constraints : public testing::TestWithParam<ModelCase> {
  protected:
   static Subspace subspace_of(LiftKind lift) {
     const GeneratedModel model = generate(GetParam().model);
@@ -61,10 +53,10 @@ TEST_P(Constraints, NullSpaceIsThatOfTheBasis) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Constraints,
-                         testing::Values(Case{"bar", GroupMode::fixed}, Case{"bar", GroupMode::floating},
-                                         Case{"table", GroupMode::fixed}, Case{"table", GroupMode::floating},
-                                         Case{"chair", GroupMode::floating}, Case{"fan", GroupMode::floating},
-                                         Case{"armchair", GroupMode::fixed}));
+                         testing::Values(ModelCase{"bar", GroupMode::fixed}, ModelCase{"bar", GroupMode::floating},
+                                         ModelCase{"table", GroupMode::fixed}, ModelCase{"table", GroupMode::floating},
+                                         ModelCase{"chair", GroupMode::floating}, ModelCase{"fan", GroupMode::floating},
+                                         ModelCase{"armchair", GroupMode::fixed}));
 
 }  // namespace
 }  // namespace orbifit
