@@ -18,7 +18,6 @@ namespace orbifit::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 class TemporaryFolder {
  public:
@@ -40,8 +39,8 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-Json as_json(const Handle& handle) {
-  Json motion = Json::array();
+nlohmann::json as_json(const Handle& handle) {
+  nlohmann::json motion = nlohmann::json::array();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) motion.push_back(handle.motion.linear(i, j));
     motion.push_back(handle.motion.translation[i]);
@@ -68,12 +67,13 @@ ArapTimes arap_times(const BenchmarkModel& model, int repetitions) {
   if (!fs::exists(peer, code)) return {{}, {}, "it is not built: CGAL was not found"};
   const TemporaryFolder folder;
   write_mesh(folder.file("mesh.ply"), model.mesh);
-  Json order{{"iterations", kIterations}, {"repetitions", repetitions}, {"handles", Json::array()}};
+  nlohmann::json order{{"iterations", kIterations}, {"repetitions", repetitions}, {"handles", nlohmann::json::array()}};
   for (const Handle& handle : model.handles) order["handles"].push_back(as_json(handle));
   write_file(folder.file("order.json"), order.dump());
-  const Json result = Json::parse(output_of("'" + peer.string() + "' '" + folder.file("mesh.ply").string() + "' '" +
-                                            folder.file("order.json").string() + "'"),
-                                  nullptr, false);
+  const nlohmann::json result =
+      nlohmann::json::parse(output_of("'" + peer.string() + "' '" + folder.file("mesh.ply").string() + "' '" +
+                                      folder.file("order.json").string() + "'"),
+                            nullptr, false);
   if (!result.is_object()) return {{}, {}, "it gave no result"};
   ArapTimes times;
   times.note = result.value("note", "");

@@ -12,8 +12,6 @@ namespace orbifit::benchmarks {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kWhole = 0.9;  // of the area
 
 std::string decimal(double value, int digits) {
@@ -125,11 +123,11 @@ constexpr const char* kNotes =
     "is\n"
     "  found strictly; s: seconds of detection; kV/s: thousands of vertices a second.\n";
 
-Json number(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
+nlohmann::ordered_json number(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
 }
 
-Json means_json(const Rows& rows) {
+nlohmann::ordered_json means_json(const Rows& rows) {
   const DetectionMeans means = means_of(rows);
   const FalseGroups wrong = false_groups(rows);
   return {{"rows", means.rows},
@@ -145,9 +143,9 @@ Json means_json(const Rows& rows) {
           {"asymmetric_shapes_with_a_finite_group_of_the_whole", wrong.whole}};
 }
 
-Json row_json(const DetectionRow& row) {
+nlohmann::ordered_json row_json(const DetectionRow& row) {
   const DetectionSummary& summary = row.score.summary;
-  Json missed = Json::array();
+  nlohmann::ordered_json missed = nlohmann::ordered_json::array();
   for (const ExpectedRegionScore& region : row.score.expected_regions) {
     if (!region.strict) missed.push_back(region.group + (region.loose ? " (loose)" : "") + ": " + region.name);
   }
@@ -177,7 +175,8 @@ Json row_json(const DetectionRow& row) {
           {"unfounded_groups", row.unfounded_groups()},
           {"not_strict", missed},
           {"seconds", row.seconds},
-          {"vertices_per_second", row.seconds > 0 ? Json(row.vertices / row.seconds) : Json()}};
+          {"vertices_per_second",
+           row.seconds > 0 ? nlohmann::ordered_json(row.vertices / row.seconds) : nlohmann::ordered_json()}};
 }
 
 }  // namespace
@@ -233,23 +232,23 @@ std::string detection_text(const std::vector<DetectionRow>& rows) {
 }
 
 std::string detection_json(const std::vector<DetectionRow>& rows) {
-  Json list = Json::array();
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const DetectionRow& row : rows) list.push_back(row_json(row));
-  Json forms = Json::array();
+  nlohmann::ordered_json forms = nlohmann::ordered_json::array();
   for (const Rows& group : by_form(rows)) {
-    Json entry{{"form", group[0]->form.remeshed ? "remesh" : "assembly"},
-               {"cut", group[0]->form.cut},
-               {"noise", group[0]->form.noise}};
+    nlohmann::ordered_json entry{{"form", group[0]->form.remeshed ? "remesh" : "assembly"},
+                                 {"cut", group[0]->form.cut},
+                                 {"noise", group[0]->form.noise}};
     entry.update(means_json(group));
     forms.push_back(std::move(entry));
   }
-  Json kinds = Json::array();
+  nlohmann::ordered_json kinds = nlohmann::ordered_json::array();
   for (const Rows& group : by_kind(rows)) {
-    Json entry{{"kind", group[0]->kind}};
+    nlohmann::ordered_json entry{{"kind", group[0]->kind}};
     entry.update(means_json(group));
     kinds.push_back(std::move(entry));
   }
-  return Json{{"rows", list}, {"means", {{"by_form", forms}, {"by_kind", kinds}}}}.dump(2) + "\n";
+  return nlohmann::ordered_json{{"rows", list}, {"means", {{"by_form", forms}, {"by_kind", kinds}}}}.dump(2) + "\n";
 }
 
 }  // namespace orbifit::benchmarks

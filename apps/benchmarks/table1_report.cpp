@@ -12,8 +12,6 @@ namespace orbifit::benchmarks {
 
 namespace {
 
-using Json = nlohmann::json;
-
 // Three significant digits, without an exponent for what times and ratios can be.
 std::string figure(double value) {
   if (!std::isfinite(value)) return "-";
@@ -141,44 +139,44 @@ std::string table1_text(const std::vector<Table1Row>& rows) {
 }
 
 std::string table1_json(const std::vector<Table1Row>& rows) {
-  Json list = Json::array();
+  nlohmann::json list = nlohmann::json::array();
   for (const Table1Row& row : rows) {
-    Json entry{{"model", row.model},
-               {"threads", row.threads},
-               {"vertices", row.vertices},
-               {"triangles", row.triangles},
-               {"groups", row.groups},
-               {"samples", row.samples},
-               {"dof", row.degrees_of_freedom},
-               {"radius", row.radius},
-               {"build_ms", row.build_ms},
-               {"setup_ms", row.setup_ms},
-               {"prefactor_ms", row.prefactor_ms},
-               {"solve5_ms", row.solve5_ms},
-               {"lift_ms", row.lift_ms},
-               {"lift_floor_ms", row.lift_floor_ms},
-               {"lift_bytes", row.lift_bytes},
-               {"paper_vertices", row.paper.vertices},
-               {"paper_triangles", row.paper.triangles},
-               {"paper_groups", row.paper.groups},
-               {"paper_samples", row.paper.samples},
-               {"paper_dof", row.paper.degrees_of_freedom},
-               {"paper_prefactor_ms", row.paper.prefactor_ms},
-               {"paper_solve5_ms", row.paper.solve5_ms},
-               {"paper_lift_ms", row.paper.lift_ms},
-               {"field_residual", row.field_residual},
-               {"mesh_residual", row.mesh_residual},
-               {"handle_error", row.handle_error}};
+    nlohmann::json entry{{"model", row.model},
+                         {"threads", row.threads},
+                         {"vertices", row.vertices},
+                         {"triangles", row.triangles},
+                         {"groups", row.groups},
+                         {"samples", row.samples},
+                         {"dof", row.degrees_of_freedom},
+                         {"radius", row.radius},
+                         {"build_ms", row.build_ms},
+                         {"setup_ms", row.setup_ms},
+                         {"prefactor_ms", row.prefactor_ms},
+                         {"solve5_ms", row.solve5_ms},
+                         {"lift_ms", row.lift_ms},
+                         {"lift_floor_ms", row.lift_floor_ms},
+                         {"lift_bytes", row.lift_bytes},
+                         {"paper_vertices", row.paper.vertices},
+                         {"paper_triangles", row.paper.triangles},
+                         {"paper_groups", row.paper.groups},
+                         {"paper_samples", row.paper.samples},
+                         {"paper_dof", row.paper.degrees_of_freedom},
+                         {"paper_prefactor_ms", row.paper.prefactor_ms},
+                         {"paper_solve5_ms", row.paper.solve5_ms},
+                         {"paper_lift_ms", row.paper.lift_ms},
+                         {"field_residual", row.field_residual},
+                         {"mesh_residual", row.mesh_residual},
+                         {"handle_error", row.handle_error}};
     if (row.arap) {
-      entry["arap_prefactor_ms"] = row.arap->prefactor_ms ? Json(*row.arap->prefactor_ms) : Json();
-      entry["arap_solve5_ms"] = row.arap->solve5_ms ? Json(*row.arap->solve5_ms) : Json();
+      entry["arap_prefactor_ms"] = row.arap->prefactor_ms ? nlohmann::json(*row.arap->prefactor_ms) : nlohmann::json();
+      entry["arap_solve5_ms"] = row.arap->solve5_ms ? nlohmann::json(*row.arap->solve5_ms) : nlohmann::json();
       entry["arap_note"] = row.arap->note;
     }
     if (!row.soft.empty()) {
       const SoftRow& middle = row.soft[row.soft.size() / 2];
       entry["soft_prefactor_ms"] = middle.prefactor_ms;
       entry["soft_solve5_ms"] = middle.solve5_ms;
-      entry["soft"] = Json::array();
+      entry["soft"] = nlohmann::json::array();
       for (const SoftRow& soft : row.soft) {
         entry["soft"].push_back({{"weight", soft.weight},
                                  {"prefactor_ms", soft.prefactor_ms},

@@ -15,10 +15,8 @@ namespace orbifit {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json matrix_rows(const Eigen::Matrix3d& matrix) {
-  Json rows = Json::array();
+nlohmann::ordered_json matrix_rows(const Eigen::Matrix3d& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (int i = 0; i < 3; ++i) rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2)});
   return rows;
 }
@@ -39,7 +37,7 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)}}};
 }
 
-Json pose_to_json(const Similarity& pose) {
+nlohmann::ordered_json pose_to_json(const Similarity& pose) {
   return {{"scale", pose.scale},
           {"rotation", matrix_rows(pose.linear)},
           {"translation", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
@@ -74,8 +72,8 @@ ReportTable placement_table(const FitResult& result) {
 
 }  // namespace
 
-Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
-  Json iterations = Json::array();
+nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
+  nlohmann::ordered_json iterations = nlohmann::ordered_json::array();
   for (const FitIteration& iteration : result.iterations) {
     iterations.push_back({{"stiffness", iteration.stiffness},
                           {"correspondences", iteration.correspondences},
@@ -84,16 +82,16 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
                           {"damping", iteration.damping},
                           {"change", iteration.change}});
   }
-  Json times;
+  nlohmann::ordered_json times;
   for (const StageTime& time : result.times) times[time.stage] = time.seconds;
-  Json placements = Json::array();
+  nlohmann::ordered_json placements = nlohmann::ordered_json::array();
   for (const Placement& placement : result.placements) {
     placements.push_back({{"pose", pose_to_json(placement.pose)},
                           {"explained", placement.explained},
                           {"covered", placement.covered},
                           {"score", placement.score()}});
   }
-  Json regions = Json::array();
+  nlohmann::ordered_json regions = nlohmann::ordered_json::array();
   for (const RegionResidual& region : symmetry.regions) {
     regions.push_back({{"id", region.id},
                        {"name", region.name},
@@ -101,7 +99,7 @@ Json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
                        {"rest", region.floor.max},
                        {"excess", region.excess.max}});
   }
-  Json groups = Json::array();
+  nlohmann::ordered_json groups = nlohmann::ordered_json::array();
   for (const GroupAgreement& group : result.groups) {
     groups.push_back({{"region", group.region},
                       {"pairs", group.pairs},

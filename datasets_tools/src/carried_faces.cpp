@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/surface_index.h"
 
 #include "detection_score/crease_index.h"
@@ -18,7 +17,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Vector3d;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Family = PointGroup::Family;
 
 // Square of the share of a sliding motion that may go across the surface.
@@ -221,8 +219,7 @@ bool slides(const scoring::MeasuredMesh& measured, const Points& normals, const 
   Matrix6d share = root.operatorInverseSqrt() * across * root.operatorInverseSqrt();
   const Eigen::Matrix<double, 6, Eigen::Dynamic> own = root.operatorSqrt() * own_twists(region, origin, spread);
   if (own.cols() > 0) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factors(own);
-    const Eigen::MatrixXd basis = factors.householderQ() * Eigen::MatrixXd::Identity(6, own.cols());
+    const Eigen::MatrixXd basis = orthonormal_basis(own);
     const Matrix6d rest = Matrix6d::Identity() - basis * basis.transpose();
     share = rest * share * rest + basis * basis.transpose();
   }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -152,7 +152,7 @@ CarriedFit fit_carried_frames(const std::vector<RegionSample>& regions, CarriedM
   for (int i = 0; i < kMostSteps && damping < 10 && stalled < 3 && energy > 0; ++i) {
     Eigen::MatrixXd damped = hessian;
     damped.diagonal().array() += damping * (hessian.trace() / static_cast<double>(hessian.rows()) + 1e-300);
-    const Unknowns next = problem.moved(at, damped.ldlt().solve(-gradient));
+    const Unknowns next = problem.moved(at, solve_semidefinite(damped, -gradient));
     const double next_energy = problem.energy(next);
     if (next_energy < energy) {
       stalled = energy - next_energy < 1e-9 * energy ? stalled + 1 : 0;

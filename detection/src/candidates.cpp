@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 

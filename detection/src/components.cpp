@@ -7,10 +7,9 @@
 #include <numbers>
 #include <numeric>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -101,8 +100,6 @@ double mean_distance(const SurfacePatch& patch, const SurfaceIndex& target, cons
 
 // Point-to-plane ICP of all six degrees of freedom; the determinant stays as it is.
 Motion fit_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const SurfaceIndex& target, Motion motion) {
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   const Eigen::Index total = patch.samples.points.rows();
   const Eigen::Index count = std::min<Eigen::Index>(total, 150);
   const double size = std::max(patch.moments.radius, 1e-12);
@@ -111,8 +108,8 @@ Motion fit_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const
     const double width =
         iteration < 8 ? std::max(2 * patch.tolerance, 0.25 * size * std::pow(0.6, iteration)) : 2 * patch.tolerance;
     const Vector3d centre = motion(patch.moments.centroid);
-    Matrix6 matrix = Matrix6::Zero();
-    Vector6 right = Vector6::Zero();
+    Matrix6d matrix = Matrix6d::Zero();
+    Vector6d right = Vector6d::Zero();
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Index s = i * total / count;
       const Vector3d image = motion(patch.samples.points.row(s));
@@ -120,15 +117,15 @@ Motion fit_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const
       const SurfaceIndex::Nearest near = target.nearest_facing(image, normal, kNormalCosine, width, true);
       if (near.face < 0) continue;
       const Vector3d facing = prepared.normals.row(near.face);
-      Vector6 row;
+      Vector6d row;
       row << (image - centre).cross(facing) / size, facing;
       const double ratio = near.distance / width;
       const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
       matrix += weight * row * row.transpose();
       right += weight * facing.dot(image - near.point) * row;
     }
-    matrix += 1e-9 * std::max(matrix.trace(), 1e-300) * Matrix6::Identity();
-    const Vector6 step = matrix.ldlt().solve(-right);
+    matrix += 1e-9 * std::max(matrix.trace(), 1e-300) * Matrix6d::Identity();
+    const Vector6d step = solve_semidefinite(matrix, -right);
     Vector3d turn = step.head<3>() / size;
     if (turn.norm() > 0.3) turn *= 0.3 / turn.norm();
     if (turn.norm() > 0) motion = Motion::rotation(turn.normalized(), turn.norm(), centre) * motion;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {
@@ -15,7 +16,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr double kSlippable = 0.05;                 // of the largest eigenvalue
@@ -60,7 +60,7 @@ Eigen::MatrixXd claimed_twists(const GroupPlacement& placement, const Vector3d& 
   if (!placement.group.continuous()) return Eigen::MatrixXd(6, 0);
   const Vector3d offset = (placement.centre - centre) / size;
   const auto turn = [&](const Vector3d& axis) {
-    Vector6 twist;
+    Vector6d twist;
     twist << axis, -axis.cross(offset);
     return twist;
   };
@@ -77,12 +77,12 @@ Eigen::MatrixXd claimed_twists(const GroupPlacement& placement, const Vector3d& 
 }
 
 // Gelfand and Guibas 2004, section 3: twists that the samples resist little have small eigenvalues.
-Eigen::Matrix<double, 6, 6> slip_matrix(const SurfacePatch& patch, const Vector3d& centre, double size) {
-  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+Matrix6d slip_matrix(const SurfacePatch& patch, const Vector3d& centre, double size) {
+  Matrix6d matrix = Matrix6d::Zero();
   for (Eigen::Index i = 0; i < patch.samples.points.rows(); ++i) {
     const Vector3d point = (patch.samples.points.row(i).transpose() - centre) / size;
     const Vector3d normal = patch.samples.normals.row(i);
-    Vector6 row;
+    Vector6d row;
     row << point.cross(normal), normal;
     matrix += row * row.transpose();
   }
@@ -96,14 +96,13 @@ double spread_about(const SurfacePatch& patch, const Vector3d& centre) {
 // A basis of the slippable twists that the group does not claim.
 Eigen::MatrixXd slippable_twists(const SurfacePatch& patch, const GroupPlacement& placement, const Vector3d& centre,
                                  double size) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(slip_matrix(patch, centre, size));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(slip_matrix(patch, centre, size));
   Eigen::Index count = 0;
   while (count < 6 && solver.eigenvalues()[count] < kSlippable * solver.eigenvalues()[5]) ++count;
   Eigen::MatrixXd slip = solver.eigenvectors().leftCols(count);
   const Eigen::MatrixXd claimed = claimed_twists(placement, centre, size);
   if (claimed.cols() == 0 || count == 0) return slip;
-  const Eigen::MatrixXd basis =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(claimed).householderQ() * Eigen::MatrixXd::Identity(6, claimed.cols());
+  const Eigen::MatrixXd basis = orthonormal_basis(claimed);
   slip -= basis * (basis.transpose() * slip);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slip, Eigen::ComputeThinU);
   Eigen::Index kept = 0;
@@ -122,7 +121,7 @@ bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, con
   if (slip.cols() == 0) return false;
   // Pure translations, turns, and mixtures of all.
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slip.topRows(3), Eigen::ComputeFullV);
-  std::vector<Vector6> ways;
+  std::vector<Vector6d> ways;
   for (Eigen::Index k = 0; k < slip.cols(); ++k) ways.emplace_back(slip * svd.matrixV().col(k));
   Random random(context.seed, "featureless");
   for (int extra = 0; extra < 4 && slip.cols() > 1; ++extra) {
@@ -131,7 +130,7 @@ bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, con
     ways.emplace_back(slip * mixture.normalized());
   }
   constexpr std::array<double, 4> kAmounts{0.31, 0.57, 0.83, 1};
-  return std::ranges::any_of(ways, [&](const Vector6& way) {
+  return std::ranges::any_of(ways, [&](const Vector6d& way) {
     context.check();
     const Vector3d w = way.head<3>();
     const Vector3d v = way.tail<3>() * size;

@@ -8,8 +8,6 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "orbifit/detection/axis_orders.h"
 #include "orbifit/detection/completion.h"
 #include "orbifit/detection/explanation.h"
@@ -18,6 +16,7 @@
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/symmetry_lines.h"
 #include "orbifit/detection/verification.h"
+#include "orbifit/model/dense.h"
 
 #include "chance_symmetry.h"
 

@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "orbifit/detection/verification.h"
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -77,13 +78,13 @@ std::optional<Lattice> fit_lattice(const std::vector<Vector3d>& offsets, std::ve
   for (std::size_t i = 0; i < offsets.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = offsets[i];
   for (int round = 0; round < 3; ++round) {
     for (Eigen::Index k = 0; k < dimension; ++k) basis.col(k) = steps[static_cast<std::size_t>(k)];
-    const Eigen::MatrixXd exact = basis.colPivHouseholderQr().solve(points);
+    const Eigen::MatrixXd exact = shortest_solution(basis, points, 1e-12);
     places = exact.array().round().matrix();
     // Before they are fitted the steps are off, and the more so the more of them are taken.
     const double slack = (round == 0 ? 3 : 1) * tolerance;
     if ((basis * exact - points).colwise().norm().maxCoeff() > slack) return std::nullopt;
     if ((basis * places - points).colwise().norm().maxCoeff() > slack) return std::nullopt;
-    const Eigen::MatrixXd fitted = places.transpose().colPivHouseholderQr().solve(points.transpose()).transpose();
+    const Eigen::MatrixXd fitted = shortest_solution(places.transpose(), points.transpose(), 1e-12).transpose();
     for (Eigen::Index k = 0; k < dimension; ++k) steps[static_cast<std::size_t>(k)] = fitted.col(k);
   }
   Lattice result{steps, {}, 0};
@@ -164,9 +165,8 @@ std::optional<Screw> screw_of(const Motion& motion) {
   const AxisAngle turn = axis_angle(motion.linear);
   if (turn.determinant < 0 || turn.angle < kLeastTurn) return std::nullopt;
   const double rise = turn.axis.dot(motion.translation);
-  const Matrix3d singular = Matrix3d::Identity() - motion.linear;
   const Vector3d across = motion.translation - rise * turn.axis;
-  return Screw{turn.axis, singular.completeOrthogonalDecomposition().solve(across), turn.angle, rise};
+  return Screw{turn.axis, shortest_solution(Matrix3d::Identity() - motion.linear, across, 1e-12), turn.angle, rise};
 }
 
 // The powers of the step that the motions are, up to the own group; empty unless they all are, and fill half of what

@@ -12,6 +12,7 @@
 
 #include <Eigen/Dense>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_group.h"
 #include "orbifit/model/point_index.h"

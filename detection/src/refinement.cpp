@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "orbifit/detection/verification.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/model/point_index.h"
 
 namespace orbifit {
@@ -17,9 +17,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Family = PointGroup::Family;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
 constexpr double kNormalCosine = 0.8;  // 37 degrees: looser than when verifying, the start may be off
@@ -65,15 +63,16 @@ Jacobian image_jacobian(const Motion& motion, const Vector3d& from_centre, doubl
 }
 
 struct NormalEquations {
-  Matrix6 matrix = Matrix6::Zero();
-  Vector6 right = Vector6::Zero();
+  Matrix6d matrix = Matrix6d::Zero();
+  Vector6d right = Vector6d::Zero();
   double weight = 0;
 };
 
 // Takes the step; directions that the data leave free (along an axis, within a plane) stay where they are.
 double apply(const NormalEquations& equations, double scale, GroupPlacement& placement) {
   const double damping = 1e-9 * std::max(equations.matrix.trace(), 1e-300);
-  const Vector6 step = (equations.matrix + damping * Matrix6::Identity()).ldlt().solve(-equations.right);
+  const Vector6d step =
+      solve_semidefinite(Matrix6d(equations.matrix + damping * Matrix6d::Identity()), Vector6d(-equations.right));
   Vector3d turn = step.head<3>() / scale;
   if (turn.norm() > 0.3) turn *= 0.3 / turn.norm();
   if (turn.norm() > 0) {
@@ -107,7 +106,7 @@ struct Pairs {
     const double residual = facing.dot(image - near.point);
     const double ratio = near.distance / width;
     const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
-    const Vector6 row = image_jacobian(motion, point - placement.centre, scale).transpose() * facing;
+    const Vector6d row = image_jacobian(motion, point - placement.centre, scale).transpose() * facing;
     equations.matrix += weight * row * row.transpose();
     equations.right += weight * residual * row;
     equations.weight += weight;

@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "orbifit/model/dense.h"
+
 namespace orbifit {
 
 namespace {

@@ -6,8 +6,9 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 

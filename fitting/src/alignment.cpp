@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include "orbifit/fitting/correspondences.h"
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -15,12 +14,11 @@ namespace {
 
 constexpr int kIterations = 60;
 constexpr int kFewestPairs = 6;
-constexpr double kFirstReach = 0.25;       // of the diagonal: pairs farther apart are not the same place
-constexpr double kDirectionNoise = 0.003;  // of the diagonal
-constexpr double kRobustDecay = 0.92;      // an iteration: what is far at first may be near later
-constexpr double kLeastRobust = 0.004;     // of the diagonal
-constexpr double kStill = 1e-6;            // of the diagonal: ICP stops at smaller steps
-constexpr double kScaleDamping = 0.02;     // a scan of little else than a plane says nothing of the scale
+constexpr double kFarthestPair = 0.25;  // of the diagonal: pairs farther apart are not the same place
+constexpr double kRobustDecay = 0.92;   // an iteration: what is far at first may be near later
+constexpr double kLeastRobust = 0.004;  // of the diagonal
+constexpr double kSmallestStep = 1e-6;  // of the diagonal: ICP stops at smaller steps
+constexpr double kScaleDamping = 0.02;  // a scan of little else than a plane says nothing of the scale
 
 // Point-to-plane offsets as a linear system in a small similarity of the scan in the template's frame: a rotation about
 // the pivot and the growth times the template's diagonal, and a translation.
@@ -44,19 +42,19 @@ class PoseSystem {
 
   // What the scan leaves open, such as a turn about a lathe part's axis, stays.
   Step rigid() const {
-    Eigen::Matrix<double, 6, 6> matrix = matrix_.topLeftCorner<6, 6>();
+    Matrix6d matrix = matrix_.topLeftCorner<6, 6>();
     matrix.diagonal().array() += kOpen * matrix.trace();
     Vector7 step = Vector7::Zero();
-    step.head<6>() = matrix.ldlt().solve(side_.head<6>());
+    step.head<6>() = solve_semidefinite(matrix, side_.head<6>());
     return step_of(step);
   }
 
   Step scaled() const {
-    Eigen::Matrix<double, 7, 7> matrix = matrix_;
+    Eigen::MatrixXd matrix = matrix_;
     const double trace = matrix.trace();
     matrix.diagonal().array() += kOpen * trace;
     matrix(6, 6) += kScaleDamping * trace;
-    return step_of(matrix.ldlt().solve(side_));
+    return step_of(solve_semidefinite(matrix, side_));
   }
 
  private:
@@ -107,7 +105,7 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     context.progress("alignment", double(iteration) / kIterations);
     CorrespondenceOptions options;
-    options.max_distance = kFirstReach * size;
+    options.max_distance = kFarthestPair * size;
     options.direction_noise = kDirectionNoise * size;
     options.robust_scale = robust;
     options.trim = 0.95;
@@ -124,7 +122,7 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
     const PoseSystem::Step step = system.rigid();
     pose = pose * inverse(step.scan);
     robust = std::max(kLeastRobust * size, kRobustDecay * robust);
-    if (step.length < kStill * size && robust <= kLeastRobust * size) break;
+    if (step.length < kSmallestStep * size && robust <= kLeastRobust * size) break;
   }
   return pose;
 }

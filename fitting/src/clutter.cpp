@@ -4,8 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include <Eigen/Eigenvalues>
-
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {

@@ -13,9 +13,8 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kFirstReach = 0.15;       // of the diagonal: correspondences farther apart are none, at the start
-constexpr double kLastReach = 0.04;        // and at the end
-constexpr double kDirectionNoise = 0.003;  // of the diagonal
+constexpr double kFirstReach = 0.15;  // of the diagonal: correspondences farther apart are none, at the start
+constexpr double kLastReach = 0.04;   // and at the end
 // Offsets far above the robust scale hardly count. It shrinks last: parts that the soft template has yet to reach
 // would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
 constexpr double kFirstRobust = 0.05;

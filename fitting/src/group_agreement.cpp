@@ -5,10 +5,10 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "orbifit/fitting/correspondences.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
@@ -175,27 +175,26 @@ std::vector<Pair> pairs_of(const Comparison& comparison, const Region& region, R
 
 // Takes out of the heights what a small rigid motion of the region explains of their differences.
 void take_out_motion(std::vector<Pair>& pairs, double size) {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   constexpr int kRounds = 8;
   if (pairs.empty()) return;
   const Vector3d centre = pairs.front().first.point;
   const auto row_of = [&](const Place& place) {
-    Vector6 row;
+    Vector6d row;
     row << ((place.point - centre) / size).cross(place.normal), place.normal;
     return row;
   };
   for (int round = 0; round < kRounds; ++round) {
     const double robust = kFirstRobust * std::pow(kLastRobust / kFirstRobust, double(round) / (kRounds - 1));
-    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-    Vector6 side = Vector6::Zero();
+    Matrix6d matrix = Matrix6d::Zero();
+    Vector6d side = Vector6d::Zero();
     for (const Pair& pair : pairs) {
-      const Vector6 row = row_of(pair.second) - row_of(pair.first);
+      const Vector6d row = row_of(pair.second) - row_of(pair.first);
       const double weight = robust_weight(pair.apart(), robust);
       matrix += weight * row * row.transpose();
       side += weight * pair.apart() * row;
     }
     matrix.diagonal().array() += 1e-3 * matrix.trace() + 1e-12;
-    const Vector6 motion = matrix.ldlt().solve(side);
+    const Vector6d motion = solve_semidefinite(matrix, side);
     for (Pair& pair : pairs) {
       pair.first.height -= motion.dot(row_of(pair.first));
       pair.second.height -= motion.dot(row_of(pair.second));

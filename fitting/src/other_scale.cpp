@@ -4,9 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "orbifit/fitting/alignment.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/subspace/corotation.h"
 
 namespace orbifit {
@@ -36,7 +35,7 @@ FitState with_scale(double scale, const FitState& state, const Subspace& subspac
   }
   const Eigen::SparseMatrix<double>& columns = subspace.basis.columns;
   const Eigen::MatrixXd gram = columns.transpose() * columns;
-  result.q = gram.ldlt().solve(columns.transpose() * stacked(target));
+  result.q = solve_semidefinite(gram, columns.transpose() * stacked(target));
   return result;
 }
 

@@ -9,8 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
+#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 

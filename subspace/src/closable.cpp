@@ -18,7 +18,6 @@ namespace orbifit {
 namespace {
 
 constexpr std::size_t kTrialPoints = 128;  // of each region
-constexpr double kDoublet = 1e-6;          // of the diagonal, as for the vertices
 constexpr double kSameDirection = 1e-6;    // radians
 
 // Orbits of groups that fit together have no more points than the product of the orders of the places on the way, and

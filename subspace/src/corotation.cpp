@@ -1,7 +1,8 @@
 #include "orbifit/subspace/corotation.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 

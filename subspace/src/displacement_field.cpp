@@ -22,8 +22,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDoublet = 1e-6;  // of the diagonal, as for vertices
-constexpr double kMet = 1e-9;      // of the diagonal: a vertex this near an image is the image
+constexpr double kMet = 1e-9;  // of the diagonal: a vertex this near an image is the image
 
 // The places that hold a vertex, as its orbit has them.
 int set_of_vertex(const VertexOrbits& orbits, int vertex) {

@@ -4,7 +4,8 @@
 #include <optional>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -13,7 +14,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSameMotion = 2e-3;  // of the diagonal, on an instance
+constexpr double kSameStep = 2e-3;  // of the diagonal, on an instance
 
 struct Powers {
   Motion motion;
@@ -46,7 +47,7 @@ std::optional<Powers> combination(const std::vector<Motion>& generators, const M
     if ((generators[g].linear - Matrix3d::Identity()).norm() > 1e-6) return std::nullopt;
     steps.col(static_cast<Eigen::Index>(g)) = generators[g].translation;
   }
-  const Eigen::VectorXd counts = steps.colPivHouseholderQr().solve(instance.translation);
+  const Eigen::VectorXd counts = shortest_solution(steps, instance.translation, 1e-12);
   Powers result;
   for (Eigen::Index g = 0; g < counts.size(); ++g) {
     const double count = std::round(counts[g]);
@@ -61,7 +62,7 @@ std::optional<Powers> combination(const std::vector<Motion>& generators, const M
 
 Lattice lattice_of(const Mesh& mesh, const Pattern& pattern) {
   Lattice lattice;
-  const double tolerance = kSameMotion * diagonal(mesh.vertices);
+  const double tolerance = kSameStep * diagonal(mesh.vertices);
   Vector3d centre = Vector3d::Zero();
   double reach = 0;
   if (!pattern.instances.empty() && !pattern.instances[0].faces.empty()) {

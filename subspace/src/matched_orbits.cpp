@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <Eigen/SVD>
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -179,9 +179,7 @@ Eigen::Vector3d stabilised(const PlaceOrbit& orbit, const Eigen::Vector3d& point
     system.middleRows<3>(row) = orbit.stabilisers[i].linear - Eigen::Matrix3d::Identity();
     moved.segment<3>(row) = point - orbit.stabilisers[i](point);
   }
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(system, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(1e-3);
-  return point + svd.solve(moved);
+  return point + shortest_solution(system, moved, 1e-3);
 }
 
 Eigen::Vector3d orbit_mean(const PlaceOrbit& orbit, const Points& positions) {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/lift.h"
 

@@ -5,8 +5,7 @@
 #include <string>
 #include <unordered_map>
 
-#include <Eigen/SVD>
-
+#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 
 namespace orbifit {
@@ -308,9 +307,7 @@ Eigen::Vector3d fixed_point(const Eigen::Vector3d& seed, const std::vector<Motio
     system.middleRows<3>(row) = stabilisers[i].linear - Eigen::Matrix3d::Identity();
     moved.segment<3>(row) = seed - stabilisers[i](seed);
   }
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(system, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(1e-6);
-  return seed + svd.solve(moved);
+  return seed + shortest_solution(system, moved, 1e-6);
 }
 
 }  // namespace orbifit

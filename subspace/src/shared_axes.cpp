@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/subspace/orbit.h"
 
 namespace orbifit {
@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Family = PointGroup::Family;
 
 // A region's group as a frame at a centre, with its extent.
 struct Placement {
@@ -28,7 +29,6 @@ struct Placement {
 
 // Elements that share the fixed points of a continuous group and none of the arbitrary mirrors.
 std::vector<Motion> stand_in(const Region& region) {
-  using Family = PointGroup::Family;
   const Family family = region.group.family;
   PointGroup group{Family::Cn, 8};
   if (family == Family::Cinfh || family == Family::Dinf || family == Family::Dinfh) group.family = Family::Cnh;
@@ -140,7 +140,6 @@ bool overlap(const std::vector<int>& a, const std::vector<int>& b) {
 // Projects onto the directions in which the group's centre is determined: a mirror's plane and a polar axis leave it
 // free along them.
 Matrix3d pinned(const Region& region) {
-  using Family = PointGroup::Family;
   const Vector3d axis = region.axis.normalized();
   switch (region.group.family) {
     case Family::Cs:

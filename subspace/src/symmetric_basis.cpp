@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 
@@ -131,9 +131,7 @@ class CarrierSystem {
 
   VectorXd particular() const {
     if (gram_.size() == 0 || side_.cwiseAbs().maxCoeff() == 0) return VectorXd::Zero(side_.size());
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> solver(gram_);
-    solver.setThreshold(kRank);
-    return -solver.solve(side_);
+    return -shortest_solution(gram_, side_, kRank);
   }
 
   // The largest constant that the carriers leave unmet.

@@ -23,9 +23,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kDoublet = 1e-4;     // of the diagonal (paper, section 5)
-constexpr double kCrowded = 0.4;      // of r
-constexpr double kRingSpacing = 0.9;  // of r
+constexpr double kDoubletSamples = 1e-4;  // of the diagonal (paper, section 5)
+constexpr double kCrowded = 0.4;          // of r
+constexpr double kRingSpacing = 0.9;      // of r
 constexpr int kFewestCopies = 6;
 constexpr int kCandidatesPerDisc = 30;
 constexpr int kMostCandidates = 400000;
@@ -233,7 +233,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
   std::vector<double> radii;
   DiscGrid grid(largest, regions);
   ClosureOptions closure;
-  closure.doublet = kDoublet * diagonal(mesh.vertices);
+  closure.doublet = kDoubletSamples * diagonal(mesh.vertices);
   std::set<int> unclosed;  // sets of borders
   std::size_t done = 0;
   for (const Candidate& candidate : candidates) {

@@ -11,8 +11,6 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kDoublet = 1e-6;  // of the diagonal
-
 // Position along a curve that fills the box (Morton 1966): neighbours in space come to lie next to one another.
 std::uint64_t curve_position(const Eigen::Vector3d& unit) {
   std::uint64_t result = 0;

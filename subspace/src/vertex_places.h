@@ -9,6 +9,9 @@
 
 namespace orbifit {
 
+/// Of the diagonal: vertices nearer than this are one place.
+inline constexpr double kDoublet = 1e-6;
+
 /// Of each vertex, the smallest index of a vertex at the same position.
 std::vector<int> welded_vertices(const Points& vertices);
 

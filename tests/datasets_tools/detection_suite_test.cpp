@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/surface_index.h"
 #include "orbifit/model/topology.h"

@@ -20,7 +20,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 0.005;
 constexpr double kExact = 1e-12;  // of the diagonal
 
 // Boxes at all images of one place under a group, each with its D2h, and the group on all of them.
@@ -130,8 +129,8 @@ TEST_P(Completed, ARegionThatWasMissedComesBackExactlyCarried) {
     const std::vector<int> faces = regions[missed].faces;
     regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(missed));
     Explanation explanation;
-    complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance, 300, &explanation}, RunContext{},
-                     regions);
+    complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance, 300, &explanation},
+                     RunContext{}, regions);
     ASSERT_EQ(regions.size(), count);
     const FoundRegion* back = on_faces(regions, faces);
     ASSERT_NE(back, nullptr) << "on the very same faces";
@@ -146,7 +145,7 @@ TEST_P(Completed, ARegionThatWasMissedComesBackExactlyCarried) {
 TEST_P(Completed, OneRegionIsEnough) {
   const Assembly truth = made();
   std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, regions);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance}, RunContext{}, regions);
   ASSERT_EQ(regions.size(), truth.regions.size());
   for (const FoundRegion& region : truth.regions) EXPECT_NE(on_faces(regions, region.faces), nullptr);
   expect_exactly_carried(truth, regions);
@@ -155,9 +154,9 @@ TEST_P(Completed, OneRegionIsEnough) {
 TEST_P(Completed, TwiceIsOnce) {
   const Assembly truth = made();
   std::vector<FoundRegion> once{truth.regions[0], truth.regions[1]};
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, once);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance}, RunContext{}, once);
   std::vector<FoundRegion> twice = once;
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, twice);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance}, RunContext{}, twice);
   ASSERT_EQ(twice.size(), once.size());
   for (const FoundRegion& region : once) {
     const FoundRegion* same = on_faces(twice, region.faces);
@@ -169,7 +168,7 @@ TEST_P(Completed, TwiceIsOnce) {
 TEST_P(Completed, NothingOnceTimeIsUp) {
   const Assembly truth = made();
   std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};
-  CompletionOptions options{kTolerance};
+  CompletionOptions options{test::kTolerance};
   int asked = 0;
   options.late = [&] { return ++asked > 1; };
   complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), options, RunContext{}, regions);
@@ -182,9 +181,9 @@ TEST_P(Completed, SameForAnyNumberOfThreads) {
   std::vector<FoundRegion> one{truth.regions[0], truth.regions[1]};
   std::vector<FoundRegion> several = one;
   RunContext context;
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, context, one);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance}, context, one);
   context.threads = 3;
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, context, several);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance}, context, several);
   ASSERT_EQ(one.size(), several.size());
   for (std::size_t r = 0; r < one.size(); ++r) {
     EXPECT_EQ(one[r].faces, several[r].faces);
@@ -196,7 +195,7 @@ TEST_P(Completed, SameForAnyNumberOfThreads) {
 TEST_P(Completed, NoMoreThanAskedFor) {
   const Assembly truth = made();
   std::vector<FoundRegion> regions{truth.regions[0], truth.regions[1]};
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance, 2}, RunContext{}, regions);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance, 2}, RunContext{}, regions);
   EXPECT_EQ(regions.size(), 2U);
 }
 
@@ -215,7 +214,7 @@ TEST_P(LeftInPlace, ByTheElementsThatKeepTheRegion) {
       assembly({PointGroup::Family::Dnh, n}, frame, {frame, frame * Vector3d(1, 0, 0)}, {0.2, 0.3, 0.4});
   std::vector<FoundRegion> regions = truth.regions;
   for (std::size_t r = 1; r < regions.size(); ++r) shake(regions[r].placement, random);
-  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {kTolerance}, RunContext{}, regions);
+  complete_regions(truth.prepared, SurfaceIndex(truth.prepared.mesh), {test::kTolerance}, RunContext{}, regions);
   EXPECT_EQ(regions.size(), truth.regions.size());
   for (const FoundRegion& region : regions) {
     if (region.name == "whole") continue;
@@ -257,7 +256,7 @@ TEST_F(Table, GetsTheRegionOfItsFourthLegBack) {
   const PreparedMesh prepared =
       prepare(test::joined({test::box(2, 2, 0.1), leg(0, 1), leg(1, 1), leg(2, 1), leg(3, 1)}));
   std::vector<FoundRegion> regions = regions_of(prepared, 3);
-  complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, regions);
+  complete_regions(prepared, SurfaceIndex(prepared.mesh), {test::kTolerance}, RunContext{}, regions);
   ASSERT_EQ(regions.size(), 5U);
   EXPECT_EQ(regions.back().faces, prepared.components.faces[4]);
   const std::vector<FoundRegion> truth = regions_of(prepared, 4);
@@ -270,7 +269,7 @@ TEST_F(Table, GetsNoneWhereTheLegIsMissingOrAnother) {
                             std::vector<Mesh>{test::box(2, 2, 0.1), leg(0, 1), leg(1, 1), leg(2, 1), leg(3, 0.7)}}) {
     const PreparedMesh prepared = prepare(test::joined(parts));
     std::vector<FoundRegion> regions = regions_of(prepared, 3);
-    complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, regions);
+    complete_regions(prepared, SurfaceIndex(prepared.mesh), {test::kTolerance}, RunContext{}, regions);
     EXPECT_EQ(regions.size(), 4U);
   }
 }
@@ -290,7 +289,7 @@ TEST_F(Table, CarriesContinuousGroupsButIsCarriedByNone) {
                   prepared.components.faces[1], "leg")};
   };
   std::vector<FoundRegion> regions = regions_with("C4v");
-  complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, regions);
+  complete_regions(prepared, SurfaceIndex(prepared.mesh), {test::kTolerance}, RunContext{}, regions);
   ASSERT_EQ(regions.size(), 5U);
   for (std::size_t r = 1; r < 5; ++r) {
     EXPECT_EQ(regions[r].placement.group.symbol(), "Dinfh");
@@ -299,7 +298,7 @@ TEST_F(Table, CarriesContinuousGroupsButIsCarriedByNone) {
     EXPECT_LT(regions[r].placement.frame.col(2).cross(Vector3d::UnitZ()).norm(), kExact);
   }
   std::vector<FoundRegion> others = regions_with("Cinfv");
-  complete_regions(prepared, SurfaceIndex(prepared.mesh), {kTolerance}, RunContext{}, others);
+  complete_regions(prepared, SurfaceIndex(prepared.mesh), {test::kTolerance}, RunContext{}, others);
   EXPECT_EQ(others.size(), 2U);
 }
 

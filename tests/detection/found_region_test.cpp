@@ -18,8 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 0.005;
-
 // A plate with four equal blocks upon it, a post on the axis and a speck.
 class Regions : public testing::Test {
  protected:
@@ -50,7 +48,7 @@ class Regions : public testing::Test {
   }
 
   std::vector<std::string> kept(std::vector<FoundRegion> regions, Explanation* explanation = nullptr) const {
-    drop_repeats(prepared_, kTolerance, regions, explanation);
+    drop_repeats(prepared_, test::kTolerance, regions, explanation);
     std::vector<std::string> names;
     for (const FoundRegion& each : regions) names.push_back(each.name);
     return names;
@@ -221,7 +219,8 @@ class ByCoincidence : public testing::TestWithParam<Coincidence> {};
 
 TEST_P(ByCoincidence, IsASmallPartFarLessExactThanWhatIsAround) {
   const Coincidence& each = GetParam();
-  EXPECT_EQ(by_coincidence(each.area, each.misfit, each.area_around, each.misfit_around, kTolerance), each.expected);
+  EXPECT_EQ(by_coincidence(each.area, each.misfit, each.area_around, each.misfit_around, test::kTolerance),
+            each.expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, ByCoincidence,
@@ -229,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, ByCoincidence,
                                          Coincidence{"SmallAndAsExact", 0.1, 2e-12, 1, 1e-12, false},
                                          Coincidence{"BothLoose", 0.1, 3e-3, 1, 1e-3, false},
                                          Coincidence{"TheLargerPart", 0.6, 3e-3, 1, 1e-12, false},
-                                         Coincidence{"NextToNothing", 0.1, 0.1 * kTolerance, 1, 0, false}),
+                                         Coincidence{"NextToNothing", 0.1, 0.1 * test::kTolerance, 1, 0, false}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 TEST(DropFeatureless, PiecesOfALargerSurfaceGoTheWholeStays) {
@@ -248,7 +247,7 @@ TEST(DropFeatureless, PiecesOfALargerSurfaceGoTheWholeStays) {
                        std::to_string(c)});
   }
   Explanation explanation;
-  drop_featureless(prepared, whole, kTolerance, RunContext{}, regions, &explanation);
+  drop_featureless(prepared, whole, test::kTolerance, RunContext{}, regions, &explanation);
   ASSERT_EQ(regions.size(), 2U);
   EXPECT_EQ(regions[0].name, "0");
   EXPECT_EQ(regions[1].name, "2");

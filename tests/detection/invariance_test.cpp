@@ -97,7 +97,7 @@ Mesh bolt() {
   return mesh;
 }
 
-SymmetryAnnotation found_in(const Mesh& mesh, int threads = 1, Explanation* explanation = nullptr) {
+SymmetryAnnotation regions_of(const Mesh& mesh, int threads = 1, Explanation* explanation = nullptr) {
   DetectOptions options;
   options.samples = 1500;
   options.explanation = explanation;
@@ -106,7 +106,7 @@ SymmetryAnnotation found_in(const Mesh& mesh, int threads = 1, Explanation* expl
   return detect(mesh, options, context);
 }
 
-std::string summary(const SymmetryAnnotation& annotation) {
+std::string summary_of(const SymmetryAnnotation& annotation) {
   std::string text;
   for (const Region& region : annotation.regions) {
     text += region.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces (" + region.name + ")\n";
@@ -176,7 +176,7 @@ class Invariance : public testing::TestWithParam<Model> {
     mesh_ = GetParam().build();
     static std::map<std::string, SymmetryAnnotation> known;  // what is found in the models as they are
     const auto place = known.find(GetParam().name);
-    expected_ = place != known.end() ? place->second : (known[GetParam().name] = found_in(mesh_));
+    expected_ = place != known.end() ? place->second : (known[GetParam().name] = regions_of(mesh_));
     ASSERT_FALSE(expected_.regions.empty());
   }
 
@@ -184,8 +184,9 @@ class Invariance : public testing::TestWithParam<Model> {
     SCOPED_TRACE(what);
     Random random(7, what);
     const Changed other = changed(mesh_, motion, reorder, random);
-    SymmetryAnnotation found = found_in(other.mesh);
-    EXPECT_EQ(found.regions.size(), expected_.regions.size()) << summary(found) << "instead of\n" << summary(expected_);
+    SymmetryAnnotation found = regions_of(other.mesh);
+    EXPECT_EQ(found.regions.size(), expected_.regions.size()) << summary_of(found) << "instead of\n"
+                                                              << summary_of(expected_);
     EXPECT_EQ(found.patterns.size(), expected_.patterns.size());
     for (Region& region : found.regions) {
       for (int& face : region.faces) face = other.face[static_cast<std::size_t>(face)];
@@ -201,7 +202,7 @@ class Invariance : public testing::TestWithParam<Model> {
       }
       EXPECT_LT(nearest, kSame) << region.group.symbol() << " on " << region.name << " of " << region.faces.size()
                                 << " faces; found\n"
-                                << summary(found);
+                                << summary_of(found);
     }
   }
 
@@ -232,7 +233,7 @@ TEST_P(Invariance, OtherOrderOfVerticesAndFaces) {
 // On two threads, and asked to explain itself, the detector finds the very same.
 TEST_P(Invariance, ByteForByteAndEverythingExplained) {
   Explanation explanation;
-  const SymmetryAnnotation annotation = found_in(mesh_, 2, &explanation);
+  const SymmetryAnnotation annotation = regions_of(mesh_, 2, &explanation);
   EXPECT_EQ(to_json(annotation), to_json(expected_));
   for (const Region& region : annotation.regions) {
     const std::string subject = region.group.symbol() + " on " + region.name;

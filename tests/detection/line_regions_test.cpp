@@ -19,14 +19,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 0.005;
 constexpr int kSamples = 6000;
 
 /// A mesh cut into pieces, with its grid.
 class Screened {
  public:
   explicit Screened(const Mesh& mesh)
-      : prepared_(cut(mesh)), whole_(prepared_.mesh), surface_(prepared_, kTolerance, kSamples, {}) {}
+      : prepared_(cut(mesh)), whole_(prepared_.mesh), surface_(prepared_, test::kTolerance, kSamples, {}) {}
 
   GroupPlacement placement(const std::string& symbol, const Vector3d& centre = Vector3d::Zero()) const {
     const Similarity& input = prepared_.input_of_normalised;
@@ -119,7 +118,7 @@ TEST_P(ThinnedDisc, KeepsWhatHasItsImagesInIt) {
   const Screened screened(test::joined(parts));
   const PreparedMesh& prepared = screened.surface().prepared;
   const GroupPlacement placement = screened.placement("C8");
-  const SurfacePatch patch = make_patch(prepared, screened.surface().faces, 6000, kTolerance, {}, "test");
+  const SurfacePatch patch = make_patch(prepared, screened.surface().faces, 6000, test::kTolerance, {}, "test");
   const Verification verification = verify_group(patch, placement, {});
   EXPECT_EQ(passes(verification), missing < 0);
   const std::vector<int> kept = thinned_region(screened.surface(), patch, verification, placement, {});

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 0.004;
+constexpr double kOrbitTolerance = 0.004;
 
 /// A mesh made ready, with the regions of groups that are given in the mesh's own frame.
 class Made {
@@ -31,11 +31,11 @@ class Made {
   }
 
   std::vector<int> symmetric(const GroupPlacement& placement) const {
-    return symmetric_faces(prepared_, whole_, placement, kTolerance, context_);
+    return symmetric_faces(prepared_, whole_, placement, kOrbitTolerance, context_);
   }
 
   std::vector<int> orbit(const GroupPlacement& placement, const std::vector<int>& seeds) const {
-    return connected_orbit(prepared_, placement, symmetric(placement), seeds, kTolerance, context_);
+    return connected_orbit(prepared_, placement, symmetric(placement), seeds, kOrbitTolerance, context_);
   }
 
   // Whether every element carries every face onto the region.
@@ -45,7 +45,7 @@ class Made {
       for (const int face : faces) {
         Vector3d centroid = Vector3d::Zero();
         for (int k = 0; k < 3; ++k) centroid += prepared_.mesh.vertices.row(prepared_.mesh.faces(face, k)) / 3;
-        if (region.nearest(motion(centroid)).distance > kTolerance) return false;
+        if (region.nearest(motion(centroid)).distance > kOrbitTolerance) return false;
       }
     }
     return true;
@@ -161,7 +161,7 @@ TEST(OrbitRegion, IsTheSameForAnyNumberOfThreads) {
   three.threads = 3;
   const SurfaceIndex whole(made.prepared().mesh);
   const GroupPlacement placement = made.placement("C6v");
-  EXPECT_EQ(symmetric_faces(made.prepared(), whole, placement, kTolerance, three), made.symmetric(placement));
+  EXPECT_EQ(symmetric_faces(made.prepared(), whole, placement, kOrbitTolerance, three), made.symmetric(placement));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/orbit_model.h"
@@ -13,6 +12,7 @@
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/verification.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
 #include "placements.h"
@@ -23,13 +23,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 0.005;
-
 PartRegions regions_of(const PreparedMesh& prepared, const std::vector<FoundRegion>& known = {},
                        PartRegionOptions options = {}) {
   static const DirectionSet screen = hemisphere_directions(1500);
   const SurfaceIndex whole(prepared.mesh);
-  options.tolerance = kTolerance;
+  options.tolerance = test::kTolerance;
   return find_part_regions(prepared, survey_components(prepared, options.tolerance, options.least_share, {}), whole,
                            known, screen, options, RunContext{});
 }
@@ -50,7 +48,7 @@ void expect_sound(const PreparedMesh& prepared, const PartRegions& found) {
     for (const int c : parts) faces += prepared.components.faces[static_cast<std::size_t>(c)].size();
     EXPECT_EQ(faces, region.faces.size()) << "whole parts";
     EXPECT_EQ(region.name, name_of_parts(parts));
-    const SurfacePatch patch = make_patch(prepared, region.faces, 600, kTolerance, RunContext{}, "sound");
+    const SurfacePatch patch = make_patch(prepared, region.faces, 600, test::kTolerance, RunContext{}, "sound");
     const GroupPlacement& placement = region.placement;
     const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
     EXPECT_TRUE(passes(verify(patch, judged_motions(placement.group, placement.frame, placement.centre), tolerance, 0,
@@ -77,7 +75,7 @@ std::vector<int> faces_of(const PreparedMesh& prepared, const std::vector<int>& 
   return faces;
 }
 
-std::string summary(const PartRegions& found) {
+std::string parts_summary(const PartRegions& found) {
   std::string text;
   for (const FoundRegion& region : found.regions) text += region.placement.group.symbol() + " on " + region.name + "; ";
   return text;
@@ -112,7 +110,7 @@ TEST_P(SetsOfParts, HaveTheGroupThatPermutesThem) {
   std::vector<int> faces = test::all_faces(prepared.mesh);
   faces.resize(faces.size() - 4);
   const FoundRegion* region = region_of(found, GetParam(), faces);
-  ASSERT_NE(region, nullptr) << summary(found);
+  ASSERT_NE(region, nullptr) << parts_summary(found);
   EXPECT_LT(test::apart(test::motions_of(region->placement), test::motions_of(truth(prepared))), 2e-3);
 }
 
@@ -147,9 +145,9 @@ TEST(PartRegions, APlateItsBoltsAndWhatTheyHaveInCommon) {
   const PreparedMesh prepared = prepare(test::joined(parts));
   const PartRegions found = regions_of(prepared);
   expect_sound(prepared, found);
-  EXPECT_NE(region_of(found, "D5h", faces_of(prepared, {1, 2, 3, 4, 5})), nullptr) << summary(found);
-  EXPECT_NE(region_of(found, "D3h", faces_of(prepared, {6, 7, 8})), nullptr) << summary(found);
-  EXPECT_NE(region_of(found, "D4h", faces_of(prepared, {0})), nullptr) << summary(found);
+  EXPECT_NE(region_of(found, "D5h", faces_of(prepared, {1, 2, 3, 4, 5})), nullptr) << parts_summary(found);
+  EXPECT_NE(region_of(found, "D3h", faces_of(prepared, {6, 7, 8})), nullptr) << parts_summary(found);
+  EXPECT_NE(region_of(found, "D4h", faces_of(prepared, {0})), nullptr) << parts_summary(found);
 }
 
 TEST(PartRegions, ASubgroupOnMoreParts) {
@@ -159,8 +157,8 @@ TEST(PartRegions, ASubgroupOnMoreParts) {
        test::moved(block, test::shift(-0.6, 0, 0.3)), test::moved(test::scalene(), test::shift(0.2, 2.1, 0.4))}));
   const PartRegions found = regions_of(prepared);
   expect_sound(prepared, found);
-  EXPECT_NE(region_of(found, "D4h", faces_of(prepared, {0})), nullptr) << summary(found);
-  EXPECT_NE(region_of(found, "C2v", faces_of(prepared, {0, 1, 2})), nullptr) << summary(found);
+  EXPECT_NE(region_of(found, "D4h", faces_of(prepared, {0})), nullptr) << parts_summary(found);
+  EXPECT_NE(region_of(found, "C2v", faces_of(prepared, {0, 1, 2})), nullptr) << parts_summary(found);
 }
 
 TEST(PartRegions, OwnGroupsAreThoseOfTheClasses) {

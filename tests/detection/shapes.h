@@ -12,6 +12,8 @@
 
 namespace orbifit::test {
 
+inline constexpr double kTolerance = 0.005;  // of the diagonal
+
 inline Mesh box(double x, double y, double z) {
   Mesh mesh;
   mesh.vertices.resize(8, 3);

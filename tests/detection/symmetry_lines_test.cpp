@@ -17,8 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 0.005;
-
 struct Suggested {
   PreparedMesh prepared;
   SymmetryLines lines;
@@ -26,8 +24,8 @@ struct Suggested {
 
 Suggested suggested_by(const std::vector<Mesh>& parts, const Motion& pose = {}) {
   Suggested result{prepare(test::moved(test::joined(parts), pose)), {}};
-  const ComponentSurvey survey = survey_components(result.prepared, kTolerance, 0, RunContext{});
-  result.lines = find_symmetry_lines(result.prepared, survey, kTolerance);
+  const ComponentSurvey survey = survey_components(result.prepared, test::kTolerance, 0, RunContext{});
+  result.lines = find_symmetry_lines(result.prepared, survey, test::kTolerance);
   return result;
 }
 
@@ -38,7 +36,7 @@ int place_of(const std::vector<CandidateLine>& lines, const PreparedMesh& prepar
     if (direction.cross(sought.direction).norm() > 0.01) continue;
     const Vector3d apart = prepared.input_of_normalised(lines[i].line.point) - sought.point;
     const double off = planes ? std::abs(apart.dot(sought.direction)) : apart.cross(sought.direction).norm();
-    if (off < kTolerance * prepared.input_of_normalised.scale) return static_cast<int>(i);
+    if (off < test::kTolerance * prepared.input_of_normalised.scale) return static_cast<int>(i);
   }
   return -1;
 }

@@ -2,9 +2,9 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {

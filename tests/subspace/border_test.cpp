@@ -143,9 +143,9 @@ std::vector<Border> borders_of(const Mesh& mesh, const RegionMap& regions) {
   return result;
 }
 
-using Case = std::tuple<std::string, GroupMode>;
+using BorderModeCase = std::tuple<std::string, GroupMode>;
 
-class BorderCase : public testing::TestWithParam<Case> {
+class BorderCase : public testing::TestWithParam<BorderModeCase> {
  protected:
   BorderCase()
       : model_(made(std::get<0>(GetParam()))),
@@ -245,7 +245,7 @@ TEST_P(InnerBorder, HasSamplesOfBothSidesNearby) {
   }
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& info) {
+std::string border_case_name(const testing::TestParamInfo<BorderModeCase>& info) {
   std::string name = std::get<0>(info.param) + "_" + to_string(std::get<1>(info.param));
   std::ranges::replace(name, ' ', '_');
   return name;
@@ -255,12 +255,12 @@ INSTANTIATE_TEST_SUITE_P(Models, InnerBorder,
                          testing::Combine(testing::Values("box", "box with an overlapping belt",
                                                           "box with an abutting belt", "box with panels", "collar"),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         case_name);
+                         border_case_name);
 
 INSTANTIATE_TEST_SUITE_P(Models, OpenBorder,
                          testing::Combine(testing::Values("box with patches", "box with a patch"),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         case_name);
+                         border_case_name);
 
 }  // namespace
 }  // namespace orbifit

@@ -39,9 +39,9 @@ Mesh part_for(const PointGroup& group) {
   return turned_part(profile, irregular_angles(23));
 }
 
-using Case = std::tuple<int, GroupMode>;
+using ContinuousCase = std::tuple<int, GroupMode>;
 
-class ContinuousGroup : public testing::TestWithParam<Case> {
+class ContinuousGroup : public testing::TestWithParam<ContinuousCase> {
  protected:
   ContinuousGroup() : kind_(kKinds[std::get<0>(GetParam())]) {
     const PointGroup group = PointGroup::parse(kind_.symbol).value();
@@ -140,14 +140,14 @@ TEST_P(ContinuousGroup, SamplesFollowTheGroup) {
   EXPECT_GT(copies, 10);
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& info) {
+std::string continuous_case_name(const testing::TestParamInfo<ContinuousCase>& info) {
   return std::string(kKinds[std::get<0>(info.param)].symbol) + "_" + to_string(std::get<1>(info.param));
 }
 
 INSTANTIATE_TEST_SUITE_P(Groups, ContinuousGroup,
                          testing::Combine(testing::Range(0, 7),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         case_name);
+                         continuous_case_name);
 
 // A body with a mirror plane and two turned wheels that it maps to one another; the wheels' tessellations differ.
 GeneratedModel body_with_wheels() {

@@ -6,12 +6,12 @@
 #include <string>
 #include <tuple>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/orbit_model.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 #include "orbifit/subspace/laplacian_kind.h"

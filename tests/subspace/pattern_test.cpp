@@ -75,9 +75,9 @@ GeneratedModel model_of(const Row& row) {
   return model;
 }
 
-using Case = std::tuple<int, GroupMode>;
+using PatternCase = std::tuple<int, GroupMode>;
 
-class PatternOfParts : public testing::TestWithParam<Case> {
+class PatternOfParts : public testing::TestWithParam<PatternCase> {
  protected:
   PatternOfParts()
       : row_(rows()[static_cast<std::size_t>(std::get<0>(GetParam()))]),
@@ -199,7 +199,7 @@ TEST_P(PatternOfParts, CarriedAnnotationSaysWhereItWent) {
   }
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& info) {
+std::string pattern_case_name(const testing::TestParamInfo<PatternCase>& info) {
   return std::string(rows()[static_cast<std::size_t>(std::get<0>(info.param))].name) + "_" +
          to_string(std::get<1>(info.param));
 }
@@ -207,7 +207,7 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
 INSTANTIATE_TEST_SUITE_P(Kinds, PatternOfParts,
                          testing::Combine(testing::Range(0, 5),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         case_name);
+                         pattern_case_name);
 
 // A pattern inside a symmetric region: the row of boxes is its own mirror image.
 TEST(PatternInARegion, KeepsBoth) {

@@ -5,10 +5,10 @@
 #include <tuple>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/orbit_model.h"
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 #include "orbifit/subspace/deformer.h"
 
@@ -138,13 +138,13 @@ struct FullSolve {
   Eigen::LDLT<Eigen::MatrixXd> factor;
 };
 
-using Case = std::tuple<std::string, GroupMode, LaplacianKind>;
+using QuotientCase = std::tuple<std::string, GroupMode, LaplacianKind>;
 
-std::string case_name(const testing::TestParamInfo<Case>& info) {
+std::string quotient_case_name(const testing::TestParamInfo<QuotientCase>& info) {
   return std::get<0>(info.param) + "_" + to_string(std::get<1>(info.param)) + "_" + to_string(std::get<2>(info.param));
 }
 
-class QuotientOfModel : public testing::TestWithParam<Case> {};
+class QuotientOfModel : public testing::TestWithParam<QuotientCase> {};
 
 TEST_P(QuotientOfModel, SolvesAsTheFullComputationDoes) {
   const auto& [name, mode, laplacian] = GetParam();
@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
     Models, QuotientOfModel,
     testing::Combine(testing::Values("bar", "table", "chair"), testing::Values(GroupMode::fixed, GroupMode::floating),
                      testing::Values(LaplacianKind::graph, LaplacianKind::cotangent, LaplacianKind::point)),
-    case_name);
+    quotient_case_name);
 
 using GroupCase = std::tuple<std::string, LaplacianKind>;
 

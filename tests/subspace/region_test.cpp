@@ -41,9 +41,9 @@ const std::vector<ModelCase> kModels{{"bar", {}, 0.1},
                                      {"wind_mill", {{"detail", 1}}, 0.1},
                                      {"car", {{"detail", 1}}, 0.1}};
 
-using Case = std::tuple<int, GroupMode>;
+using RegionCase = std::tuple<int, GroupMode>;
 
-class EveryRegion : public testing::TestWithParam<Case> {
+class EveryRegion : public testing::TestWithParam<RegionCase> {
  protected:
   EveryRegion() : case_(kModels[static_cast<std::size_t>(std::get<0>(GetParam()))]), mode_(std::get<1>(GetParam())) {
     model_ = generate(case_.name, case_.parameters);
@@ -157,14 +157,14 @@ TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
   }
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& info) {
+std::string region_case_name(const testing::TestParamInfo<RegionCase>& info) {
   return kModels[static_cast<std::size_t>(std::get<0>(info.param))].name + "_" + to_string(std::get<1>(info.param));
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryRegion,
                          testing::Combine(testing::Range(0, static_cast<int>(kModels.size())),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         case_name);
+                         region_case_name);
 
 // Where vertices have no vertices as images the field in space is what is symmetric.
 class BetweenVertices : public EveryRegion {};
@@ -181,7 +181,7 @@ TEST_P(BetweenVertices, EveryRegionIsExact) {
 INSTANTIATE_TEST_SUITE_P(Models, BetweenVertices,
                          testing::Combine(testing::Values(0, 1, 5, 7, 8),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         case_name);
+                         region_case_name);
 
 // What the comparison of the two lifts shows: the paper's breaks regions that the samples keep.
 TEST(PaperLift, BreaksPartialRegions) {

@@ -10,6 +10,7 @@
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
+#include "../residual_json.h"
 
 namespace orbifit::commands {
 
@@ -27,10 +28,6 @@ CarriedMotions parse_mode(const std::string& text) {
   if (text == "floating") return CarriedMotions::floating;
   if (text == "moving") return CarriedMotions::moving;
   throw UsageError("--mode is '" + text + "': must be fixed, posed, floating or moving");
-}
-
-nlohmann::ordered_json to_json(const Residual& residual) {
-  return {{"rms", residual.rms}, {"max", residual.max}};
 }
 
 nlohmann::ordered_json to_json(const SymmetryReport& report, bool deformed, double worst) {

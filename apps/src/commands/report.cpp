@@ -16,18 +16,16 @@ namespace orbifit::commands {
 
 namespace {
 
-using Json = nlohmann::json;
-
 // Reads the description of a report; every refusal names the file and the key.
 class StepsReader {
  public:
   explicit StepsReader(const std::filesystem::path& file) : file_(file) {}
 
   Report read() const {
-    Json json;
+    nlohmann::json json;
     try {
-      json = Json::parse(read_file(file_));
-    } catch (const Json::parse_error& error) {
+      json = nlohmann::json::parse(read_file(file_));
+    } catch (const nlohmann::json::parse_error& error) {
       throw InputError(file_.string(), "byte " + std::to_string(error.byte), "not JSON");
     }
     if (!json.is_object()) throw InputError(file_.string(), "", "not a JSON object");
@@ -40,7 +38,7 @@ class StepsReader {
   }
 
  private:
-  using Items = std::vector<std::pair<const Json*, std::string>>;
+  using Items = std::vector<std::pair<const nlohmann::json*, std::string>>;
 
   [[noreturn]] void refuse(const std::string& place, const std::string& reason) const {
     throw InputError(file_.string(), place, reason);
@@ -51,7 +49,7 @@ class StepsReader {
   }
 
   // A missing key is an empty text.
-  std::string text(const Json& json, const std::string& key, const std::string& place) const {
+  std::string text(const nlohmann::json& json, const std::string& key, const std::string& place) const {
     const auto found = json.find(key);
     if (found == json.end()) return "";
     if (!found->is_string()) refuse(key_at(place, key), "must be a text");
@@ -59,7 +57,8 @@ class StepsReader {
   }
 
   // A missing key is an empty list.
-  Items list(const Json& json, const std::string& key, const std::string& place, bool of_objects = true) const {
+  Items list(const nlohmann::json& json, const std::string& key, const std::string& place,
+             bool of_objects = true) const {
     Items items;
     const auto found = json.find(key);
     if (found == json.end()) return items;
@@ -72,7 +71,7 @@ class StepsReader {
   }
 
   // Numbers are taken as they are written.
-  std::string cell(const Json& json, const std::string& place) const {
+  std::string cell(const nlohmann::json& json, const std::string& place) const {
     if (json.is_string()) return json.get<std::string>();
     if (json.is_number_float()) return short_number(json.get<double>());
     if (json.is_number() || json.is_boolean()) return json.dump();
@@ -80,14 +79,14 @@ class StepsReader {
     refuse(place, "must be a text or a number");
   }
 
-  std::vector<std::string> cells(const Json& row, const std::string& place) const {
+  std::vector<std::string> cells(const nlohmann::json& row, const std::string& place) const {
     if (!row.is_array()) refuse(place, "must be a list");
     std::vector<std::string> result;
     for (std::size_t i = 0; i < row.size(); ++i) result.push_back(cell(row[i], place + "[" + std::to_string(i) + "]"));
     return result;
   }
 
-  ReportPicture read_picture(const Json& json, const std::string& place) const {
+  ReportPicture read_picture(const nlohmann::json& json, const std::string& place) const {
     const std::string name = text(json, "file", place);
     if (name.empty()) refuse(key_at(place, "file"), "missing");
     const std::filesystem::path file = file_.parent_path() / name;
@@ -97,7 +96,7 @@ class StepsReader {
     return picture;
   }
 
-  ReportTable read_table(const Json& json, const std::string& place) const {
+  ReportTable read_table(const nlohmann::json& json, const std::string& place) const {
     ReportTable table;
     for (const auto& [header, at] : list(json, "headers", place, false)) table.headers.push_back(cell(*header, at));
     for (const auto& [row, at] : list(json, "rows", place, false)) {
@@ -110,7 +109,7 @@ class StepsReader {
     return table;
   }
 
-  ReportSection read_section(const Json& json, const std::string& place) const {
+  ReportSection read_section(const nlohmann::json& json, const std::string& place) const {
     ReportSection section;
     section.title = text(json, "title", place);
     section.text = text(json, "text", place);

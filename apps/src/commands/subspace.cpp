@@ -14,6 +14,7 @@
 #include "orbifit/subspace/subspace_io.h"
 
 #include "../commands.h"
+#include "../residual_json.h"
 #include "../subspace_arguments.h"
 
 namespace orbifit::commands {
@@ -51,10 +52,6 @@ LiftResiduals residuals_of_other_lift(const Mesh& mesh, const SymmetryAnnotation
   RunContext silent = run;
   silent.on_message = nullptr;
   return random_field_residuals(mesh, annotation, build_subspace(mesh, annotation, options, silent), silent);
-}
-
-nlohmann::ordered_json to_json(const Residual& residual) {
-  return {{"rms", residual.rms}, {"max", residual.max}};
 }
 
 nlohmann::ordered_json to_json(const SymmetryAnnotation& annotation, const std::vector<LiftResiduals>& residuals) {

@@ -11,6 +11,7 @@
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
+#include "../residual_json.h"
 
 namespace orbifit::commands {
 
@@ -19,10 +20,6 @@ namespace {
 struct SymmetrizeArguments {
   std::string mesh, annotation, output, annotation_output;
 };
-
-nlohmann::ordered_json to_json(const Residual& residual) {
-  return {{"rms", residual.rms}, {"max", residual.max}};
-}
 
 nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryReport& after) {
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();

@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include "orbifit/model/dense.h"
+
 namespace orbifit::scoring {
 
 namespace {
@@ -33,14 +35,14 @@ void check_translations(const Pattern& pattern, double diagonal, std::vector<std
       breaches.push_back("a generator of a " + to_string(pattern.kind) + " is not a translation");
     }
   }
-  const Eigen::JacobiSVD<MatrixXd> svd(steps, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<MatrixXd> svd(steps);
   if (svd.singularValues()[steps.cols() - 1] <= kIndependent * diagonal) {
     breaches.emplace_back("the generators are linearly dependent");
     return;
   }
   for (std::size_t j = 0; j < pattern.instances.size(); ++j) {
     const Motion& motion = pattern.instances[j].motion;
-    const Eigen::VectorXd whole = svd.solve(motion.translation).array().round();
+    const Eigen::VectorXd whole = shortest_solution(steps, motion.translation, kIndependent).array().round();
     if ((motion.linear - Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTurned ||
         (steps * whole - motion.translation).cwiseAbs().maxCoeff() > kOnLattice * diagonal) {
       breaches.push_back("the motion of instance " + std::to_string(j) +

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit::scoring {
 

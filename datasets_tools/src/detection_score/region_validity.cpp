@@ -14,19 +14,19 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kMostElements = 60;
+constexpr int kMostTried = 60;
 constexpr int kTurns = 24;
 constexpr int kTurnsOfFourCosets = 15;
 constexpr double kIdentity = 1e-3;
 
 std::vector<Motion> tried_of_finite(const Region& region, Random& random) {
   std::vector<Motion> rest(region.elements.begin() + 1, region.elements.end());
-  if (static_cast<int>(rest.size()) <= kMostElements) return rest;
+  if (static_cast<int>(rest.size()) <= kMostTried) return rest;
   std::vector<Motion> result;
   for (const Motion& generator : region.generators) {
     if ((generator.linear - Matrix3d::Identity()).cwiseAbs().maxCoeff() > kIdentity) result.push_back(generator);
   }
-  for (std::size_t i = 0; static_cast<int>(result.size()) < kMostElements; ++i) {
+  for (std::size_t i = 0; static_cast<int>(result.size()) < kMostTried; ++i) {
     std::swap(rest[i], rest[i + random.below(rest.size() - i)]);
     result.push_back(rest[i]);
   }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "orbifit/model/dense.h"
+
 namespace orbifit::scoring {
 
 namespace {
@@ -67,14 +69,9 @@ MatrixXd twists_of_group(const Region& region, const Vector3d& centre, double si
   return result;
 }
 
-MatrixXd orthonormal(const MatrixXd& columns) {
-  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() *
-         MatrixXd::Identity(columns.rows(), std::min(columns.rows(), columns.cols()));
-}
-
 // A basis of the slippable twists that the group does not hold.
 MatrixXd slippable_twists(const SurfaceSamples& samples, const Region& region, const Vector3d& centre, double size) {
-  Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6d moment = Matrix6d::Zero();
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const Vector3d arm = (samples.points.row(i).transpose() - centre) / size;
     const Vector3d normal = samples.normals.row(i);
@@ -82,12 +79,12 @@ MatrixXd slippable_twists(const SurfaceSamples& samples, const Region& region, c
     row << arm.cross(normal), normal;
     moment += row * row.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(moment);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(moment);
   const auto slips = [&](double value) { return value < kSlippable * solver.eigenvalues()[5]; };
   MatrixXd slip = solver.eigenvectors().leftCols(std::ranges::count_if(solver.eigenvalues(), slips));
   const MatrixXd own = twists_of_group(region, centre, size);
   if (own.cols() == 0 || slip.cols() == 0) return slip;
-  const MatrixXd basis = orthonormal(own);
+  const MatrixXd basis = orthonormal_basis(own);
   slip -= basis * (basis.transpose() * slip);
   const Eigen::JacobiSVD<MatrixXd> svd(slip, Eigen::ComputeThinU);
   return svd.matrixU().leftCols(std::ranges::count_if(svd.singularValues(), [](double s) { return s > 0.3; }));
@@ -109,7 +106,7 @@ std::vector<Twist> directions(const MatrixXd& slip, Random& random) {
   if (!shifts.empty()) {
     MatrixXd along(3, shifts.size());
     for (std::size_t k = 0; k < shifts.size(); ++k) along.col(static_cast<Eigen::Index>(k)) = shifts[k].tail<3>();
-    const MatrixXd free = orthonormal(along);
+    const MatrixXd free = orthonormal_basis(along);
     for (Twist& twist : turns) {
       const Vector3d axis = twist.head<3>() / std::max(twist.head<3>().norm(), 1e-9);
       if ((free.transpose() * axis).norm() > 0.95) twist.tail<3>() -= axis * axis.dot(twist.tail<3>());
@@ -153,9 +150,7 @@ bool featureless(const ScoredSurface& part, const Pattern& pattern, const Scored
     if (pattern.kind == Kind::rotation) {
       const Motion& step = pattern.generators.front();
       const AxisAngle turn = axis_angle(step.linear);
-      Eigen::CompleteOrthogonalDecomposition<Matrix3d> rest;
-      rest.setThreshold(1e-8);
-      const Vector3d centre = rest.compute(Matrix3d::Identity() - step.linear).solve(step.translation);
+      const Vector3d centre = shortest_solution(Matrix3d::Identity() - step.linear, step.translation, 1e-8);
       motion = Motion::about(axis_rotation(turn.axis, share * turn.angle), centre);
     } else {
       for (const Motion& step : pattern.generators) motion.translation += share * step.translation;

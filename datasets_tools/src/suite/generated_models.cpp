@@ -14,9 +14,6 @@ namespace orbifit {
 
 namespace {
 
-// Regions of less than 0.25 % of the area are right, but no picture and no measure would show them.
-constexpr double kSmallestShare = 0.0025;
-
 // So round, for their size, that a turned part's group is as right as theirs.
 bool nearly_round(const std::string& model, const std::string& region) {
   if (model == "car") return region.find("light") != std::string::npos;

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
+#include "orbifit/model/dense.h"
 
 #include "../primitives.h"
 
@@ -22,7 +22,6 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr double kSame = 1e-9;
-constexpr double kSmallestShare = 0.0025;
 // Of two regions that differ by less the smaller is no news (as score_detection.py sees it).
 constexpr double kInside = 0.95;
 constexpr double kNoLarger = 1.02;
@@ -36,9 +35,7 @@ Vector3d fixed_point(const std::vector<Motion>& motions, const Vector3d& near) {
     rows.middleRows<3>(row) = Matrix3d::Identity() - motions[i].linear;
     right.segment<3>(row) = motions[i](near) - near;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-6);
-  return near + solver.compute(rows).solve(right);
+  return near + shortest_solution(rows, right, 1e-6);
 }
 
 // What two groups have in common, if that is finite and more than the identity.

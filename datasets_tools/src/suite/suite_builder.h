@@ -13,6 +13,9 @@
 
 namespace orbifit {
 
+/// Of the area: smaller regions are right, but no picture and no measure would show them.
+inline constexpr double kSmallestShare = 0.0025;
+
 /// What the truth says of the symmetry that a part has by itself.
 enum class OwnRegion {
   expected,  ///< a region to find

@@ -17,9 +17,8 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kHold = 1e-6;             // weight by which what nothing determines stays where it is
-constexpr double kDirectionNoise = 0.003;  // see CorrespondenceOptions
-constexpr double kSlack = 0.01;            // see SurfaceIndex::move
+constexpr double kHold = 1e-6;   // weight by which what nothing determines stays where it is
+constexpr double kSlack = 0.01;  // see SurfaceIndex::move
 constexpr double kUnlimited = 1e9;
 
 }  // namespace

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
+#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 
 namespace orbifit {

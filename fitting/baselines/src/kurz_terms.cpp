@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 

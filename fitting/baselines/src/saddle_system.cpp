@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/CholmodSupport>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 
 #include "condition.h"
@@ -97,7 +97,7 @@ VectorXd SaddleSystem::eliminate(const VectorXd& right) const {
   VectorXd result(n + k);
   result.head(n) = factor_->cholesky.solve(VectorXd(right.head(n)));
   if (k == 0) return result;
-  result.tail(k) = reduced_corner_.ldlt().solve(right.tail(k) - border_.transpose() * result.head(n));
+  result.tail(k) = solve_semidefinite(reduced_corner_, right.tail(k) - border_.transpose() * result.head(n));
   result.head(n) -= reduced_border_ * result.tail(k);
   return result;
 }

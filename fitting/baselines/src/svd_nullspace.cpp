@@ -2,9 +2,8 @@
 
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "orbifit/baselines/symmetry_constraints.h"
+#include "orbifit/model/dense.h"
 
 #include "baseline_fit.h"
 #include "fit_system.h"

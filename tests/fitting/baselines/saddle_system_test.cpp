@@ -1,9 +1,9 @@
 #include "saddle_system.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {

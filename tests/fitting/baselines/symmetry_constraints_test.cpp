@@ -3,11 +3,11 @@
 #include <string>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "orbifit/baselines/svd_nullspace.h"
 #include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/dense.h"
 
 #include "random_pulls.h"
 

@@ -1,7 +1,8 @@
 #include "thin_plate.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+
+#include "orbifit/model/dense.h"
 
 namespace orbifit {
 namespace {

@@ -10,6 +10,9 @@
 
 namespace orbifit {
 
+/// Of the diagonal: the direction noise that fits and alignments reckon with.
+inline constexpr double kDirectionNoise = 0.003;
+
 struct CorrespondenceOptions {
   double max_distance = 0;         ///< template units, > 0
   double min_normal_cosine = 0.5;  ///< of compatible normals
