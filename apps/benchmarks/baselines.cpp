@@ -27,10 +27,10 @@ struct BaselinesOptions {
 };
 
 Handle handle_at(const Mesh& mesh, const Eigen::Vector3d& direction, const std::string& name) {
-  constexpr double kRadius = 0.08;  // of the diagonal
+  constexpr double kHandleRadius = 0.08;  // of the diagonal
   Eigen::Index end = 0;
   (mesh.vertices * direction).maxCoeff(&end);
-  const double radius = kRadius * diagonal(mesh.vertices);
+  const double radius = kHandleRadius * diagonal(mesh.vertices);
   Handle handle;
   handle.name = name;
   for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {

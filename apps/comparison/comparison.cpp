@@ -172,6 +172,7 @@ MethodRun run_method(const Method& method, double weight, const FitInput& input,
   run.method = method.name;
   run.weight = weight;
   run.faces = static_cast<int>(input.mesh.faces.rows());
+  run.scanned = input.scan.points.rows() > 0;
   try {
     run.result = run_of(method.name)(input, options, weight, context);
   } catch (const InterruptedError&) {
@@ -190,6 +191,7 @@ MethodRun run_method(const Method& method, double weight, const FitInput& input,
       symmetry_residual(input.mesh, input.annotation, &run.result.fitted, CarriedMotions::moving, context);
   run.symmetry = symmetry.worst_excess;
   run.vertex_excess = symmetry.vertex_excess;
+  run.bending = bending(input.mesh, run.result.fitted);
   for (const RegionResidual& region : symmetry.regions) {
     if (region.excess.max == symmetry.worst_excess) run.worst_region = region.name;
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "orbifit/datasets_tools/bending.h"
 #include "orbifit/datasets_tools/fit_score.h"
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/mesh.h"
@@ -41,13 +42,15 @@ struct ComparisonTruth {
 /// What one method did.
 struct MethodRun {
   std::string method;
-  double weight = 0;    ///< of its symmetry penalty; 0 where it has none
-  int faces = 0;        ///< of the template
-  std::string failure;  ///< empty where it has a result
+  double weight = 0;     ///< of its symmetry penalty; 0 where it has none
+  int faces = 0;         ///< of the template
+  bool scanned = false;  ///< fitted to a scan, not by handles alone
+  std::string failure;   ///< empty where it has a result
   FitResult result;
   double symmetry = 0;            ///< worst residual that the method added, of the diagonal (moving)
   std::string worst_region;       ///< whose that is
   Eigen::VectorXd vertex_excess;  ///< #V: see SymmetryReport
+  Bending bending;                ///< of the template, where it is not only moved
   std::optional<FitScore> score;  ///< where the truth is known
   double prepare = 0;             ///< seconds before the first iteration
   double iteration = 0;           ///< seconds of one, the median

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -25,6 +26,8 @@ struct Figure {
   std::optional<double> (*value)(const MethodRun&);
 };
 
+constexpr double kDegrees = 180 / std::numbers::pi;
+
 std::optional<double> if_iterated(const MethodRun& run, double value) {
   return run.result.iterations.empty() ? std::nullopt : std::optional(value);
 }
@@ -39,9 +42,10 @@ constexpr std::array kFigures{
     Figure{"hidden_correspondence", "hidden corr. %", 100,
            [](const MethodRun& run) { return run.score ? run.score->correspondence : std::nullopt; }},
     Figure{"inlier_fraction", "explained %", 100,
-           [](const MethodRun& run) { return std::optional(run.result.inlier_fraction); }},
+           [](const MethodRun& run) { return run.scanned ? std::optional(run.result.inlier_fraction) : std::nullopt; }},
     Figure{"handle_error", "handles %", 100,
            [](const MethodRun& run) { return std::optional(run.result.landmark_rms); }},
+    Figure{"bending", "bending deg", kDegrees, [](const MethodRun& run) { return std::optional(run.bending.rms); }},
     Figure{"seconds_to_prepare", "prepare s", 1, [](const MethodRun& run) { return std::optional(run.prepare); }},
     Figure{"seconds_per_iteration", "iteration ms", 1000,
            [](const MethodRun& run) { return if_iterated(run, run.iteration); }},
@@ -138,6 +142,11 @@ Colour error_colour(double excess) {
   return heat_colour(0.5 + 0.5 * std::clamp((power - kLeast) / (kMost - kLeast), 0.0, 1.0));
 }
 
+Colour bending_colour(double change) {
+  constexpr double kMost = 8;  // degrees
+  return heat_colour(0.5 + 0.5 * std::min(1.0, kDegrees * change / kMost));
+}
+
 }  // namespace
 
 nlohmann::ordered_json run_json(const MethodRun& run) {
@@ -200,7 +209,8 @@ std::string comparison_html(const Comparison& comparison, const PointCloud& scan
   Report report;
   report.title = "Ours beside least-squares methods";
   report.intro =
-      "The same template, scan and start for all. Lengths are of the diagonal; the symmetry residual is the worst over "
+      "The same template, scan or handles, and start for all. Lengths are of the diagonal; the symmetry residual is "
+      "the worst over "
       "all regions, each with the rigid motion that suits it best.";
   ReportSection figures{"Figures", "", {}, {{headers(), {}}}};
   for (const MethodRun& run : comparison.runs) figures.tables.front().rows.push_back(cells(run));
@@ -213,20 +223,29 @@ std::string comparison_html(const Comparison& comparison, const PointCloud& scan
                        "White: symmetric to a millionth of the diagonal. Red: off by a hundredth or more.",
                        {},
                        {}};
+  ReportSection bends{"Where the template is bent",
+                      "By the change of the angle between neighbouring faces. White: none. Red: 8 degrees or more.",
+                      {},
+                      {}};
+  const auto coloured = [&](const MethodRun& run, const Eigen::VectorXd& values, Colour (*colour)(double)) {
+    Scene scene;
+    SurfaceLayer& layer = scene.surfaces.emplace_back();
+    layer.mesh = run.result.fitted;
+    for (const double value : values) layer.vertex_colours.push_back(colour(value));
+    return encode_png(render(scene, view, context));
+  };
   for (const MethodRun& run : comparison.runs) {
     if (!run.failure.empty()) continue;
     Scene fitted;
     fitted.surfaces.emplace_back().mesh = run.result.fitted;
     if (scan.points.rows() > 0) fitted.points.emplace_back().points = scan.points;
     pictures.pictures.push_back({encode_png(render(fitted, view, context)), run.method});
-    Scene coloured;
-    SurfaceLayer& layer = coloured.surfaces.emplace_back();
-    layer.mesh = run.result.fitted;
-    for (const double excess : run.vertex_excess) layer.vertex_colours.push_back(error_colour(excess));
     errors.pictures.push_back(
-        {encode_png(render(coloured, view, context)), run.method + ": at most " + short_number(run.symmetry, 2)});
+        {coloured(run, run.vertex_excess, error_colour), run.method + ": at most " + short_number(run.symmetry, 2)});
+    bends.pictures.push_back({coloured(run, run.bending.of_vertex, bending_colour),
+                              run.method + ": " + short_number(kDegrees * run.bending.rms, 2) + " degrees"});
   }
-  report.sections = {figures, pictures, errors};
+  report.sections = {figures, pictures, errors, bends};
   ReportSection plots{"Weights and sizes", "", {}, {}};
   plots.charts = charts(comparison);
   if (!plots.charts.empty()) report.sections.push_back(plots);

@@ -21,7 +21,7 @@ namespace {
 using scoring::MeasuredMesh;
 
 // Share of a region's area from which on it lies in another one.
-constexpr double kInside = 0.99;
+constexpr double kContained = 0.99;
 
 // Share of a region's visible area from which on all of it counts as kept, or lies in a region that is to contain it.
 constexpr double kWhole = 0.97;
@@ -166,7 +166,7 @@ class Carrier {
       for (std::size_t other = 0; other < regions.size() && !contained; ++other) {
         contained =
             other != r &&
-            measured_.area_of(scoring::intersection(sets[r], sets[other])) > kInside * measured_.area_of(sets[r]) &&
+            measured_.area_of(scoring::intersection(sets[r], sets[other])) > kContained * measured_.area_of(sets[r]) &&
             has_all_elements(regions[other], regions[r], measured_.diagonal);
       }
       (contained ? truth_.optional_regions : kept).push_back(regions[r]);

@@ -13,7 +13,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kWeld = 1e-9;  // of the diagonal
+constexpr double kSameSpot = 1e-9;  // of the diagonal
 
 using Corners = std::array<int, 3>;
 
@@ -89,7 +89,7 @@ ClosedParts closed_parts(const Mesh& mesh) {
   if (mesh.faces.rows() == 0) throw InputError("", "", "the mesh has no faces");
   if (!(size > 0)) throw InputError("", "", "the mesh has no size: all its vertices are at one place");
   ClosedParts result;
-  result.mesh = welded(mesh, weld_vertices(mesh.vertices, kWeld * size));
+  result.mesh = welded(mesh, weld_vertices(mesh.vertices, kSameSpot * size));
 
   std::vector<int> with_extent;
   for (int f = 0; f < result.mesh.faces.rows(); ++f) {

@@ -20,7 +20,7 @@ constexpr int kWires = 8;
 constexpr int kBlades = 5;
 
 // Along +x, pitched and swept.
-Mesh blade(double root, double tip, int detail) {
+Mesh fan_blade(double root, double tip, int detail) {
   const Curve outline(trace_profile(
       {{0, root, 0, 1}, {0.028, root, 0.006, 1}, {0.055, 0.72 * tip, 0.05, 1}, {0.048, tip, 0.04, 1}, {0, tip, 0, 1}},
       12, false));
@@ -81,7 +81,7 @@ GeneratedModel build_desk_fan(const ModelValues& values) {
         return 1 + 0.1 * std::cos(kBlades * angle);
       });
   std::vector<PartFaces> rotor{builder.add(hub, head)};
-  const Mesh blade_part = blade(0.03, 0.88 * radius, detail);
+  const Mesh blade_part = fan_blade(0.03, 0.88 * radius, detail);
   for (const Matrix3d& turn : elements({Family::Cn, kBlades})) {
     rotor.push_back(builder.add(moved(blade_part, {turn, Vector3d::Zero()}), head));
   }

@@ -35,7 +35,7 @@ Mesh torus(double radius, double height, double section, int facets, int sides) 
 }
 
 // Twisted and swept, along +x from the hub: no mirror maps it to itself.
-Mesh blade(double root, double tip, int detail) {
+Mesh thick_blade(double root, double tip, int detail) {
   const int stations = 14 * detail;
   const int points = 12 * detail;
   std::vector<Ring> rings;
@@ -151,7 +151,7 @@ Head build_head(ModelBuilder& builder, const ModelValues& values, const Vector3d
       head.wires.push_back(builder.add(moved(part, {turn, Vector3d::Zero()}), place));
     }
   }
-  const Mesh blade_part = blade(0.15 * radius, 0.88 * radius, detail);
+  const Mesh blade_part = thick_blade(0.15 * radius, 0.88 * radius, detail);
   for (const Matrix3d& turn : elements({Family::Cn, blades})) {
     head.blades.push_back(builder.add(moved(blade_part, {turn, Vector3d::Zero()}), place));
   }

@@ -20,7 +20,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kTrialDirections = 4000;
+constexpr int kSeedDirections = 4000;
 
 // Distance from a point to the nearest of its other images, at most 1.
 double clearance(const Vector3d& point, const std::vector<Matrix3d>& group) {
@@ -34,7 +34,7 @@ Vector3d generic_direction(const std::vector<Matrix3d>& group) {
   Random random(1, "orbit model");
   Vector3d best = Vector3d::UnitX();
   double room = -1;
-  for (int i = 0; i < kTrialDirections; ++i) {
+  for (int i = 0; i < kSeedDirections; ++i) {
     const Vector3d direction = random.direction();
     const double here = clearance(direction, group);
     if (here > room) {

@@ -117,9 +117,9 @@ Mesh canopy(int detail) {
   });
 }
 
-// About x; a blade's root is broad and its section a lens, arched to the front, so that the blades have no mirror plane
-// across the shaft but one through each.
-Mesh blade(double length, int detail) {
+// About x; a propeller_blade's root is broad and its section a lens, arched to the front, so that the blades have no
+// mirror plane across the shaft but one through each.
+Mesh propeller_blade(double length, int detail) {
   const Curve outline(trace_profile(
       {{0, 0, 0, 1}, {0.07, 0, 0.02, 1}, {0.15, 0.62 * length, 0.5, 1}, {0.1, length, 0.09, 1}, {0, length, 0, 1}}, 24,
       false));
@@ -132,7 +132,7 @@ Mesh blade(double length, int detail) {
   });
 }
 
-// Three lobes, one for each blade: no rounder than the propeller.
+// Three lobes, one for each propeller_blade: no rounder than the propeller.
 Mesh spinner(int detail) {
   return turned(
       {6, detail, detail},
@@ -159,7 +159,7 @@ GeneratedModel build_plane(const ModelValues& values) {
   parts.push_back(builder.add(fin_part(fin, {6, detail, 5 * detail}), at(tail + 0.6, 0, 0.2)));
   parts.push_back(builder.add(canopy(detail), at(0.1, 0, 0.62)));
 
-  // The propeller is made about z and then turned; a blade stands in the mirror plane.
+  // The propeller is made about z and then turned; a propeller_blade stands in the mirror plane.
   Matrix3d forward;
   forward << 0, 0, 1, 0, 1, 0, -1, 0, 0;
   std::vector<PartFaces> propeller;
@@ -168,7 +168,8 @@ GeneratedModel build_plane(const ModelValues& values) {
   turned_frame << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   const Placement shaft{turned_frame, Vector3d(kNose, 0, 0)};  // columns: y (a mirror's normal), z, x
   for (const Matrix3d& turn : elements({Family::Cn, 3}, turned_frame)) {
-    propeller.push_back(builder.add(blade(values["propeller"], detail), {turn, Vector3d(kNose + 0.12, 0, 0)}));
+    propeller.push_back(
+        builder.add(propeller_blade(values["propeller"], detail), {turn, Vector3d(kNose + 0.12, 0, 0)}));
   }
   parts.push_back(joined(propeller));
   builder.declare("plane", {Family::Cs, 1}, {frame_about(Vector3d::UnitY()), Vector3d::Zero()}, joined(parts));
@@ -186,7 +187,7 @@ ModelDefinition plane_model() {
             {"sweep", 0.35, 0, 2, false, "how far the wings' tips lie behind their roots, m"},
             {"dihedral", 0.5, 0, 1.5, false, "how far the wings' tips lie above their roots, m"},
             {"fin", 1.35, 0.8, 2, false, "height of the fin, m"},
-            {"propeller", 1.25, 0.8, 1.6, false, "length of a blade, m"},
+            {"propeller", 1.25, 0.8, 1.6, false, "length of a propeller_blade, m"},
             {"detail", 4, 1, 110, true, "fineness of the mesh: about 1000 detail^2 vertices"}}},
           build_plane};
 }

@@ -22,12 +22,12 @@ using Eigen::Vector3d;
 
 constexpr double kSeen = 0.01;        // of the diagonal: a scan point this near to the free fit
 constexpr double kNear = 0.01;        // of the diagonal: an image this near to the surface is on it
-constexpr double kReach = 0.1;        // of the diagonal: what differences and distances count as at most
-constexpr double kFirstRobust = 0.2;  // of the diagonal, while the region's motion is estimated: at the start
+constexpr double kMostApart = 0.1;    // of the diagonal: what differences and distances count as at most
+constexpr double kFirstScale = 0.2;   // of the diagonal, while the region's motion is estimated: at the start
 constexpr double kLastRobust = 0.01;  // and at the end
 constexpr double kLeast = 0.008;      // of the diagonal: a disagreement,
 constexpr double kTimesFree = 1.5;    // where the group's fit is worse than the free one by this factor
-constexpr int kFewestPairs = 40;      // that say anything
+constexpr int kFewestPlaces = 40;     // that say anything
 constexpr int kMostPairs = 6000;
 
 struct Place {
@@ -89,8 +89,8 @@ class Comparison {
     double free = 0;
     double count = 0;
     for (std::size_t i = 0; i < held_.size(); ++i) {
-      if (own[static_cast<std::size_t>(face_of_point_[i])] == 0 || free_distance_[i] > kReach) continue;
-      const double there = std::min(held_[i], kReach);
+      if (own[static_cast<std::size_t>(face_of_point_[i])] == 0 || free_distance_[i] > kMostApart) continue;
+      const double there = std::min(held_[i], kMostApart);
       held += there * there;
       free += free_distance_[i] * free_distance_[i];
       count += 1;
@@ -153,7 +153,7 @@ std::vector<Pair> pairs_of(const Comparison& comparison, const Region& region, R
   const std::vector<Motion> motions = motions_of(region);
   std::vector<Pair> result;
   if (motions.empty()) return result;
-  const int count = std::max(kFewestPairs, kMostPairs / static_cast<int>(motions.size()));
+  const int count = std::max(kFewestPlaces, kMostPairs / static_cast<int>(motions.size()));
   const Mesh& mesh = comparison.fitted();
   const SurfaceSamples samples = sample_surface(mesh, count, random, region.faces);
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
@@ -184,7 +184,7 @@ void take_out_motion(std::vector<Pair>& pairs, double size) {
     return row;
   };
   for (int round = 0; round < kRounds; ++round) {
-    const double robust = kFirstRobust * std::pow(kLastRobust / kFirstRobust, double(round) / (kRounds - 1));
+    const double robust = kFirstScale * std::pow(kLastRobust / kFirstScale, double(round) / (kRounds - 1));
     Matrix6d matrix = Matrix6d::Zero();
     Vector6d side = Vector6d::Zero();
     for (const Pair& pair : pairs) {
@@ -219,12 +219,12 @@ std::vector<GroupAgreement> group_agreement(const Mesh& fitted, const Mesh& free
       take_out_motion(pairs, comparison.size());
       agreement.pairs = static_cast<int>(pairs.size());
       double squares = 0;
-      for (const Pair& pair : pairs) squares += std::pow(std::min(kReach, std::abs(pair.apart())), 2);
+      for (const Pair& pair : pairs) squares += std::pow(std::min(kMostApart, std::abs(pair.apart())), 2);
       if (!pairs.empty()) agreement.disagreement = std::sqrt(squares / static_cast<double>(pairs.size()));
       for (const int face : region.faces) own[static_cast<std::size_t>(face)] = 1;
       comparison.distances(own, agreement);
       for (const int face : region.faces) own[static_cast<std::size_t>(face)] = 0;
-      agreement.disagrees = agreement.pairs >= kFewestPairs && agreement.disagreement > kLeast &&
+      agreement.disagrees = agreement.pairs >= kFewestPlaces && agreement.disagreement > kLeast &&
                             agreement.held > kTimesFree * agreement.free;
     }
   });

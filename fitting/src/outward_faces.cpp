@@ -7,10 +7,10 @@
 namespace orbifit {
 
 bool faces_outwards(const Mesh& mesh, const RunContext& context) {
-  constexpr int kSamples = 400;
+  constexpr int kFacesTried = 400;
   constexpr double kNearlyAll = 0.85;
   Random random(context.seed, "outwards");
-  const SurfaceSamples samples = sample_surface(mesh, kSamples, random);
+  const SurfaceSamples samples = sample_surface(mesh, kFacesTried, random);
   const SurfaceIndex surface(mesh);
   const Points normals = face_normals(mesh);
   const double start = 1e-5 * diagonal(mesh.vertices);

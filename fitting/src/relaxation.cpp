@@ -16,11 +16,11 @@ namespace {
 
 // The template fitted without any group, finely enough that parts may move by themselves.
 Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context) {
-  constexpr int kSamples = 150;
+  constexpr int kFewSamples = 150;
   const SymmetryAnnotation none = empty_annotation(input.mesh, input.annotation.tolerance);
   FitOptions free = options;
   free.subspace = SubspaceOptions{};
-  free.subspace.samples = kSamples;
+  free.subspace.samples = kFewSamples;
   const FitInput without = input.with(none);
   return fit_from(without, start, build_subspace(input.mesh, none, free.subspace, context), free, context).fitted;
 }

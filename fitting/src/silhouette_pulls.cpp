@@ -9,11 +9,11 @@ namespace orbifit {
 
 namespace {
 
-constexpr int kSamples = 1500;
-constexpr double kReach = 0.012;       // of the diagonal: nearer to a point of the scan a sample is seen
-constexpr double kFarthest = 0.15;     // of the diagonal: what is pulled
-constexpr double kLeastRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
-constexpr double kWeight = 2;          // there are fewer samples than points of the scan
+constexpr int kSilhouetteSamples = 1500;
+constexpr double kSeenReach = 0.012;       // of the diagonal: nearer to a point of the scan a sample is seen
+constexpr double kFarthest = 0.15;         // of the diagonal: what is pulled
+constexpr double kLeastSeenRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
+constexpr double kWeight = 2;              // there are fewer samples than points of the scan
 
 }  // namespace
 
@@ -21,7 +21,7 @@ SilhouettePulls::SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, cons
                                  const RunContext& context)
     : size_(diagonal(mesh.vertices)), spacing_(scan.spacing), seen_(cloud, scan.points) {
   Random random(context.seed, "silhouette");
-  const SurfaceSamples samples = sample_surface(mesh, kSamples, random);
+  const SurfaceSamples samples = sample_surface(mesh, kSilhouetteSamples, random);
   faces_ = samples.faces;
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const auto corner = [&](int k) -> Eigen::Vector3d {
@@ -43,8 +43,8 @@ double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, c
     samples.points.row(i) = barycentric_[s].transpose() * deformed.vertices(deformed.faces.row(faces_[s]), Eigen::all);
     samples.normals.row(i) = surface.normal(faces_[s]).transpose();
   }
-  const double reach = std::max(kReach * size_ * pose.scale, 1.5 * spacing_);
-  const double scale = std::max(robust, kLeastRobust * size_);
+  const double reach = std::max(kSeenReach * size_ * pose.scale, 1.5 * spacing_);
+  const double scale = std::max(robust, kLeastSeenRobust * size_);
   double error = 0;
   for (const SeenSurface::Missed& each : seen_.missed(samples, surface.index, pose, reach, context)) {
     const auto s = static_cast<std::size_t>(each.sample);

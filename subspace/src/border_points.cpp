@@ -14,14 +14,14 @@ namespace orbifit {
 namespace {
 
 // A face's side: its welded ends, ascending.
-struct Side {
+struct BorderSide {
   std::array<int, 2> ends;
   int face;
 };
 
 // Sides with the same ends follow one another, in the order of the faces.
-std::vector<Side> sorted_sides(const Mesh& mesh, const std::vector<int>& weld) {
-  std::vector<Side> sides;
+std::vector<BorderSide> sorted_sides(const Mesh& mesh, const std::vector<int>& weld) {
+  std::vector<BorderSide> sides;
   sides.reserve(static_cast<std::size_t>(3 * mesh.faces.rows()));
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
     for (int k = 0; k < 3; ++k) {
@@ -30,8 +30,9 @@ std::vector<Side> sorted_sides(const Mesh& mesh, const std::vector<int>& weld) {
       if (a != b) sides.push_back({{a, b}, static_cast<int>(face)});
     }
   }
-  std::ranges::sort(sides,
-                    [](const Side& a, const Side& b) { return a.ends != b.ends ? a.ends < b.ends : a.face < b.face; });
+  std::ranges::sort(sides, [](const BorderSide& a, const BorderSide& b) {
+    return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
+  });
   return sides;
 }
 
@@ -50,7 +51,7 @@ AbuttingPlaces::AbuttingPlaces(const Mesh& mesh, const RegionMap& regions) : reg
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
     for (const int vertex : mesh.faces.row(face)) cover(vertex, regions.set_of_face(static_cast<int>(face)));
   }
-  const std::vector<Side> sides = sorted_sides(mesh, weld);
+  const std::vector<BorderSide> sides = sorted_sides(mesh, weld);
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i + 1;
     while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;

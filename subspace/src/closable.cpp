@@ -18,7 +18,7 @@ namespace orbifit {
 namespace {
 
 constexpr std::size_t kTrialPoints = 128;  // of each region
-constexpr double kSameDirection = 1e-6;    // radians
+constexpr double kParallel = 1e-6;         // radians
 
 // Orbits of groups that fit together have no more points than the product of the orders of the places on the way, and
 // a few times that where mirrors meet at an angle.
@@ -61,7 +61,7 @@ bool closes(const Mesh& mesh, const std::vector<int>& faces, const RegionMap& re
 // Whether the motion takes the axis or centre of one continuous group to that of the other.
 bool takes_to(const Motion& motion, const Continuum& from, const Continuum& to, double tolerance) {
   if (from.spherical != to.spherical || to.distance(motion(from.centre)) > tolerance) return false;
-  return from.spherical || to.axis.cross(motion.linear * from.axis).norm() < kSameDirection;
+  return from.spherical || to.axis.cross(motion.linear * from.axis).norm() < kParallel;
 }
 
 // A followed region with an element that takes the continuous region `number`, or what they have in common, to no

@@ -9,7 +9,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 48;  // of a handle
+constexpr std::size_t kMostOfHandle = 48;  // of a handle
 
 // A handle counts as the samples within r of its points, and at least as three.
 double weight_of(const std::vector<int>& vertices, const Mesh& mesh, const Subspace& subspace) {
@@ -24,9 +24,9 @@ double weight_of(const std::vector<int>& vertices, const Mesh& mesh, const Subsp
 }
 
 std::vector<int> spread(const std::vector<int>& vertices) {
-  if (vertices.size() <= kMostPoints) return vertices;
+  if (vertices.size() <= kMostOfHandle) return vertices;
   std::vector<int> result;
-  for (std::size_t k = 0; k < kMostPoints; ++k) result.push_back(vertices[k * vertices.size() / kMostPoints]);
+  for (std::size_t k = 0; k < kMostOfHandle; ++k) result.push_back(vertices[k * vertices.size() / kMostOfHandle]);
   return result;
 }
 

@@ -16,9 +16,9 @@ namespace {
 using Json = nlohmann::json;
 
 // Reads values of one file, with the file's name and the key in every message.
-class Reader {
+class HandleReader {
  public:
-  explicit Reader(std::filesystem::path file) : file_(std::move(file)) {}
+  explicit HandleReader(std::filesystem::path file) : file_(std::move(file)) {}
 
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const {
     throw InputError(file_.string(), key, reason);
@@ -53,7 +53,8 @@ std::vector<int> vertices_within(const Mesh& mesh, const Eigen::Vector3d& centre
   return result;
 }
 
-std::vector<int> listed_vertices(const Reader& reader, const Json& list, const std::string& key, const Mesh& mesh) {
+std::vector<int> listed_vertices(const HandleReader& reader, const Json& list, const std::string& key,
+                                 const Mesh& mesh) {
   if (!list.is_array()) reader.fail(key, "must be a list of vertex numbers");
   std::vector<int> result;
   for (const Json& entry : list) {
@@ -67,7 +68,8 @@ std::vector<int> listed_vertices(const Reader& reader, const Json& list, const s
   return result;
 }
 
-Motion read_motion(const Reader& reader, const Json& object, const std::string& key, const Eigen::Vector3d& centroid) {
+Motion read_motion(const HandleReader& reader, const Json& object, const std::string& key,
+                   const Eigen::Vector3d& centroid) {
   Motion motion;
   if (object.contains("rotation")) {
     const Json& rotation = object.at("rotation");
@@ -85,7 +87,7 @@ Motion read_motion(const Reader& reader, const Json& object, const std::string& 
   return motion;
 }
 
-Handle read_handle(const Reader& reader, const Json& object, const std::string& key, const Mesh& mesh) {
+Handle read_handle(const HandleReader& reader, const Json& object, const std::string& key, const Mesh& mesh) {
   if (!object.is_object()) reader.fail(key, "must be an object");
   const std::string inside = key + ".";
   Handle handle;
@@ -113,7 +115,7 @@ Handle read_handle(const Reader& reader, const Json& object, const std::string& 
 }  // namespace
 
 HandleSet read_handles(const std::filesystem::path& file, const Mesh& mesh) {
-  const Reader reader(file);
+  const HandleReader reader(file);
   const Json document = Json::parse(read_file(file), nullptr, false);
   if (document.is_discarded()) reader.fail("", "is not JSON");
   if (!document.is_object() || !document.contains("handles") || !document.at("handles").is_array()) {

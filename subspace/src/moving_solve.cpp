@@ -17,10 +17,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kHold = 1e-10;      // of the mean of the diagonal, on coordinates
-constexpr double kHoldTurns = 1e-6;  // of a turn's own stiffness, and of the largest
-constexpr double kMostTurn = 0.35;   // radians in one iteration
-constexpr double kConflict = 1e-9;   // of the diagonal
+constexpr double kHoldCoordinates = 1e-10;  // of the mean of the diagonal, on coordinates
+constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of the largest
+constexpr double kMostTurn = 0.35;          // radians in one iteration
+constexpr double kConflict = 1e-9;          // of the diagonal
 
 // A matrix on samples applied to stacked displacements.
 MatrixXd applied(const Eigen::SparseMatrix<double, Eigen::RowMajor>& scalar, const MatrixXd& stacked) {
@@ -66,7 +66,7 @@ class SampleEnergy {
     MatrixXd normal = MatrixXd::Zero(columns.cols(), columns.cols());
     normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
     const Eigen::Index rest = columns.cols() - turns;
-    if (rest > 0) normal.diagonal().head(rest).array() += kHold * normal.diagonal().head(rest).mean();
+    if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * normal.diagonal().head(rest).mean();
     if (turns > 0) {
       const double largest = normal.diagonal().tail(turns).maxCoeff();
       normal.diagonal().tail(turns) += kHoldTurns * (normal.diagonal().tail(turns).array() + largest + 1e-300).matrix();

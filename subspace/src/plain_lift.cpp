@@ -10,13 +10,13 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kCutOff = 0.001;     // of a Gaussian (paper, section 5)
-constexpr double kOutside = 1e-6;     // what a place leaves of samples outside, where nothing else is at hand
-constexpr double kNegligible = 1e-5;  // of the largest weight
-constexpr double kBand = 1;           // width of the fading band, in radii
+constexpr double kPlainCutOff = 0.001;  // of a Gaussian (paper, section 5)
+constexpr double kOutside = 1e-6;       // what a place leaves of samples outside, where nothing else is at hand
+constexpr double kNegligible = 1e-5;    // of the largest weight
+constexpr double kBand = 1;             // width of the fading band, in radii
 constexpr int kMostCells = 1 << 22;
 
-const double kReach = std::sqrt(-2 * std::log(kCutOff));  // in standard deviations
+const double kPlainReach = std::sqrt(-2 * std::log(kPlainCutOff));  // in standard deviations
 
 double smooth_step(double x) {
   return x >= 1 ? 1 : x * x * (3 - 2 * x);
@@ -39,7 +39,7 @@ PlainLift::PlainLift(const SymmetricSampling& sampling, const RegionMap& regions
   }
   // Cells half as wide as a Gaussian reaches: samples by counting sort.
   const Points& points = sampling.points;
-  const double reach = kReach * (sampling.radii.size() > 0 ? sampling.radii.maxCoeff() : 1);
+  const double reach = kPlainReach * (sampling.radii.size() > 0 ? sampling.radii.maxCoeff() : 1);
   origin_ = points.colwise().minCoeff();
   const Eigen::Vector3d extent = points.colwise().maxCoeff().transpose() - origin_;
   width_ = 0.5 * reach;
@@ -123,7 +123,7 @@ void PlainLift::terms(const Eigen::Vector3d& point, int set, Scratch& scratch) c
 }
 
 void PlainLift::gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) const {
-  const double reach = kReach * sampling_.radii.maxCoeff();
+  const double reach = kPlainReach * sampling_.radii.maxCoeff();
   std::array<int, 3> low{};
   std::array<int, 3> high{};
   for (int k = 0; k < 3; ++k) {
@@ -142,8 +142,8 @@ void PlainLift::gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) c
         const int sample = samples_by_cell_[static_cast<std::size_t>(i)];
         const double sigma = sampling_.radii[sample];
         const double squared = (sampling_.points.row(sample).transpose() - point).squaredNorm() / (sigma * sigma);
-        if (squared >= kReach * kReach) continue;
-        const double weight = (std::exp(-0.5 * squared) - kCutOff) * factor(sample, scratch) *
+        if (squared >= kPlainReach * kPlainReach) continue;
+        const double weight = (std::exp(-0.5 * squared) - kPlainCutOff) * factor(sample, scratch) *
                               sampling_.shares[static_cast<std::size_t>(sample)];
         if (!(weight > 0)) continue;
         largest = std::max(largest, weight);
@@ -192,7 +192,7 @@ void PlainLift::ring_terms(const Eigen::Vector3d& point, int place, Scratch& scr
     const GaussianAverage average = continuum.spherical ? sphere_average(kappa) : circle_average(kappa);
     const double copies =
         sampling_.copy_counts[static_cast<std::size_t>(sample)] * sampling_.shares[static_cast<std::size_t>(sample)];
-    const double weight = (std::exp(-0.5 * squared) - kCutOff) * average.weight * copies * factor(sample, scratch);
+    const double weight = (std::exp(-0.5 * squared) - kPlainCutOff) * average.weight * copies * factor(sample, scratch);
     nearest = std::min(nearest, squared);
     rings.push_back({sample, weight, average.ratio, squared});
   }

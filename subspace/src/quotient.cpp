@@ -16,13 +16,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kAlike = 1e-9;
-constexpr double kAnchor = 1e-6;  // as in local_rotations()
-constexpr int kTrials = 2;
+constexpr double kTurnAnchor = 1e-6;  // as in local_rotations()
+constexpr int kNewtonTrials = 2;
 
 // Laplace coordinates and covariance of a sample under a displacement, as seen from its orbit's seed.
 struct Look {
-  Matrix3d covariance[kTrials];
-  Vector3d laplace[kTrials];
+  Matrix3d covariance[kNewtonTrials];
+  Vector3d laplace[kNewtonTrials];
   Matrix3d rest;
   Vector3d delta;
 };
@@ -30,7 +30,7 @@ struct Look {
 double difference(const Look& a, const Look& b) {
   double result = (a.rest - b.rest).cwiseAbs().maxCoeff();
   result = std::max(result, (a.delta - b.delta).cwiseAbs().maxCoeff());
-  for (int k = 0; k < kTrials; ++k) {
+  for (int k = 0; k < kNewtonTrials; ++k) {
     result = std::max(result, (a.covariance[k] - b.covariance[k]).cwiseAbs().maxCoeff());
     result = std::max(result, (a.laplace[k] - b.laplace[k]).cwiseAbs().maxCoeff());
   }
@@ -93,7 +93,7 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
   Random random(5, "quotient");
   std::vector<Points> moved;
   std::vector<Points> laplace;
-  for (int k = 0; k < kTrials; ++k) {
+  for (int k = 0; k < kNewtonTrials; ++k) {
     Eigen::VectorXd q(freedom_);
     for (double& coordinate : q) coordinate = random.normal();
     moved.push_back(sample_displacements(subspace, q));
@@ -104,7 +104,7 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
     Look result;
     result.rest = frame.transpose() * covariance_of(corotation, corotation.rest, sample) * frame;
     result.delta = frame.transpose() * corotation.delta.row(sample).transpose();
-    for (std::size_t k = 0; k < kTrials; ++k) {
+    for (std::size_t k = 0; k < kNewtonTrials; ++k) {
       result.covariance[k] = frame.transpose() * covariance_of(corotation, moved[k], sample) * frame;
       result.laplace[k] = frame.transpose() * laplace[k].row(sample).transpose();
     }
@@ -221,7 +221,7 @@ void Quotient::rotate(const Eigen::VectorXd& q, std::vector<Matrix3d>& rotations
       double sum[12];
       kernels().gather_blocks(covariance_.data() + 12 * static_cast<std::ptrdiff_t>(first_[k]),
                               column_.data() + first_[k], first_[k + 1] - first_[k], q.data(), sum);
-      const double anchor = kAnchor * sizes_[k];
+      const double anchor = kTurnAnchor * sizes_[k];
       for (std::size_t e = 0; e < 9; ++e) {
         const double before = rotations[k].data()[e];
         covariances[lane].data()[e] = matrices[kLanes * e + lane] = rest_[k].data()[e] + sum[e] + anchor * before;

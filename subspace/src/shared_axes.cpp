@@ -85,7 +85,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
 // two close together: Gauss-Newton on O_h exp[w] d = +-exp[w] d', d' being the axis of the same kind nearest to O_h d.
 Matrix3d settling_turn(const std::vector<Direction>& own, const std::vector<Motion>& stabiliser, double most) {
   constexpr int kRounds = 6;
-  constexpr double kRank = 1e-6;
+  constexpr double kPinnedRank = 1e-6;
   Matrix3d total = Matrix3d::Identity();
   for (int round = 0; round < kRounds; ++round) {
     Matrix3d normal = Matrix3d::Zero();
@@ -114,7 +114,7 @@ Matrix3d settling_turn(const std::vector<Direction>& own, const std::vector<Moti
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(normal);
     Vector3d w = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) {
-      if (solver.eigenvalues()[k] < kRank * std::max(1.0, solver.eigenvalues()[2])) continue;
+      if (solver.eigenvalues()[k] < kPinnedRank * std::max(1.0, solver.eigenvalues()[2])) continue;
       w += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).dot(side) / solver.eigenvalues()[k];
     }
     if (w.norm() > 0) total = axis_rotation(w.normalized(), w.norm()) * total;

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kOnePlace = 1e-7;       // of the diagonal
+constexpr double kOneCrease = 1e-7;      // of the diagonal
 constexpr double kSameDirection = 1e-6;  // 1 - cosine
 constexpr std::size_t kFewestOnLoop = 3;
 
@@ -63,7 +63,7 @@ std::vector<Vector3d> directions_at(const Mesh& mesh, const Edge& edge, const We
 }
 
 SharpGraph sharp_graph(const Mesh& mesh, double cosine) {
-  const Weld weld = weld_vertices(mesh.vertices, kOnePlace * diagonal(mesh.vertices));
+  const Weld weld = weld_vertices(mesh.vertices, kOneCrease * diagonal(mesh.vertices));
   SharpGraph graph;
   graph.positions = mesh.vertices(weld.representative, Eigen::all);
   graph.edges_of_place.resize(weld.representative.size());

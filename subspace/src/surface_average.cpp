@@ -6,7 +6,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // of the diagonal
+constexpr double kOneVertex = 1e-9;  // of the diagonal
 // Cosine between the normals of a vertex and of a face: only the back of a thin part has less.
 constexpr double kSameSide = -0.5;
 constexpr int kMostPoints = 1000;
@@ -15,7 +15,7 @@ constexpr int kMostPoints = 1000;
 
 SurfaceAverage::SurfaceAverage(const Mesh& mesh, const SymmetryAnnotation& annotation, double reach,
                                const RunContext& context)
-    : regions_(mesh, annotation, context), reach_(reach), doublet_(kSamePlace * diagonal(mesh.vertices)) {
+    : regions_(mesh, annotation, context), reach_(reach), doublet_(kOneVertex * diagonal(mesh.vertices)) {
   for (const Region& region : annotation.regions) {
     surfaces_.emplace_back(mesh, region.faces);
     sizes_.push_back(region.faces.size());

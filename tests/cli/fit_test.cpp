@@ -94,5 +94,20 @@ TEST_F(OrbifitCompare, WritesATableAPageAndTheMeshes) {
   EXPECT_EQ(read_mesh(file("all") / "ours.ply").faces, read_mesh(file("table.ply")).faces);
 }
 
+TEST_F(OrbifitCompare, EditsByHandlesThatContradictTheSymmetry) {
+  write_file(file("handles.json"),
+             R"({"handles": [{"centre": [0.6, 0, 0.7], "radius": 0.2, "translation": [0.1, 0, 0.05]},
+                             {"centre": [-0.6, 0, 0.7], "radius": 0.2}]})");
+  const json table =
+      json::parse(run("compare table.ply --annotation table.annotation.json --handles handles.json --samples 80 "
+                      "--methods ours,none,similarity --brief --quiet --json -o edited"));
+  ASSERT_EQ(table["methods"].size(), 3U);
+  EXPECT_LT(table["methods"][0]["symmetry_residual"], 1e-9);
+  EXPECT_GT(table["methods"][1]["symmetry_residual"], 1e-3);
+  EXPECT_LT(table["methods"][1]["handle_error"], table["methods"][0]["handle_error"]);
+  EXPECT_GT(table["methods"][0]["bending"], 1e-3);
+  EXPECT_LT(table["methods"][2]["bending"], 1e-6);
+}
+
 }  // namespace
 }  // namespace orbifit

@@ -108,6 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "the annotation has no region 99"},
         Refusal{"UnknownMethod", "compare cube.ply cube.ply --annotation cube.json --methods magic -o out", 2,
                 "methods has 'magic'"},
+        Refusal{"NothingToCompareOn", "compare cube.ply --annotation cube.json -o out", 2, "a scan, or --handles"},
         Refusal{"ViewpointOfTwoNumbers", "fit cube.ply cube.ply --viewpoint 1 2 -o out.ply", 2, "--viewpoint"},
         Refusal{"UnknownCommand", "polish cube.ply", 2, "unknown command 'polish'"},
         Refusal{"UnknownOption", "info cube.ply --sharp", 2, "unexpected argument --sharp"},

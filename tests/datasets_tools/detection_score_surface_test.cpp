@@ -35,19 +35,19 @@ Mesh ball() {
   return turned_part([](double v) { return std::sin(kPi * v); }, [](double v) { return -std::cos(kPi * v); });
 }
 
-struct Claim {
+struct SurfaceClaim {
   std::string shape, truth, claim;
   bool strict, loose, counts;
 };
 
-void PrintTo(const Claim& claim, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest's
+void PrintTo(const SurfaceClaim& claim, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest's
   *out << claim.claim << " on " << claim.shape;
 }
 
-class ContinuousGroup : public testing::TestWithParam<Claim> {};
+class ContinuousGroup : public testing::TestWithParam<SurfaceClaim> {};
 
 TEST_P(ContinuousGroup, HoldsItsSubgroups) {
-  const Claim& claim = GetParam();
+  const SurfaceClaim& claim = GetParam();
   Scene scene;
   const std::vector<int> faces = scene.add(claim.shape == "vase" ? vase() : claim.shape == "spool" ? spool() : ball());
   const auto whole = [&](const std::string& symbol) {
@@ -63,18 +63,24 @@ TEST_P(ContinuousGroup, HoldsItsSubgroups) {
 
 INSTANTIATE_TEST_SUITE_P(
     Claims, ContinuousGroup,
-    testing::Values(
-        Claim{"vase", "Cinfv", "Cinfv", true, true, true}, Claim{"vase", "Cinfv", "Cinf", false, true, true},
-        // The whole mesh, but not what it has.
-        Claim{"vase", "Cinfv", "Dinfh", false, true, false}, Claim{"vase", "Cinfv", "K", false, false, false},
-        Claim{"vase", "Cinfv", "Kh", false, true, false}, Claim{"vase", "Cinfv", "Dinf", false, false, false},
-        // True, but a finite group is less than a continuous one; it slides along the vase's own turns.
-        Claim{"vase", "Cinfv", "C8v", false, false, false}, Claim{"spool", "Dinfh", "Dinfh", true, true, true},
-        Claim{"spool", "Dinfh", "Cinfv", false, true, true}, Claim{"spool", "Dinfh", "Cinfh", false, true, true},
-        Claim{"spool", "Dinfh", "Dinf", false, true, true}, Claim{"spool", "Dinfh", "Cinf", false, false, true},
-        Claim{"ball", "Kh", "Kh", true, true, true}, Claim{"ball", "Kh", "K", false, true, true},
-        // Turns about other axes are no news on a ball.
-        Claim{"ball", "Kh", "Dinfh", false, false, false}));
+    testing::Values(SurfaceClaim{"vase", "Cinfv", "Cinfv", true, true, true},
+                    SurfaceClaim{"vase", "Cinfv", "Cinf", false, true, true},
+                    // The whole mesh, but not what it has.
+                    SurfaceClaim{"vase", "Cinfv", "Dinfh", false, true, false},
+                    SurfaceClaim{"vase", "Cinfv", "K", false, false, false},
+                    SurfaceClaim{"vase", "Cinfv", "Kh", false, true, false},
+                    SurfaceClaim{"vase", "Cinfv", "Dinf", false, false, false},
+                    // True, but a finite group is less than a continuous one; it slides along the vase's own turns.
+                    SurfaceClaim{"vase", "Cinfv", "C8v", false, false, false},
+                    SurfaceClaim{"spool", "Dinfh", "Dinfh", true, true, true},
+                    SurfaceClaim{"spool", "Dinfh", "Cinfv", false, true, true},
+                    SurfaceClaim{"spool", "Dinfh", "Cinfh", false, true, true},
+                    SurfaceClaim{"spool", "Dinfh", "Dinf", false, true, true},
+                    SurfaceClaim{"spool", "Dinfh", "Cinf", false, false, true},
+                    SurfaceClaim{"ball", "Kh", "Kh", true, true, true},
+                    SurfaceClaim{"ball", "Kh", "K", false, true, true},
+                    // Turns about other axes are no news on a ball.
+                    SurfaceClaim{"ball", "Kh", "Dinfh", false, false, false}));
 
 TEST(ContinuousGroup, AxesAndPlacesAreFoundWithinLimits) {
   Scene scene;

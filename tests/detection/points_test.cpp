@@ -42,10 +42,10 @@ Mesh turned(const std::vector<Eigen::Vector2d>& profile) {
   return mesh;
 }
 
-Mesh cylinder() {
+Mesh round_bar() {
   return turned({{0, -0.7}, {0.5, -0.7}, {0.5, 0.7}, {0, 0.7}});
 }
-Mesh cone() {
+Mesh round_tip() {
   return turned({{0, -0.5}, {0.5, -0.5}, {0, 0.8}});
 }
 
@@ -117,15 +117,16 @@ TEST_P(WholeScan, HasTheGroupOfItsShape) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, WholeScan,
                          testing::Values(Whole{"box", test::box(1, 0.7, 0.45), 0, "D2h"},
-                                         Whole{"cylinder", cylinder(), 0, "Dinfh"}, Whole{"cone", cone(), 0, "Cinfv"},
-                                         Whole{"noisy_cylinder", cylinder(), 0.006, "Dinfh"},
+                                         Whole{"cylinder", round_bar(), 0, "Dinfh"},
+                                         Whole{"cone", round_tip(), 0, "Cinfv"},
+                                         Whole{"noisy_cylinder", round_bar(), 0.006, "Dinfh"},
                                          Whole{"scalene", test::scalene(), 0, ""}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 class HalfSeen : public testing::TestWithParam<double> {};
 
 TEST_P(HalfSeen, CylinderTurns) {
-  const PointCloud scan = scan_of(cylinder(), {8000, GetParam(), Vector3d(1, 0.3, 0.5).normalized()});
+  const PointCloud scan = scan_of(round_bar(), {8000, GetParam(), Vector3d(1, 0.3, 0.5).normalized()});
   const SymmetryAnnotation found = detected(scan);
   ASSERT_EQ(groups(found), "Cinfv");
   EXPECT_GT(static_cast<double>(found.regions[0].faces.size()), 0.85 * static_cast<double>(scan.points.rows()));
@@ -142,7 +143,7 @@ TEST(PointDetection, BoxSeenFromItsCornerDoesNotTurn) {
 }
 
 TEST(PointDetection, OutliersAreInNoRegion) {
-  PointCloud scan = scan_of(cylinder());
+  PointCloud scan = scan_of(round_bar());
   const Eigen::Index first = scan.points.rows();
   scan.points.conservativeResize(first + 3, 3);
   for (int k = 0; k < 3; ++k) {
@@ -154,7 +155,7 @@ TEST(PointDetection, OutliersAreInNoRegion) {
 }
 
 TEST(PointDetection, IsTheSameOnTwoThreads) {
-  const PointCloud scan = scan_of(cylinder(), {4000, 0.002, Vector3d(1, 0.3, 0.5).normalized()});
+  const PointCloud scan = scan_of(round_bar(), {4000, 0.002, Vector3d(1, 0.3, 0.5).normalized()});
   const SymmetryAnnotation one = detected(scan, 1);
   const SymmetryAnnotation two = detected(scan, 2);
   ASSERT_EQ(groups(one), groups(two));
@@ -165,7 +166,7 @@ TEST(PointDetection, IsTheSameOnTwoThreads) {
 }
 
 TEST(PointDetection, RefusesWhatHasNoSurface) {
-  PointCloud scan = scan_of(cylinder());
+  PointCloud scan = scan_of(round_bar());
   PointCloud few;
   few.points = scan.points.topRows(49);
   EXPECT_THROW(detected(few), InputError);

@@ -56,15 +56,15 @@ TEST(ComponentMover, TakesWhatTheGroupMovesOntoItselfAndNothingElse) {
 }
 
 // A ring of n blocks on a plate, one of them turned about itself by a quarter.
-struct Ring {
+struct RingOfParts {
   const char* block;
   int count;
   int turned;  // -1: none
 
-  friend void PrintTo(const Ring& ring, std::ostream* stream) { *stream << ring.block << ring.count; }
+  friend void PrintTo(const RingOfParts& ring, std::ostream* stream) { *stream << ring.block << ring.count; }
 };
 
-class KnownRing : public testing::TestWithParam<Ring> {};
+class KnownRing : public testing::TestWithParam<RingOfParts> {};
 
 TEST_P(KnownRing, IsPermutedAsWhenMeasured) {
   const auto& [block, count, turned] = GetParam();
@@ -107,9 +107,10 @@ TEST_P(KnownRing, IsPermutedAsWhenMeasured) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Blocks, KnownRing,
-                         testing::Values(Ring{"brick", 4, -1}, Ring{"brick", 6, 2}, Ring{"cube", 4, 1},
-                                         Ring{"cube", 5, -1}, Ring{"wedge", 3, 1}, Ring{"wedge", 6, -1},
-                                         Ring{"peg", 5, 0}, Ring{"peg", 8, -1}),
+                         testing::Values(RingOfParts{"brick", 4, -1}, RingOfParts{"brick", 6, 2},
+                                         RingOfParts{"cube", 4, 1}, RingOfParts{"cube", 5, -1},
+                                         RingOfParts{"wedge", 3, 1}, RingOfParts{"wedge", 6, -1},
+                                         RingOfParts{"peg", 5, 0}, RingOfParts{"peg", 8, -1}),
                          [](const auto& each) { return testing::PrintToString(each.param); });
 
 TEST(ComponentMover, ASubgroupTakesMoreParts) {

@@ -16,15 +16,15 @@
 namespace orbifit {
 namespace {
 
-struct Kind {
+struct RoundKind {
   const char* symbol;
   int generic, on_axis, on_mirror, at_centre;  // degrees of freedom of a ring or sphere, by where its seed lies
   int carried;                                 // directions in which the group may float
 };
 
-const Kind kKinds[] = {{"Cinf", 3, 1, 3, 1, 2}, {"Cinfv", 2, 1, 2, 1, 2}, {"Cinfh", 3, 1, 2, 0, 3},
-                       {"Dinf", 3, 1, 1, 0, 3}, {"Dinfh", 2, 1, 1, 0, 3}, {"K", 1, 1, 1, 0, 3},
-                       {"Kh", 1, 1, 1, 0, 3}};
+const RoundKind kKinds[] = {{"Cinf", 3, 1, 3, 1, 2}, {"Cinfv", 2, 1, 2, 1, 2}, {"Cinfh", 3, 1, 2, 0, 3},
+                            {"Dinf", 3, 1, 1, 0, 3}, {"Dinfh", 2, 1, 1, 0, 3}, {"K", 1, 1, 1, 0, 3},
+                            {"Kh", 1, 1, 1, 0, 3}};
 
 // A part of revolution; for K and Kh a sphere. All of them symmetric to the plane z = 0.
 Mesh part_for(const PointGroup& group) {
@@ -60,7 +60,7 @@ class ContinuousGroup : public testing::TestWithParam<ContinuousCase> {
     return Motion::about(turn, region.centre) * component;
   }
 
-  const Kind& kind_;
+  const RoundKind& kind_;
   GeneratedModel model_;
   Subspace subspace_;
   SubspaceState state_;

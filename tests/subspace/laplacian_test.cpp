@@ -80,7 +80,7 @@ TEST_P(LaplacianOfModel, IsSymmetricSemiDefiniteAndHasTheConstantsAlone) {
   EXPECT_NEAR(laplacian.diagonal().mean(), graph.diagonal().mean(), 1e-10);
 }
 
-std::string model_test_name(const testing::TestParamInfo<ModelAndKind>& info) {
+std::string laplacian_test_name(const testing::TestParamInfo<ModelAndKind>& info) {
   return std::get<0>(info.param) + "_" + to_string(std::get<1>(info.param));
 }
 
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Models, LaplacianOfModel,
                          testing::Combine(testing::Values("bar", "table", "chair", "fan", "wheel"),
                                           testing::Values(LaplacianKind::graph, LaplacianKind::cotangent,
                                                           LaplacianKind::point)),
-                         model_test_name);
+                         laplacian_test_name);
 
 class LaplacianOfGroup : public testing::TestWithParam<ModelAndKind> {};
 
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Groups, LaplacianOfGroup,
                          testing::Combine(testing::Values("Cs", "C5", "C4v", "D3d", "S4", "Td", "Oh"),
                                           testing::Values(LaplacianKind::graph, LaplacianKind::cotangent,
                                                           LaplacianKind::point)),
-                         model_test_name);
+                         laplacian_test_name);
 
 class MeshLaplacian : public testing::TestWithParam<std::string> {
  protected:

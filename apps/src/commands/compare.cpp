@@ -48,7 +48,7 @@ void place(const Mesh& mesh, const FitOptions& options, const RunContext& contex
 CommandBody compare(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>();
   app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to")->required();
+  app.add_option("SCAN", arguments->scan, "Points to fit it to; without it handles alone edit the template");
   app.add_option("--annotation", arguments->annotation, "The template's symmetries")->required()->type_name("FILE");
   app.add_option("--truth", arguments->truth, "All of the shape that was scanned, in the scan's frame")
       ->type_name("FILE");
@@ -71,6 +71,8 @@ CommandBody compare(CLI::App& app) {
   add_subspace_options(app, arguments->subspace);
   return [arguments](CommandContext& context) {
     ComparisonOptions& options = arguments->options;
+    if (arguments->scan.empty() && arguments->handles.empty()) throw UsageError("give a scan, or --handles, or both");
+    if (arguments->scan.empty() && !arguments->truth.empty()) throw UsageError("--truth needs a scan");
     options.fit.subspace = arguments->subspace.options;
     options.validate();
     const Eigen::Vector3d up = to_direction("--up", arguments->up);
@@ -78,7 +80,8 @@ CommandBody compare(CLI::App& app) {
     SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     options.fit.subspace = subspace_options(arguments->subspace, mesh, context.run);
     build_closable(mesh, annotation, options.fit.subspace, context.run);
-    PointCloud scan = read_scan(arguments->scan);
+    PointCloud scan;
+    if (!arguments->scan.empty()) scan = read_scan(arguments->scan);
     std::vector<Handle> handles;
     if (!arguments->handles.empty()) handles = read_handles(arguments->handles, mesh).handles;
     std::unique_ptr<ComparisonTruth> truth;

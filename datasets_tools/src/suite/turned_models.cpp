@@ -10,39 +10,39 @@ namespace orbifit {
 
 namespace {
 
-TruthModel single(const std::string& name, const Mesh& mesh, const std::string& symbol) {
+TruthModel turned_model(const std::string& name, const Mesh& mesh, const std::string& symbol) {
   SuiteBuilder model;
   model.add(model.kind({name, mesh, group(symbol)}));
   return model.finish();
 }
 
 TruthModel vase() {
-  return single("vase",
-                turned_part({{0, 0, 0, 3},
-                             {0.35, 0, 0.06, 6},
-                             {0.62, 0.7, 0.6, 6},
-                             {0.2, 1.3, 0.3, 4},
-                             {0.34, 1.6, 0.02, 2},
-                             {0.26, 1.6, 0.02, 4},
-                             {0.13, 1.3, 0.3, 6},
-                             {0.5, 0.7, 0.5, 6},
-                             {0.28, 0.12, 0.08, 3},
-                             {0, 0.1, 0, 1}},
-                            72),
-                "Cinfv");
+  return turned_model("vase",
+                      turned_part({{0, 0, 0, 3},
+                                   {0.35, 0, 0.06, 6},
+                                   {0.62, 0.7, 0.6, 6},
+                                   {0.2, 1.3, 0.3, 4},
+                                   {0.34, 1.6, 0.02, 2},
+                                   {0.26, 1.6, 0.02, 4},
+                                   {0.13, 1.3, 0.3, 6},
+                                   {0.5, 0.7, 0.5, 6},
+                                   {0.28, 0.12, 0.08, 3},
+                                   {0, 0.1, 0, 1}},
+                                  72),
+                      "Cinfv");
 }
 
 TruthModel bowl() {
-  return single("bowl",
-                turned_part({{0, 0, 0, 3},
-                             {0.4, 0, 0.04, 3},
-                             {0.42, 0.08, 0.05, 6},
-                             {1, 0.6, 0.04, 2},
-                             {0.9, 0.62, 0.04, 8},
-                             {0.35, 0.16, 0.3, 4},
-                             {0, 0.13, 0, 1}},
-                            80),
-                "Cinfv");
+  return turned_model("bowl",
+                      turned_part({{0, 0, 0, 3},
+                                   {0.4, 0, 0.04, 3},
+                                   {0.42, 0.08, 0.05, 6},
+                                   {1, 0.6, 0.04, 2},
+                                   {0.9, 0.62, 0.04, 8},
+                                   {0.35, 0.16, 0.3, 4},
+                                   {0, 0.13, 0, 1}},
+                                  80),
+                      "Cinfv");
 }
 
 TruthModel goblet() {
@@ -82,17 +82,17 @@ TruthModel dumb_bell() {
 }
 
 TruthModel spool() {
-  return single("spool",
-                turned_part({{0, -0.5, 0, 4},
-                             {0.6, -0.5, 0.05, 3},
-                             {0.6, -0.35, 0.05, 3},
-                             {0.3, -0.25, 0.08, 6},
-                             {0.3, 0.25, 0.08, 3},
-                             {0.6, 0.35, 0.05, 3},
-                             {0.6, 0.5, 0.05, 4},
-                             {0, 0.5, 0, 1}},
-                            72),
-                "Dinfh");
+  return turned_model("spool",
+                      turned_part({{0, -0.5, 0, 4},
+                                   {0.6, -0.5, 0.05, 3},
+                                   {0.6, -0.35, 0.05, 3},
+                                   {0.3, -0.25, 0.08, 6},
+                                   {0.3, 0.25, 0.08, 3},
+                                   {0.6, 0.35, 0.05, 3},
+                                   {0.6, 0.5, 0.05, 4},
+                                   {0, 0.5, 0, 1}},
+                                  72),
+                      "Dinfh");
 }
 
 TruthModel mug() {
@@ -128,10 +128,10 @@ std::vector<SuiteModel> turned_suite() {
       {"vase", "continuous", vase},
       {"bowl", "continuous", bowl},
       {"goblet", "continuous", goblet},
-      {"torus", "continuous", [] { return single("ring", torus(1, 0.28, 80, 28), "Dinfh"); }},
+      {"torus", "continuous", [] { return turned_model("ring", torus(1, 0.28, 80, 28), "Dinfh"); }},
       {"dumb_bell", "continuous", dumb_bell},
       {"spool", "continuous", spool},
-      {"ball", "continuous", [] { return single("ball", icosahedral_ball(1, 4), "Kh"); }},
+      {"ball", "continuous", [] { return turned_model("ball", icosahedral_ball(1, 4), "Kh"); }},
       {"mug", "continuous", mug},
   };
 }

@@ -19,11 +19,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kHold = 1e-12;  // as Deformer's
+constexpr double kEditHold = 1e-12;  // as Deformer's
 
 // Lower half of (K (x) I_3) + hold among more unknowns.
 Sparse system_of(const Sparse& scalar, Index unknowns) {
-  const VectorXd hold = VectorXd::Constant(unknowns, kHold * scalar.diagonal().mean());
+  const VectorXd hold = VectorXd::Constant(unknowns, kEditHold * scalar.diagonal().mean());
   return lower_for_each_coordinate(scalar, unknowns) + Sparse(hold.asDiagonal());
 }
 
@@ -59,7 +59,7 @@ VectorXd edit_full_sampling(const Subspace& subspace, const Mesh& mesh, const st
         options.weight * 3 * static_cast<double>(samples.rows()) / static_cast<double>(constraints.rows());
     const Sparse gram = constraints.transpose() * constraints;
     system += weight * Sparse(gram.triangularView<Eigen::Lower>());
-    for (Index i = 3 * samples.rows(); i < unknowns; ++i) system.coeffRef(i, i) += kHold * weight;
+    for (Index i = 3 * samples.rows(); i < unknowns; ++i) system.coeffRef(i, i) += kEditHold * weight;
   }
   const bool hard = options.symmetry == FullSymmetry::constrained;
   SaddleSystem saddle(hard ? constraints : Sparse(0, unknowns));

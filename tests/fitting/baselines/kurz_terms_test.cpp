@@ -13,7 +13,7 @@
 namespace orbifit {
 namespace {
 
-struct Case {
+struct TermsCase {
   const char* name;
   const char* model;
   GridBasis basis;
@@ -25,7 +25,7 @@ Points normal_points(Eigen::Index rows, double scale, Random& random) {
 }
 
 // A template with random pulls and data, its symmetries turned at random.
-class Terms : public testing::TestWithParam<Case> {
+class Terms : public testing::TestWithParam<TermsCase> {
  protected:
   Terms()
       : model_(generate(GetParam().model)),
@@ -151,9 +151,9 @@ TEST_P(Terms, ConditionIsThatOfTheMatrix) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Terms,
-                         testing::Values(Case{"table_linear", "table", GridBasis::linear, 0.25},
-                                         Case{"bar_cubic", "bar", GridBasis::cubic, 1},
-                                         Case{"chair_linear", "chair", GridBasis::linear, 0.25}),
+                         testing::Values(TermsCase{"table_linear", "table", GridBasis::linear, 0.25},
+                                         TermsCase{"bar_cubic", "bar", GridBasis::cubic, 1},
+                                         TermsCase{"chair_linear", "chair", GridBasis::linear, 0.25}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace

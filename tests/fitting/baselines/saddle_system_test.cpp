@@ -13,11 +13,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // A positive definite matrix with a border, and constraints of which the last repeat the first ones.
-struct Case {
+struct SaddleCase {
   int constraints, repeated, border;
 };
 
-class Saddle : public testing::TestWithParam<Case> {
+class Saddle : public testing::TestWithParam<SaddleCase> {
  protected:
   static constexpr Eigen::Index kSize = 30;
 
@@ -70,7 +70,8 @@ TEST_P(Saddle, ConditionIsThatOfTheWholeSystemOnItsRange) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Systems, Saddle,
-                         testing::Values(Case{0, 0, 0}, Case{0, 0, 6}, Case{9, 0, 6}, Case{9, 5, 0}, Case{20, 12, 6}));
+                         testing::Values(SaddleCase{0, 0, 0}, SaddleCase{0, 0, 6}, SaddleCase{9, 0, 6},
+                                         SaddleCase{9, 5, 0}, SaddleCase{20, 12, 6}));
 
 }  // namespace
 }  // namespace orbifit
