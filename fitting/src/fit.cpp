@@ -73,7 +73,7 @@ void try_other_scale(const FitInput& input, const Subspace& subspace, const FitO
   const int before = best.result.iterations_in_all;
   best.result.iterations_in_all += grown.iterations_in_all;
   if (worth(grown) <= worth(best.result) + kWorthwhile) return;
-  FitState back = with_scale(best.start.pose.scale, {grown.pose, grown.q}, subspace, input.mesh);
+  FitState back = with_scale(best.start.pose.scale, grown.pose, {grown.q, grown.basis}, subspace, input.mesh);
   const int level = static_cast<int>(kSofter * options.levels);
   FitResult shrunk = fit_from(std::move(back), level, input, *other, subspace, options, context);
   const int in_all = before + grown.iterations_in_all + shrunk.iterations_in_all;
@@ -127,7 +127,8 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   FitResult result = std::move(best.result);
   result.placements = std::move(starts.placements);
   clock.finished("fit");
-  result.field_residual = worst_field_residual(*subspace, input.mesh, input.annotation, {result.q, nullptr}, context);
+  result.field_residual =
+      worst_field_residual(*subspace, input.mesh, input.annotation, {result.q, result.basis}, context);
   clock.finished("assessment");
   if ((options.judge_groups || options.relax) && !input.annotation.regions.empty()) {
     judge_groups(input, best.start, options, context, result);

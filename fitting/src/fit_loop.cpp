@@ -92,6 +92,8 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.energy = static_cast<double>(scan_.points.rows() - result.of_scan) * now.robust * now.robust;
   for (const Correspondence& pair : result.pairs) result.energy += robust_error(pair.distance, now.robust);
   if (now.progress >= kSilhouetteFrom && views_.silhouette.knows_viewpoints()) {
+    if (!cut_off_) cut_off_ = views_.silhouette.cut_off(deformed_, surface_, state.pose, context_);
+    if (*cut_off_) return result;
     result.energy +=
         views_.silhouette.add(deformed_, surface_, result.points, state.pose, now.robust, result.pairs, context_);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,7 @@ class FitLoop {
   Mesh deformed_;
   MatchSurface surface_;  // of deformed_
   std::vector<int> likely_;
+  std::optional<bool> cut_off_;  // what viewpoints saw, once the pose is settled
 };
 
 }  // namespace orbifit

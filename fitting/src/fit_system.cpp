@@ -1,26 +1,22 @@
 #include "fit_system.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
-#include <Eigen/Geometry>
+#include <utility>
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/corotation.h"
 
 #include "condition.h"
+#include "data_normal.h"
 
 namespace orbifit {
 
 FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
     : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
       subspace_(subspace),
-      rows_(subspace),
+      rows_(subspace, subspace.basis),
       mesh_(mesh),
-      diagonal_(diagonal(mesh.vertices)),
-      pivot_(bounding_box_centre(mesh.vertices)),
+      step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)},
       stiffness_matrix_(restricted(subspace.basis.columns, energy_.matrix())) {}
 
 Points FitSystem::samples_at(const Eigen::VectorXd& q) const {
@@ -31,144 +27,12 @@ Points FitSystem::vertices_at(const Eigen::VectorXd& q, const RunContext& contex
   return vertex_displacements(subspace_, {q, nullptr}, context);
 }
 
-// Rows of a least-squares problem that have much the same columns: multiplied out together, on those columns alone.
-class FitSystem::Batch {
- public:
-  explicit Batch(Eigen::Index columns) : place_(static_cast<std::size_t>(columns), -1) {}
-
-  // Which columns the rows will have. In ascending order the local lower half is one of the whole matrix's.
-  void begin(Eigen::Index rows, const std::vector<const std::vector<VertexRows::Entry>*>& entries) {
-    for (const int column : columns_) place_[static_cast<std::size_t>(column)] = -1;
-    columns_.clear();
-    for (const auto* row : entries) {
-      for (const VertexRows::Entry& entry : *row) {
-        int& place = place_[static_cast<std::size_t>(entry.column)];
-        if (place < 0) columns_.push_back(entry.column);
-        place = 0;
-      }
-    }
-    std::ranges::sort(columns_);
-    for (int k = 0; k < 6; ++k) columns_.push_back(static_cast<int>(place_.size()) - 6 + k);
-    for (std::size_t j = 0; j < columns_.size(); ++j) {
-      place_[static_cast<std::size_t>(columns_[j])] = static_cast<int>(j);
-    }
-    local_.setZero(rows, static_cast<Eigen::Index>(columns_.size()));
-    right_.setZero(rows);
-  }
-
-  // direction . u(vertex) is part of a row.
-  void add_vertex(Eigen::Index row, const std::vector<VertexRows::Entry>& entries, const Eigen::Vector3d& direction) {
-    for (const VertexRows::Entry& entry : entries) {
-      local_(row, place_[static_cast<std::size_t>(entry.column)]) += direction.dot(entry.factor);
-    }
-  }
-
-  // The six unknowns of the pose, the right-hand side, and the weight of the row: its last step.
-  void finish(Eigen::Index row, const Eigen::Matrix<double, 6, 1>& pose, double right, double weight) {
-    local_.row(row).tail<6>() = pose;
-    right_[row] = right;
-    const double root = std::sqrt(weight);
-    local_.row(row) *= root;
-    right_[row] *= root;
-  }
-
-  void add_to(Normal& normal) {
-    gram_.setZero(local_.cols(), local_.cols());
-    gram_.selfadjointView<Eigen::Lower>().rankUpdate(local_.transpose());
-    side_.noalias() = local_.transpose() * right_;
-    for (Eigen::Index b = 0; b < gram_.cols(); ++b) {
-      const int column = columns_[static_cast<std::size_t>(b)];
-      normal.side[column] += side_[b];
-      double* to = normal.matrix.col(column).data();
-      const double* from = gram_.col(b).data();
-      for (Eigen::Index a = b; a < gram_.rows(); ++a) to[columns_[static_cast<std::size_t>(a)]] += from[a];
-    }
-  }
-
- private:
-  std::vector<int> columns_, place_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> local_;
-  Eigen::MatrixXd gram_;
-  Eigen::VectorXd right_, side_;
-};
-
-FitSystem::Normal FitSystem::normal_of(const std::vector<Correspondence>& pairs, double share,
-                                       const Points& scan_points, const std::vector<Pull>& pulls,
-                                       const RunContext& context) {
-  constexpr std::size_t kBlocks = 8;  // summed in turn: rounding does not depend on the number of threads
-  constexpr std::size_t kRows = 48;   // of a batch
-  const Eigen::Index dof = subspace_.degrees_of_freedom();
-  const Normal zero{Eigen::MatrixXd::Zero(dof + 6, dof + 6), Eigen::VectorXd::Zero(dof + 6)};
-  std::vector<Normal> blocks(std::min(kBlocks, 1 + pairs.size() / kRows), zero);
-  // The rest is a point of the template, which is to go to the goal, along the direction.
-  const auto of_pose = [&](const Eigen::Vector3d& goal, const Eigen::Vector3d& direction) {
-    Eigen::Matrix<double, 6, 1> result;
-    result << -(goal - pivot_).cross(direction) / diagonal_, -direction;
-    return result;
-  };
-  std::vector<int> vertices;
-  for (const Correspondence& pair : pairs) {
-    for (int k = 0; k < 3; ++k) vertices.push_back(mesh_.faces(pair.face, k));
-  }
-  for (const Pull& pull : pulls) vertices.push_back(pull.vertex);
-  rows_.prepare(vertices, context);
-  // Neighbouring faces, mostly of neighbouring numbers, move with the same samples.
-  std::vector<std::size_t> order(pairs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return pairs[i].face; });
-  parallel_for(context, blocks.size(), [&](std::size_t begin, std::size_t end) {
-    Batch batch(dof + 6);
-    std::vector<const std::vector<VertexRows::Entry>*> entries;
-    for (std::size_t b = begin; b < end; ++b) {
-      const std::size_t last = (b + 1) * pairs.size() / blocks.size();
-      for (std::size_t first = b * pairs.size() / blocks.size(); first < last; first += kRows) {
-        const std::size_t count = std::min(kRows, last - first);
-        entries.clear();
-        for (std::size_t i = first; i < first + count; ++i) {
-          for (int k = 0; k < 3; ++k) entries.push_back(&rows_.of(mesh_.faces(pairs[order[i]].face, k)));
-        }
-        batch.begin(static_cast<Eigen::Index>(count), entries);
-        for (std::size_t i = 0; i < count; ++i) {
-          const Correspondence& pair = pairs[order[first + i]];
-          const auto row = static_cast<Eigen::Index>(i);
-          const Eigen::Vector3d rest =
-              mesh_.vertices(mesh_.faces.row(pair.face), Eigen::all).transpose() * pair.barycentric;
-          const Eigen::Vector3d goal = scan_points.row(pair.scan_point);
-          for (int k = 0; k < 3; ++k) {
-            if (pair.barycentric[k] == 0) continue;
-            batch.add_vertex(row, *entries[3 * i + static_cast<std::size_t>(k)], pair.barycentric[k] * pair.normal);
-          }
-          batch.finish(row, of_pose(goal, pair.normal), pair.normal.dot(goal - rest), share * pair.weight);
-        }
-        batch.add_to(blocks[b]);
-      }
-    }
-  });
-  Normal total = zero;
-  for (const Normal& block : blocks) {
-    total.matrix += block.matrix;
-    total.side += block.side;
-  }
-  Batch batch(dof + 6);
-  for (const Pull& pull : pulls) {
-    const std::vector<VertexRows::Entry>& entries = rows_.of(pull.vertex);
-    const Eigen::Vector3d rest = mesh_.vertices.row(pull.vertex);
-    batch.begin(3, {&entries});
-    for (int c = 0; c < 3; ++c) {
-      const Eigen::Vector3d direction = Eigen::Vector3d::Unit(c);
-      batch.add_vertex(c, entries, direction);
-      batch.finish(c, of_pose(pull.target, direction), pull.target[c] - rest[c], pull.weight);
-    }
-    batch.add_to(total);
-  }
-  return total;
-}
-
 FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
                                      const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context) {
   const Eigen::Index dof = subspace_.degrees_of_freedom();
   const auto all_samples = static_cast<double>(samples());
-  Normal normal = normal_of(pairs, share, scan_points, pulls, context);
+  rows_.prepare(touched_vertices(mesh_, pairs, pulls), context);
+  DataNormal normal = data_normal(rows_, dof, mesh_, step_, pairs, share, scan_points, pulls, context);
   normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() += hold.stiffness * stiffness_matrix_;
   normal.matrix.diagonal().head(dof).array() += kPreferPose * all_samples + hold.damping;
   normal.matrix.diagonal().tail<6>().array() += kHoldPose * all_samples + hold.damping;
@@ -183,7 +47,7 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   }
   Solution solution;
   solution.q = solved.head(dof);
-  solution.scan_step = small_motion(solved.segment<3>(dof) / diagonal_, solved.tail<3>(), pivot_);
+  solution.scan_step = step_.motion(solved.tail<6>());
   return solution;
 }
 

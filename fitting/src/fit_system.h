@@ -9,6 +9,7 @@
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "data_normal.h"
 #include "deformation_system.h"
 #include "vertex_rows.h"
 
@@ -28,20 +29,10 @@ class FitSystem final : public DeformationSystem {
   double condition() const override;
 
  private:
-  // The sum of w (row x - right)^2 as x^T matrix x - 2 side^T x and a constant.
-  struct Normal {
-    Eigen::MatrixXd matrix;  ///< lower half
-    Eigen::VectorXd side;
-  };
-  class Batch;
-  Normal normal_of(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
-                   const std::vector<Pull>& pulls, const RunContext& context);
-
   const Subspace& subspace_;
   VertexRows rows_;
   const Mesh& mesh_;
-  double diagonal_;
-  Eigen::Vector3d pivot_;
+  ScanStep step_;
   Eigen::MatrixXd stiffness_matrix_;
   Eigen::MatrixXd matrix_;  // of the last system, lower half
   Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;

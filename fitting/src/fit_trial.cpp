@@ -6,6 +6,7 @@
 
 #include "fit_assessment.h"
 #include "fit_system.h"
+#include "moving_system.h"
 
 namespace orbifit {
 
@@ -19,20 +20,40 @@ void run_fit(DeformationSystem& system, FitState state, int first_level, const F
   result.q = std::move(state.q);
 }
 
+namespace {
+
+// Once the groups have floated to where they fit best, they turn as well: a start from rest would let parts that are
+// still far from the scan turn every way.
+void let_groups_turn(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
+                     const FitOptions& options, const RunContext& context, FitResult& result) {
+  MovingSystem system(subspace, input.mesh, options.stretch);
+  if (!system.turns()) return;
+  FitOptions more = options;
+  more.most_iterations += result.iterations_in_all;
+  run_fit(system, {result.pose, system.at_rest(result.q)}, options.levels / 2, input, start, more, context, result);
+  const SubspaceState state = system.state_of(result.q);
+  result.q = state.q;
+  result.basis = state.basis;
+}
+
+}  // namespace
+
 FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
                    const Subspace& subspace, const FitOptions& options, const RunContext& context) {
   FitResult result;
   FitSystem system(subspace, input.mesh, options.stretch);
   run_fit(system, std::move(state), first_level, input, start, options, context, result);
+  if (subspace.mode == GroupMode::moving) let_groups_turn(input, start, subspace, options, context, result);
   result.samples = static_cast<int>(subspace.sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   result.used_fraction = start.used_fraction;
   result.torn_off = start.torn_off;
 
   Mesh deformed = input.mesh;
-  deformed.vertices += vertex_displacements(subspace, result.q);
+  const SubspaceState found{result.q, result.basis};
+  deformed.vertices += vertex_displacements(subspace, found, context);
   result.rest_annotation = input.annotation;
-  result.annotation = transformed(carried_annotation(input.annotation, subspace, result.q, deformed), result.pose);
+  result.annotation = transformed(carried_annotation(input.annotation, subspace, found, deformed), result.pose);
   deformed.vertices = from_template(result.pose, deformed.vertices);
   result.fitted = std::move(deformed);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);

@@ -22,16 +22,17 @@ std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan
   return result;
 }
 
-FitState with_scale(double scale, const FitState& state, const Subspace& subspace, const Mesh& mesh) {
+FitState with_scale(double scale, const Similarity& pose, const SubspaceState& state, const Subspace& subspace,
+                    const Mesh& mesh) {
   const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
   FitState result;
-  result.pose = {scale, state.pose.linear, state.pose(centre) - scale * (state.pose.linear * centre)};
+  result.pose = {scale, pose.linear, pose(centre) - scale * (pose.linear * centre)};
   const Points& rest = subspace.sampling.points;
-  const Points posed = rest + sample_displacements(subspace, state.q);
+  const Points posed = rest + sample_displacements(subspace, state);
   Points target(rest.rows(), 3);
   const Similarity back = inverse(result.pose);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    target.row(i) = (back(state.pose(posed.row(i).transpose())) - rest.row(i).transpose()).transpose();
+    target.row(i) = (back(pose(posed.row(i).transpose())) - rest.row(i).transpose()).transpose();
   }
   const Eigen::SparseMatrix<double>& columns = subspace.basis.columns;
   const Eigen::MatrixXd gram = columns.transpose() * columns;

@@ -18,6 +18,7 @@ std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan
 
 /// The same shape in the same place where the pose has another scale: the rest is deformation. Scaling about a point
 /// keeps all groups, whose centres go along, so that it lies in a floating subspace, and is nearest to it in others.
-FitState with_scale(double scale, const FitState& state, const Subspace& subspace, const Mesh& mesh);
+FitState with_scale(double scale, const Similarity& pose, const SubspaceState& state, const Subspace& subspace,
+                    const Mesh& mesh);
 
 }  // namespace orbifit

@@ -35,7 +35,7 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   const SymmetryAnnotation rest = closable(input.mesh, without_regions(input.annotation, result.relaxed), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
   FitResult found = fit_from(input.with(rest), start, subspace, options, context);
-  found.field_residual = worst_field_residual(subspace, input.mesh, rest, {found.q, nullptr}, context);
+  found.field_residual = worst_field_residual(subspace, input.mesh, rest, {found.q, found.basis}, context);
   found.iterations_in_all += result.iterations_in_all;
   found.placements = std::move(result.placements);
   found.groups = std::move(result.groups);

@@ -87,24 +87,29 @@ SeenSurface::Sight SeenSurface::look(const View& view, const Vector3d& point, do
   if (pixel < 0) return Sight::hidden;  // out of the picture: nothing can be said
   const auto at = static_cast<std::size_t>(pixel);
   const double depth = (point - view.eye).norm();
-  // Nothing at all was seen there, or only what lies behind: the template would have been.
-  if (view.farthest[at] == 0 || depth + reach < view.nearest[at]) return Sight::missed;
-  return depth - reach > view.nearest[at] ? Sight::hidden : Sight::missed;
+  if (view.farthest[at] == 0) return Sight::nothing;
+  return depth - reach > view.nearest[at] ? Sight::hidden : Sight::through;
 }
 
-// Whether some viewpoint has the point before it and yet saw nothing there. The template itself may stand in between.
-bool SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const SurfaceIndex& surface,
-                           const Similarity& pose, double reach) const {
+// What viewpoints saw that have the point before them, and yet did not see it: the most certain. The template itself
+// may stand in between.
+SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const SurfaceIndex& surface,
+                                         const Similarity& pose, double reach) const {
   constexpr double kGrazing = 0.25;  // cosine: flatter rays see little
   const Vector3d point = pose(own);
   const Similarity back = inverse(pose);
-  return std::ranges::any_of(views_, [&](const View& view) {
+  Sight result = Sight::hidden;
+  for (const View& view : views_) {
     const Vector3d ray = back(view.eye) - own;
     const double distance = ray.norm();
-    if (std::abs(ray.dot(normal)) < kGrazing * distance || look(view, point, reach) != Sight::missed) return false;
+    if (std::abs(ray.dot(normal)) < kGrazing * distance) continue;
+    const Sight sight = look(view, point, reach);
+    if (sight <= result) continue;
     const double start = 0.5 * reach / pose.scale;
-    return start >= distance || !surface.occluded(own, ray, start, distance);
-  });
+    if (start >= distance || !surface.occluded(own, ray, start, distance)) result = sight;
+    if (result == Sight::through) break;
+  }
+  return result;
 }
 
 double SeenSurface::covered(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
@@ -115,7 +120,7 @@ double SeenSurface::covered(const SurfaceSamples& samples, const SurfaceIndex& s
     const Vector3d own = samples.points.row(i);
     if (index_.nearest(pose(own), 1).front().distance <= reach) {
       ++seen;
-    } else if (views_.empty() || expected(own, samples.normals.row(i), surface, pose, reach)) {
+    } else if (views_.empty() || expected(own, samples.normals.row(i), surface, pose, reach) != Sight::hidden) {
       ++missed;
     }
   }
@@ -126,22 +131,26 @@ double SeenSurface::covered(const SurfaceSamples& samples, const SurfaceIndex& s
   return static_cast<double>(seen) / (seen + missed) * std::min(1.0, share / kFair);
 }
 
-std::vector<SeenSurface::Missed> SeenSurface::missed(const SurfaceSamples& samples, const SurfaceIndex& surface,
-                                                     const Similarity& pose, double reach,
-                                                     const RunContext& context) const {
+SeenSurface::Look SeenSurface::look(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
+                                    double reach, const RunContext& context) const {
   if (views_.empty()) return {};
   std::vector<Missed> all(static_cast<std::size_t>(samples.points.rows()));
+  std::vector<char> seen(all.size(), 0);
   parallel_for(context, all.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const Vector3d own = samples.points.row(row);
       const PointIndex::Neighbour near = index_.nearest(pose(own), 1).front();
-      if (near.distance <= reach || !expected(own, samples.normals.row(row), surface, pose, reach)) continue;
-      all[i] = {static_cast<int>(i), near.index, near.distance};
+      if (near.distance <= reach) {
+        seen[i] = 1;
+        continue;
+      }
+      const Sight sight = expected(own, samples.normals.row(row), surface, pose, reach);
+      if (sight != Sight::hidden) all[i] = {static_cast<int>(i), near.index, near.distance, sight == Sight::through};
     }
   });
   std::erase_if(all, [](const Missed& each) { return each.sample < 0; });
-  return all;
+  return {std::move(all), static_cast<int>(std::ranges::count(seen, 1))};
 }
 
 }  // namespace orbifit

@@ -21,15 +21,20 @@ class SeenSurface {
   struct Missed {
     int sample = -1;
     int point = -1;
-    double distance = 0;  ///< scan units
+    double distance = 0;   ///< scan units
+    bool through = false;  ///< something farther away was seen there; else nothing was, or what was has been cut off
+  };
+  struct Look {
+    std::vector<Missed> missed;
+    int seen = 0;  ///< samples at which the scan has points
   };
 
   /// The samples, on a surface of the template's, that a viewpoint has before it, where it saw through to something
   /// farther away, or to nothing: the surface cannot be there. None where no viewpoint is known.
   /// \param surface  the template's, in its frame as the samples \param pose template -> scan
   /// \param reach  scan units: nearer to a point of the scan a sample is seen
-  std::vector<Missed> missed(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
-                             double reach, const RunContext& context) const;
+  Look look(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose, double reach,
+            const RunContext& context) const;
 
   /// Of the template's surface that the viewpoints have before them, not behind the template itself nor behind
   /// something else, the share at which the scan has points; of all of it where no viewpoint is known. Less where
@@ -51,10 +56,10 @@ class SeenSurface {
 
     int pixel_of(const Eigen::Vector3d& point) const;  ///< -1 outside
   };
-  enum class Sight { seen, missed, hidden };
+  enum class Sight { hidden, nothing, through };  // what a view has where a point is that it should have seen
   Sight look(const View& view, const Eigen::Vector3d& point, double reach) const;
-  bool expected(const Eigen::Vector3d& own, const Eigen::Vector3d& normal, const SurfaceIndex& surface,
-                const Similarity& pose, double reach) const;
+  Sight expected(const Eigen::Vector3d& own, const Eigen::Vector3d& normal, const SurfaceIndex& surface,
+                 const Similarity& pose, double reach) const;
 
   std::vector<View> views_;
   PointIndex index_;

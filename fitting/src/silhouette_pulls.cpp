@@ -14,6 +14,7 @@ constexpr double kSeenReach = 0.012;       // of the diagonal: nearer to a point
 constexpr double kFarthest = 0.15;         // of the diagonal: what is pulled
 constexpr double kLeastSeenRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
 constexpr double kWeight = 2;              // there are fewer samples than points of the scan
+constexpr double kCutOff = 0.15;           // of the samples seen: if nothing was seen at more, points have been cut off
 
 }  // namespace
 
@@ -31,9 +32,7 @@ SilhouettePulls::SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, cons
   }
 }
 
-double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, const Points& points,
-                            const Similarity& pose, double robust, std::vector<Correspondence>& pairs,
-                            const RunContext& context) const {
+SurfaceSamples SilhouettePulls::samples_on(const Mesh& deformed, const MatchSurface& surface) const {
   SurfaceSamples samples;
   samples.points.resize(static_cast<Eigen::Index>(faces_.size()), 3);
   samples.normals.resize(samples.points.rows(), 3);
@@ -43,10 +42,29 @@ double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, c
     samples.points.row(i) = barycentric_[s].transpose() * deformed.vertices(deformed.faces.row(faces_[s]), Eigen::all);
     samples.normals.row(i) = surface.normal(faces_[s]).transpose();
   }
+  return samples;
+}
+
+SeenSurface::Look SilhouettePulls::look(const SurfaceSamples& samples, const MatchSurface& surface,
+                                        const Similarity& pose, const RunContext& context) const {
   const double reach = std::max(kSeenReach * size_ * pose.scale, 1.5 * spacing_);
+  return seen_.look(samples, surface.index, pose, reach, context);
+}
+
+bool SilhouettePulls::cut_off(const Mesh& deformed, const MatchSurface& surface, const Similarity& pose,
+                              const RunContext& context) const {
+  const SeenSurface::Look found = look(samples_on(deformed, surface), surface, pose, context);
+  const auto nothing = std::ranges::count(found.missed, false, &SeenSurface::Missed::through);
+  return static_cast<double>(nothing) > kCutOff * found.seen;
+}
+
+double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, const Points& points,
+                            const Similarity& pose, double robust, std::vector<Correspondence>& pairs,
+                            const RunContext& context) const {
+  const SurfaceSamples samples = samples_on(deformed, surface);
   const double scale = std::max(robust, kLeastSeenRobust * size_);
   double error = 0;
-  for (const SeenSurface::Missed& each : seen_.missed(samples, surface.index, pose, reach, context)) {
+  for (const SeenSurface::Missed& each : look(samples, surface, pose, context).missed) {
     const auto s = static_cast<std::size_t>(each.sample);
     const Eigen::Vector3d offset = (points.row(each.point) - samples.points.row(each.sample)).transpose();
     const double distance = offset.norm();

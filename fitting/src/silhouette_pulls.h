@@ -21,6 +21,11 @@ class SilhouettePulls {
 
   bool knows_viewpoints() const { return seen_.knows_viewpoints(); }
 
+  /// Whether viewpoints have nothing where much of the template should be: then points have been cut off the scan, with
+  /// other things or as noise, and that viewpoints do not see the template says nothing of it.
+  bool cut_off(const Mesh& deformed, const MatchSurface& surface, const Similarity& pose,
+               const RunContext& context) const;
+
   /// Appends a pair for each sample of the deformed template that was seen through and the scan's point nearest to it.
   /// \param surface of the deformed mesh \param points  the scan's, in the template's frame
   /// \param pose template -> scan \param robust  Geman-McClure's scale, template units
@@ -29,6 +34,10 @@ class SilhouettePulls {
              double robust, std::vector<Correspondence>& pairs, const RunContext& context) const;
 
  private:
+  SurfaceSamples samples_on(const Mesh& deformed, const MatchSurface& surface) const;
+  SeenSurface::Look look(const SurfaceSamples& samples, const MatchSurface& surface, const Similarity& pose,
+                         const RunContext& context) const;
+
   double size_;     // the template's diagonal
   double spacing_;  // the scan's
   SeenSurface seen_;

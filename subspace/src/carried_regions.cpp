@@ -36,6 +36,16 @@ Matrix3d rotation_of(const Vector3d& vector) {
   return angle > 0 ? axis_rotation(vector / angle, angle) : Matrix3d(Matrix3d::Identity());
 }
 
+MatrixXd applied(const LiftWeights& scalar, const MatrixXd& stacked) {
+  MatrixXd result = MatrixXd::Zero(3 * scalar.rows(), stacked.cols());
+  for (Eigen::Index row = 0; row < scalar.rows(); ++row) {
+    for (LiftWeights::InnerIterator entry(scalar, row); entry; ++entry) {
+      result.middleRows<3>(3 * row) += entry.value() * stacked.middleRows<3>(3 * entry.col());
+    }
+  }
+  return result;
+}
+
 bool CarriedRegions::nested(int inner, int outer) const {
   const auto& small = samples_[static_cast<std::size_t>(inner)];
   const auto& large = samples_[static_cast<std::size_t>(outer)];
@@ -222,6 +232,20 @@ MatrixXd CarriedRegions::columns(const Turns& turns, const Points& samples, cons
           result.block<3, 1>(3 * Eigen::Index{k}, at) += rotation.cross(arm);
         }
       }
+    }
+  }
+  return result;
+}
+
+MatrixXd CarriedRegions::arms(const Turns& turns, const LiftWeights& spread, const Points& missing) const {
+  const Points none = Points::Zero(static_cast<Eigen::Index>(samples_.size()), 3);
+  MatrixXd result = MatrixXd::Zero(3 * missing.rows(), freedom_);
+  for (int c = 0; c < 3; ++c) {
+    Points arm = Points::Zero(spread.cols(), 3);
+    arm.col(c).setOnes();
+    const MatrixXd across = applied(spread, columns(turns, arm, none));  // omega x e_c
+    for (Eigen::Index p = 0; p < missing.rows(); ++p) {
+      result.middleRows<3>(3 * p) += missing(p, c) * across.middleRows<3>(3 * p);
     }
   }
   return result;

@@ -45,7 +45,8 @@ HandleRows::HandleRows(const std::vector<Handle>& handles, const Subspace& subsp
         Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(points.size()), freedom);
     for (std::size_t i = 0; i < points.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
-        add_vertex_row(subspace, points[i], Eigen::Vector3d::Unit(c), rows.row(3 * static_cast<Eigen::Index>(i) + c));
+        add_vertex_row(subspace, subspace.basis, points[i], Eigen::Vector3d::Unit(c),
+                       rows.row(3 * static_cast<Eigen::Index>(i) + c));
       }
       vertices_.push_back(points[i]);
       weights_.push_back(part.weight);

@@ -22,17 +22,6 @@ constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of
 constexpr double kMostTurn = 0.35;          // radians in one iteration
 constexpr double kConflict = 1e-9;          // of the diagonal
 
-// A matrix on samples applied to stacked displacements.
-MatrixXd applied(const Eigen::SparseMatrix<double, Eigen::RowMajor>& scalar, const MatrixXd& stacked) {
-  MatrixXd result = MatrixXd::Zero(3 * scalar.rows(), stacked.cols());
-  for (Eigen::Index row = 0; row < scalar.rows(); ++row) {
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(scalar, row); entry; ++entry) {
-      result.middleRows<3>(3 * row) += entry.value() * stacked.middleRows<3>(3 * entry.col());
-    }
-  }
-  return result;
-}
-
 // The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset.
 class SampleEnergy {
  public:
@@ -85,39 +74,10 @@ class SampleEnergy {
   VectorXd weights_;
 };
 
-Points centres_now(const Subspace& subspace, const SubspaceState& state) {
-  Points centres(subspace.regions->count(), 3);
-  for (int i = 0; i < subspace.regions->count(); ++i) {
-    centres.row(i) = carried_motion(subspace, state, i)(subspace.regions->centre(i)).transpose();
-  }
-  return centres;
-}
-
 }  // namespace
 
 MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation)
     : subspace_(subspace), corotation_(corotation), regions_(subspace) {}
-
-// How turning moves points besides moving the samples: omega x (p - sum of w x), omega that of the samples, blended.
-MatrixXd MovingSolve::arms_of(const LiftWeights& spread, const Points& points,
-                              const CarriedRegions::Turns& turns) const {
-  const Points& rest = corotation_.rest;
-  const Points none = Points::Zero(subspace_.regions->count(), 3);
-  std::array<MatrixXd, 3> across;  // omega x e_c
-  for (int c = 0; c < 3; ++c) {
-    Points arm = Points::Zero(rest.rows(), 3);
-    arm.col(c).setOnes();
-    across[static_cast<std::size_t>(c)] = applied(spread, regions_.columns(turns, arm, none));
-  }
-  const Points missing = points - spread * rest;
-  MatrixXd result = MatrixXd::Zero(3 * points.rows(), regions_.freedom());
-  for (Eigen::Index p = 0; p < points.rows(); ++p) {
-    for (int c = 0; c < 3; ++c) {
-      result.middleRows<3>(3 * p) += missing(p, c) * across[static_cast<std::size_t>(c)].middleRows<3>(3 * p);
-    }
-  }
-  return result;
-}
 
 // As the handles turn all in all.
 CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const VectorXd& targets) const {
@@ -190,14 +150,16 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
     const VectorXd wanted = targets - stacked(lifted) + VectorXd(applied(spread, stacked(before)));
     Points turned_delta = turned_coordinates(local);
     if (regions_.freedom() > 0) {
-      const MatrixXd turning = regions_.columns(turns, rest + before, centres_now(subspace_, state));
+      const MatrixXd turning = regions_.columns(turns, rest + before, carried_centres(subspace_, state));
       MatrixXd columns(3 * rest.rows(), state.q.size() + turning.cols());
       columns << MatrixXd(state.basis->columns), turning;
       // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
       const MatrixXd along = regions_.columns(turns, turned_delta, Points::Zero(subspace_.regions->count(), 3));
       const VectorXd laplace = stacked(turned_delta - corotation_.delta);
-      const VectorXd both =
-          energy.solve(columns, along, arms_of(spread, handles.rest(), turns), state.basis->offset, laplace, wanted).z;
+      const VectorXd both = energy
+                                .solve(columns, along, regions_.arms(turns, spread, handles.rest() - spread * rest),
+                                       state.basis->offset, laplace, wanted)
+                                .z;
       VectorXd angles = both.tail(turning.cols());
       const double largest = angles.cwiseAbs().maxCoeff();
       if (largest > kMostTurn) angles *= kMostTurn / largest;

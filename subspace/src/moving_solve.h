@@ -23,7 +23,6 @@ class MovingSolve {
 
  private:
   CarriedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
-  Eigen::MatrixXd arms_of(const LiftWeights& spread, const Points& points, const CarriedRegions::Turns& turns) const;
 
   const Subspace& subspace_;
   const Corotation& corotation_;

@@ -141,6 +141,14 @@ Vector3d carried_translation(const Subspace& subspace, const Eigen::VectorXd& q,
   return carried_motion(subspace, {q, nullptr}, region).translation;
 }
 
+Points carried_centres(const Subspace& subspace, const SubspaceState& state) {
+  Points centres(subspace.regions->count(), 3);
+  for (int i = 0; i < subspace.regions->count(); ++i) {
+    centres.row(i) = carried_motion(subspace, state, i)(subspace.regions->centre(i)).transpose();
+  }
+  return centres;
+}
+
 Points vertex_displacements(const Subspace& subspace, const SubspaceState& state, const RunContext& context) {
   const CarriedBasis& basis = basis_of(subspace, state);
   const bool turned = !basis.rotations.empty();
@@ -200,9 +208,8 @@ Points vertex_displacements(const Subspace& subspace, const Eigen::VectorXd& q) 
   return vertex_displacements(subspace, SubspaceState{q, nullptr});
 }
 
-void add_vertex_row(const Subspace& subspace, int vertex, const Vector3d& direction,
+void add_vertex_row(const Subspace& subspace, const CarriedBasis& basis, int vertex, const Vector3d& direction,
                     Eigen::Ref<Eigen::RowVectorXd> row) {
-  const CarriedBasis& basis = subspace.basis;
   const VertexOrbits::Follower& follower = subspace.orbits.followers[static_cast<std::size_t>(vertex)];
   Vector3d along = direction;
   const auto add_carried = [&](const Carried& carried) {
@@ -212,7 +219,10 @@ void add_vertex_row(const Subspace& subspace, int vertex, const Vector3d& direct
   };
   if (follower.turn >= 0) {
     const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
-    const Transport step = step_transport(*subspace.regions, place, -1, motion, subspace.mode != GroupMode::fixed);
+    const bool floating = subspace.mode != GroupMode::fixed;
+    const Transport step = basis.rotations.empty() ? step_transport(*subspace.regions, place, -1, motion, floating)
+                                                   : step_transport(*subspace.regions, place, -1, motion, floating,
+                                                                    basis.rotations[static_cast<std::size_t>(place)]);
     add_carried(step.carried);
     along = step.frame.transpose() * along;
   }

@@ -36,27 +36,27 @@ TEST_F(Wall, WhatStandsBeforeItShouldHaveBeenSeen) {
   const SeenSurface seen(scan_, scan_.points);
   const SurfaceIndex surface(square_);
   ASSERT_TRUE(seen.knows_viewpoints());
-  EXPECT_EQ(seen.missed(samples_, surface, at(1), 0.1, context_).size(), 200U);
+  EXPECT_EQ(seen.look(samples_, surface, at(1), 0.1, context_).missed.size(), 200U);
   EXPECT_EQ(seen.covered(samples_, surface, at(1), 0.1), 0);
 }
 
 TEST_F(Wall, WhatLiesAtItWasSeen) {
   const SeenSurface seen(scan_, scan_.points);
   const SurfaceIndex surface(square_);
-  EXPECT_TRUE(seen.missed(samples_, surface, at(0), 0.1, context_).empty());
+  EXPECT_TRUE(seen.look(samples_, surface, at(0), 0.1, context_).missed.empty());
   EXPECT_EQ(seen.covered(samples_, surface, at(0), 0.1), 1);
 }
 
 TEST_F(Wall, WhatLiesBehindItIsHidden) {
   const SeenSurface seen(scan_, scan_.points);
-  EXPECT_TRUE(seen.missed(samples_, SurfaceIndex(square_), at(-1), 0.1, context_).empty());
+  EXPECT_TRUE(seen.look(samples_, SurfaceIndex(square_), at(-1), 0.1, context_).missed.empty());
 }
 
 TEST_F(Wall, WithoutViewpointsNothingIsMissed) {
   scan_.viewpoints.resize(0, 3);
   const SeenSurface seen(scan_, scan_.points);
   EXPECT_FALSE(seen.knows_viewpoints());
-  EXPECT_TRUE(seen.missed(samples_, SurfaceIndex(square_), at(1), 0.1, context_).empty());
+  EXPECT_TRUE(seen.look(samples_, SurfaceIndex(square_), at(1), 0.1, context_).missed.empty());
 }
 
 TEST_F(Wall, TheSquareHidesWhatStandsBehindIt) {
@@ -69,7 +69,7 @@ TEST_F(Wall, TheSquareHidesWhatStandsBehindIt) {
   Random random(2);
   const SurfaceSamples behind = sample_surface(both, 100, random, {2, 3});
   const SeenSurface seen(scan_, scan_.points);
-  EXPECT_TRUE(seen.missed(behind, SurfaceIndex(both), at(1), 0.1, context_).empty());
+  EXPECT_TRUE(seen.look(behind, SurfaceIndex(both), at(1), 0.1, context_).missed.empty());
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ TEST_P(Rows, TimesTheCoordinatesAreTheDisplacements) {
   RunContext context;
   const GeneratedModel model = generate(GetParam());
   const Subspace subspace = build_subspace(model.mesh, model.truth, {}, context);
-  VertexRows rows(subspace);
+  VertexRows rows(subspace, subspace.basis);
   std::vector<int> vertices(static_cast<std::size_t>(model.mesh.vertices.rows()));
   std::iota(vertices.begin(), vertices.end(), 0);
   rows.prepare({vertices[1], vertices[1], vertices[0]}, context);

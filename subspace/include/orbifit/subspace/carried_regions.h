@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "orbifit/model/mesh.h"
+#include "orbifit/subspace/lift.h"
 #include "orbifit/subspace/subspace.h"
 
 namespace orbifit {
@@ -14,6 +15,9 @@ Eigen::Matrix3d blended_rotation(const Eigen::Matrix3d& sum);
 
 /// The rotation by |vector| radians about a vector.
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector);
+
+/// A matrix on points (x) I_3, applied to stacked displacements: 3 rows a point.
+Eigen::MatrixXd applied(const LiftWeights& scalar, const Eigen::MatrixXd& stacked);
 
 /// How the regions' groups may turn in mode `moving` (method notes 2.2) without contradicting one another. Regions that
 /// elements of larger ones take to one another form a family: when g takes region i to j, their rotations relative to
@@ -47,6 +51,11 @@ class CarriedRegions {
   /// \param samples   #S by 3, where they are now
   /// \param centres   #regions by 3, where the regions' centres are now
   Eigen::MatrixXd columns(const Turns& turns, const Points& samples, const Points& centres) const;
+
+  /// How turning moves points that follow samples by weights, besides moving those: omega x (p - sum of w x), omega
+  /// that of the samples, blended. 3#P by freedom().
+  /// \param spread  #P by #S \param missing  p - sum of w x, #P by 3
+  Eigen::MatrixXd arms(const Turns& turns, const LiftWeights& spread, const Points& missing) const;
 
  private:
   struct Member {

@@ -101,6 +101,9 @@ Points sample_displacements(const Subspace& subspace, const Eigen::VectorXd& q);
 Motion carried_motion(const Subspace& subspace, const SubspaceState& state, int region);
 Eigen::Vector3d carried_translation(const Subspace& subspace, const Eigen::VectorXd& q, int region);
 
+/// Where the regions' centres are now, #regions by 3.
+Points carried_centres(const Subspace& subspace, const SubspaceState& state);
+
 /// The lifted displacements of the mesh's vertices, #V by 3. Images of a vertex are exact copies of its displacement.
 Points vertex_displacements(const Subspace& subspace, const SubspaceState& state,
                             const RunContext& context = RunContext{});
@@ -112,8 +115,9 @@ struct VertexRow {
   double constant = 0;
 };
 
-/// Adds factor * direction . u(vertex) to the form, at rest (modes fixed and floating).
-void add_vertex_row(const Subspace& subspace, int vertex, const Eigen::Vector3d& direction,
+/// Adds direction . u(vertex) to a linear form in a basis' coordinates; what turned groups add whatever the coordinates
+/// are, is left out.
+void add_vertex_row(const Subspace& subspace, const CarriedBasis& basis, int vertex, const Eigen::Vector3d& direction,
                     Eigen::Ref<Eigen::RowVectorXd> row);
 
 /// The annotation of the deformed mesh: the same regions and patterns, carried along.
