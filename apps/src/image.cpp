@@ -117,7 +117,7 @@ Image contact_sheet(const std::vector<Image>& images, const std::vector<std::str
   if (captions.size() != images.size()) {
     throw UsageError(std::to_string(captions.size()) + " captions for " + std::to_string(images.size()) + " images");
   }
-  if (columns < 1) throw UsageError("columns is " + std::to_string(columns) + ": must be at least 1");
+  require(columns >= 1, "columns", columns, "at least 1");
   int cell_width = 1;
   int cell_height = 1;
   for (const Image& image : images) {

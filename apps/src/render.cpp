@@ -21,9 +21,6 @@ constexpr float kShadowStrength = 0.62F;  // of the ground at its darkest
 constexpr int kMaxGlassLayers = 12;
 
 void validate(const ViewOptions& view) {
-  const auto require = [](bool holds, const std::string& name, double value, const std::string& rule) {
-    if (!holds) throw UsageError(name + " is " + std::to_string(value) + ": must be " + rule);
-  };
   require(view.width >= 1 && view.width <= 16384, "width", view.width, "from 1 to 16384");
   require(view.height >= 1 && view.height <= 16384, "height", view.height, "from 1 to 16384");
   require(view.field_of_view >= 1 && view.field_of_view <= 150, "field_of_view", view.field_of_view,

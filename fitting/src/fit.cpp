@@ -24,10 +24,6 @@ constexpr double kLeastSeen = 0.04;    // of the fitted surface: an edge lies al
 constexpr double kWell = 0.995;        // confidence from which another scale is not tried,
 constexpr double kWorthwhile = 0.005;  // which must explain so much more
 
-void require(bool holds, const std::string& field, double value, const std::string& rule) {
-  if (!holds) throw UsageError(field + " is " + std::to_string(value) + "; it must be " + rule);
-}
-
 }  // namespace
 
 void FitOptions::validate() const {

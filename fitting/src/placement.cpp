@@ -247,16 +247,13 @@ class Search {
 }  // namespace
 
 void PlacementOptions::validate() const {
-  const auto require = [](bool holds, const std::string& field, double value, const std::string& rule) {
-    if (!holds) throw UsageError("PlacementOptions." + field + " is " + std::to_string(value) + "; it must be " + rule);
-  };
-  require(pairs >= 1, "pairs", pairs, "at least 1");
-  require(proposals >= 1, "proposals", proposals, "at least 1");
-  require(scan_points >= 10, "scan_points", scan_points, "at least 10");
-  require(refined >= 1, "refined", refined, "at least 1");
-  require(reach > 0 && reach < 0.2, "reach", reach, "in (0, 0.2)");
-  require(least_scale > 0, "least_scale", least_scale, "positive");
-  require(largest_scale > least_scale, "largest_scale", largest_scale, "more than least_scale");
+  require(pairs >= 1, "PlacementOptions.pairs", pairs, "at least 1");
+  require(proposals >= 1, "PlacementOptions.proposals", proposals, "at least 1");
+  require(scan_points >= 10, "PlacementOptions.scan_points", scan_points, "at least 10");
+  require(refined >= 1, "PlacementOptions.refined", refined, "at least 1");
+  require(reach > 0 && reach < 0.2, "PlacementOptions.reach", reach, "in (0, 0.2)");
+  require(least_scale > 0, "PlacementOptions.least_scale", least_scale, "positive");
+  require(largest_scale > least_scale, "PlacementOptions.largest_scale", largest_scale, "more than least_scale");
 }
 
 std::vector<Placement> find_placements(const Mesh& mesh, const PointCloud& scan, const PlacementOptions& options,

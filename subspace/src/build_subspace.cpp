@@ -147,12 +147,8 @@ CarriedBasis basis_without_atoms(const Subspace& subspace, const std::vector<Mat
 }  // namespace
 
 void SubspaceOptions::validate() const {
-  if (!(radius >= 0) || !std::isfinite(radius)) {
-    throw UsageError("radius is " + std::to_string(radius) + "; it must be positive, or 0 to have it chosen");
-  }
-  if (samples != 0 && samples < 4) {
-    throw UsageError("samples is " + std::to_string(samples) + "; it must be at least 4, or 0 to have it chosen");
-  }
+  require(radius >= 0 && std::isfinite(radius), "radius", radius, "positive, or 0 to have it chosen");
+  require(samples == 0 || samples >= 4, "samples", samples, "at least 4, or 0 to have it chosen");
   if (relative_radii.size() > 0 && !(relative_radii.minCoeff() > 0 && relative_radii.allFinite())) {
     throw UsageError("relative_radii holds " + std::to_string(relative_radii.minCoeff()) + "; all must be positive");
   }

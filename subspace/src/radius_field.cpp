@@ -25,10 +25,6 @@ constexpr double kOpposite = 0.5;  // cosine: faces that look the other way by a
 constexpr double kTouching = 1e-6;
 constexpr double kPerThickness = 0.5;  // r as a fraction of the thickness
 
-void require(bool holds, const std::string& name, double value, const std::string& rule) {
-  if (!holds) throw UsageError(name + " is " + std::to_string(value) + ": must be " + rule);
-}
-
 // Diameter of the largest ball that touches the surface at `point` from inside and no opposite face, at most `most`:
 // a ball is shrunk until it holds no point of one (Ma, Bae and Choi 2012).
 double thickness(const SurfaceIndex& surface, const Vector3d& point, const Vector3d& normal, double most) {

@@ -150,10 +150,8 @@ class Collector {
 }  // namespace
 
 void SharpFeatureOptions::validate() const {
-  if (!(spacing > 0)) throw UsageError("spacing is " + std::to_string(spacing) + ": must be positive");
-  if (!(angle > 0 && angle < 180)) {
-    throw UsageError("angle is " + std::to_string(angle) + ": must be between 0 and 180 degrees");
-  }
+  require(spacing > 0, "spacing", spacing, "positive");
+  require(angle > 0 && angle < 180, "angle", angle, "between 0 and 180 degrees");
 }
 
 SurfaceSamples sharp_feature_samples(const Mesh& mesh, const SharpFeatureOptions& options) {

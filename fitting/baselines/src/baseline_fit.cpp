@@ -28,8 +28,8 @@ PlacedScan baseline_start(const FitInput& input, const FitOptions& options, cons
 }
 
 void validate_editing(double alpha, int iterations) {
-  if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be positive");
-  if (iterations < 1) throw UsageError("edit_iterations is " + std::to_string(iterations) + "; it must be at least 1");
+  require(alpha > 0, "alpha", alpha, "positive");
+  require(iterations >= 1, "edit_iterations", iterations, "at least 1");
 }
 
 Subspace plain_subspace(const FitInput& input, const FitOptions& options, const RunContext& context) {

@@ -31,7 +31,7 @@ std::string to_string(FullSymmetry symmetry) {
 
 void FullSamplingOptions::validate() const {
   fit.validate();
-  if (!(weight > 0)) throw UsageError("weight is " + std::to_string(weight) + "; it must be positive");
+  require(weight > 0, "weight", weight, "positive");
   validate_editing(alpha, edit_iterations);
 }
 

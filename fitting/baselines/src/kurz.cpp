@@ -15,10 +15,6 @@ namespace orbifit {
 
 namespace {
 
-void require(bool holds, const std::string& field, double value, const std::string& rule) {
-  if (!holds) throw UsageError(field + " is " + std::to_string(value) + "; it must be " + rule);
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -25,7 +25,7 @@ std::vector<Landmark> landmarks_of(const FitInput& input) {
 
 void SimilarityOptions::validate() const {
   fit.validate();
-  if (iterations < 1) throw UsageError("iterations is " + std::to_string(iterations) + "; it must be at least 1");
+  require(iterations >= 1, "iterations", iterations, "at least 1");
 }
 
 FitResult fit_similarity(const FitInput& input, const SimilarityOptions& options, const RunContext& context) {
