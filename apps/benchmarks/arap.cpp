@@ -64,7 +64,8 @@ std::string output_of(const std::string& command) {
 ArapTimes arap_times(const BenchmarkModel& model, int repetitions) {
   std::error_code code;
   const fs::path peer = fs::read_symlink("/proc/self/exe", code).parent_path() / "orbifit-benchmark-arap";
-  if (!fs::exists(peer, code)) return {{}, {}, "it is not built: CGAL was not found"};
+  if (!fs::exists(peer, code))
+    return {{}, {}, "it is not built: build the target orbifit-benchmark-arap, which needs CGAL"};
   const TemporaryFolder folder;
   write_mesh(folder.file("mesh.ply"), model.mesh);
   nlohmann::json order{{"iterations", kIterations}, {"repetitions", repetitions}, {"handles", nlohmann::json::array()}};
