@@ -14,6 +14,8 @@ namespace orbifit {
 
 namespace {
 
+using Family = PointGroup::Family;
+
 constexpr Eigen::Index kMostMeasured = 1000000;  // vertices
 
 double area_of(const Eigen::VectorXd& areas, const std::vector<int>& faces) {
@@ -53,7 +55,6 @@ void ModelBuilder::declare(const std::string& name, const PointGroup& group, con
 
 void ModelBuilder::declare_turned(const std::string& name, bool alike, bool round, int facets, const Placement& about,
                                   const PartFaces& faces) {
-  using Family = PointGroup::Family;
   declare(name, {alike ? Family::Dnh : Family::Cnv, facets}, about, faces);
   if (!round) return;
   regions_.back().region =

@@ -55,9 +55,10 @@ TEST_P(OrbitModel, CopiesAreClosedApartAndFaceOutwards) {
   }
 }
 
+using Family = PointGroup::Family;
+
 // Groups that contain this one in the same frame, index 2.
 std::vector<PointGroup> larger_groups(const PointGroup& group) {
-  using Family = PointGroup::Family;
   switch (group.family) {
     case Family::Cn:
       return {{Family::Cnv, group.n}, {Family::Cnh, group.n}, {Family::Dn, group.n}, {Family::Cn, 2 * group.n}};

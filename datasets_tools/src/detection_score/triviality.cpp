@@ -11,6 +11,7 @@ namespace orbifit::scoring {
 
 namespace {
 
+using Kind = Pattern::Kind;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -141,7 +142,6 @@ bool featureless(const ScoredSurface& part, double part_diagonal, const Region& 
 
 bool featureless(const ScoredSurface& part, const Pattern& pattern, const ScoredSurface& whole, Random& random,
                  const RunContext& context) {
-  using Kind = Pattern::Kind;
   if (pattern.kind == Kind::congruent || pattern.kind == Kind::screw) return false;
   const ScoreSamples samples = part.sample(kPatternSamples, random, context);
   int fitting = 0;
