@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <ostream>
 #include <string>
-#include <utility>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -168,7 +168,17 @@ TEST(Fit, CarriesLegsThatSplayWhereGroupsMove) {
 
 // What the scan leaves open stays where it is, however long the fit goes on (Kurz et al. 2014 see a partial table
 // drift off).
-class PartOfATable : public testing::TestWithParam<std::pair<const char*, Eigen::AlignedBox3d>> {};
+struct Part {
+  const char* name;
+  Eigen::AlignedBox3d box;  // of the template's bounding box
+  double most;              // mean error of the vertices, of the diagonal
+};
+
+void PrintTo(const Part& part, std::ostream* out) {
+  *out << part.name;
+}
+
+class PartOfATable : public testing::TestWithParam<Part> {};
 
 TEST_P(PartOfATable, DoesNotTakeTheRestAway) {
   RunContext context;
@@ -182,7 +192,7 @@ TEST_P(PartOfATable, DoesNotTakeTheRestAway) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
     const Eigen::Vector3d place = (scan.points.row(i).transpose() - box.min()).cwiseQuotient(box.sizes());
-    if (GetParam().second.contains(place)) kept.push_back(i);
+    if (GetParam().box.contains(place)) kept.push_back(i);
   }
   ASSERT_GT(kept.size(), 100U);
   scan.points = Points(scan.points(kept, Eigen::all));
@@ -195,17 +205,16 @@ TEST_P(PartOfATable, DoesNotTakeTheRestAway) {
     options.subspace.mode = mode;
     const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, options, context);
     const Points off = result.fitted.vertices - model.mesh.vertices;
-    EXPECT_LT(off.rowwise().norm().mean(), 0.005 * diagonal(model.mesh.vertices)) << to_string(mode);
+    EXPECT_LT(off.rowwise().norm().mean(), GetParam().most * diagonal(model.mesh.vertices)) << to_string(mode);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Fit, PartOfATable,
-    testing::Values(
-        std::pair{"OneCorner", Eigen::AlignedBox3d(Eigen::Vector3d(0.5, 0.5, 0), Eigen::Vector3d(1, 1, 1))},
-        std::pair{"HalfItsTop", Eigen::AlignedBox3d(Eigen::Vector3d(0, 0.5, 0.8), Eigen::Vector3d(1, 1, 1))},
-        std::pair{"AFootAndTheMiddle", Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.6, 0.6, 0.6))}),
-    [](const auto& each) { return std::string(each.param.first); });
+    testing::Values(Part{"OneCorner", {Eigen::Vector3d(0.5, 0.5, 0), Eigen::Vector3d(1, 1, 1)}, 0.002},
+                    Part{"HalfItsTop", {Eigen::Vector3d(0, 0.5, 0.8), Eigen::Vector3d(1, 1, 1)}, 0.002},
+                    Part{"OneFoot", {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.6, 0.6, 0.6)}, 0.005}),
+    [](const auto& each) { return std::string(each.param.name); });
 
 TEST(Fit, OfAScanOfSomethingElseSaysThatItFailed) {
   RunContext context;

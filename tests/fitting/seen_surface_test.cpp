@@ -1,5 +1,8 @@
 #include "seen_surface.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace orbifit {
@@ -40,10 +43,31 @@ TEST_F(Wall, WhatStandsBeforeItShouldHaveBeenSeen) {
   EXPECT_EQ(seen.covered(samples_, surface, at(1), 0.1), 0);
 }
 
+// Where a view has nothing at all, that may have been cut off; where it has the wall, it saw through.
+TEST_F(Wall, ThroughIsWhereSomethingFartherWasSeen) {
+  const SurfaceIndex surface(square_);
+  const auto through = [&](const PointCloud& scan) {
+    const SeenSurface seen(scan, scan.points);
+    const SeenSurface::Look found = seen.look(samples_, surface, at(1), 0.1, context_);
+    EXPECT_EQ(found.missed.size(), 200U);
+    EXPECT_EQ(found.seen, 0);
+    return std::ranges::count(found.missed, true, &SeenSurface::Missed::through);
+  };
+  EXPECT_EQ(through(scan_), 200);
+  PointCloud holed = scan_;
+  std::vector<Eigen::Index> rim;
+  for (Eigen::Index i = 0; i < scan_.points.rows(); ++i) {
+    if (scan_.points.row(i).cwiseAbs().maxCoeff() > 0.7) rim.push_back(i);
+  }
+  holed.points = Points(scan_.points(rim, Eigen::all));
+  EXPECT_EQ(through(holed), 0);
+}
+
 TEST_F(Wall, WhatLiesAtItWasSeen) {
   const SeenSurface seen(scan_, scan_.points);
   const SurfaceIndex surface(square_);
   EXPECT_TRUE(seen.look(samples_, surface, at(0), 0.1, context_).missed.empty());
+  EXPECT_EQ(seen.look(samples_, surface, at(0), 0.1, context_).seen, 200);
   EXPECT_EQ(seen.covered(samples_, surface, at(0), 0.1), 1);
 }
 

@@ -64,7 +64,7 @@ struct FitResult {
   Similarity pose;                     ///< template -> scan
   std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
   Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
-  /// In which they are coordinates; null: the subspace's own, but in mode moving.
+  /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
   std::shared_ptr<const CarriedBasis> basis;
   int samples = 0, degrees_of_freedom = 0;
   double condition = 0;  ///< of the last linear system, where FitOptions::condition asked for it

@@ -12,14 +12,15 @@ namespace orbifit {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// An orthonormal basis of what the columns span, which are linearly independent and no more than the rows.
+/// An orthonormal basis, n by k, of what the columns of an n by k matrix span. \pre they are independent, k <= n
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns);
 
-/// Of all x that minimise |matrix x - right|, the shortest; for each column of `right`. \param threshold  pivots below
-/// this fraction of the largest count as zero
+/// Of all x that minimise |matrix x - right|, the shortest, by complete orthogonal decomposition.
+/// \param matrix m by n, of any rank \param right m by k: k problems \param threshold  pivots below this fraction of the
+/// largest count as zero \return n by k
 Eigen::MatrixXd shortest_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right, double threshold);
 
-/// The solution of a positive semidefinite system (LDL^T).
+/// The solution of a symmetric positive semidefinite system, n by n, by LDL^T. Not finite where the input is not.
 Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 Vector6d solve_semidefinite(const Matrix6d& matrix, const Vector6d& right);
 
