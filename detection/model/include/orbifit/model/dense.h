@@ -16,8 +16,8 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns);
 
 /// Of all x that minimise |matrix x - right|, the shortest, by complete orthogonal decomposition.
-/// \param matrix m by n, of any rank \param right m by k: k problems \param threshold  pivots below this fraction of the
-/// largest count as zero \return n by k
+/// \param matrix m by n, of any rank \param right m by k: k problems \param threshold  pivots below this fraction of
+/// the largest count as zero \return n by k
 Eigen::MatrixXd shortest_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right, double threshold);
 
 /// The solution of a symmetric positive semidefinite system, n by n, by LDL^T. Not finite where the input is not.
