@@ -26,6 +26,7 @@
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/detection/symmetry_lines.h"
 #include "orbifit/detection/verification.h"
+#include "orbifit/detection/wider_subgroups.h"
 #include "orbifit/model/errors.h"
 
 namespace orbifit {
@@ -199,6 +200,8 @@ class Detector {
     axes = distinct_lines(axes);
     AxisRegions about = find_axis_regions(surface, *whole_index_, axes, regions_, options, context_);
     add_of_pieces(std::move(about.regions));
+    context_.progress("subgroups", 0);
+    add_of_pieces(find_wider_subgroups(surface, *whole_index_, regions_, about.turning, regions_, options, context_));
     if (late()) return;
     options.least_share = kLeastMirrored;
     std::vector<CandidateLine> planes = mirror_planes(surface, about.turning, options.least_share, context_);

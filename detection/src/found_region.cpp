@@ -1,6 +1,7 @@
 #include "orbifit/detection/found_region.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -46,6 +47,24 @@ double area_apart(const PreparedMesh& prepared, const std::vector<int>& inner, c
     if (!touches || prepared.areas[face] > kSmall * prepared.area) area += prepared.areas[face];
   }
   return area;
+}
+
+// Few elements keep much by chance: a small subgroup of a large group must keep more to be worth naming.
+double share_by_chance(double share, const PointGroup& larger, const PointGroup& smaller) {
+  if (smaller.continuous()) return share;
+  const double index = larger.continuous() ? 16 : static_cast<double>(larger.order()) / smaller.order();
+  const double most = smaller.order() <= 2 ? 4 : (smaller.order() <= 4 ? 2 : 1);
+  return share * std::clamp(std::log2(index), 1.0, most);
+}
+
+// Whether what a far smaller group keeps beyond the outer region is no more than chance would give it. The whole, or
+// nearly, is never left out.
+bool mostly_within(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
+  constexpr double kByChance = 0.05;
+  constexpr double kNearlyWhole = 0.9;
+  const double share = share_by_chance(kByChance, outer.placement.group, inner.placement.group);
+  return share >= 2 * kByChance && inner.area < kNearlyWhole * prepared.area &&
+         area_outside(prepared, inner.faces, outer.faces) <= share * inner.area;
 }
 
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
@@ -97,7 +116,8 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<Fou
   const SurfaceMoments moments = surface_moments(prepared, region.faces);
   const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
   return std::ranges::any_of(others, [&](const FoundRegion& other) {
-    return area_outside(prepared, region.faces, other.faces) <= outside * region.area &&
+    const double share = share_by_chance(outside, other.placement.group, region.placement.group);
+    return area_outside(prepared, region.faces, other.faces) <= share * region.area &&
            contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
   });
 }
@@ -118,7 +138,8 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
     const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
     bool repeats = false;
     for (std::size_t j = 0; j < regions.size() && !repeats; ++j) {
-      if (i == j || !covers(prepared, regions[j], mine)) continue;
+      if (i == j) continue;
+      if (!covers(prepared, regions[j], mine) && !mostly_within(prepared, regions[j], mine)) continue;
       if (!contains_group(regions[j].placement, mine.placement, moments.centroid, moments.radius, reach)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
       repeats = (!mutual || j < i) && !looser(prepared, tolerance, regions[j], mine);

@@ -167,33 +167,32 @@ TEST_F(Regions, EveryDropIsExplained) {
 }
 
 // A square sheet of n by n cells, each of two triangles, column by column.
-class Sheet : public testing::TestWithParam<int> {
- protected:
-  static PreparedMesh sheet(int n) {
-    Mesh mesh;
-    mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; j <= n; ++j) mesh.vertices.row(i * (n + 1) + j) << i, j, 0;
-    }
-    mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        const int a = i * (n + 1) + j;
-        const int b = a + n + 1;
-        mesh.faces.row(2 * (i * n + j)) << a, b, b + 1;
-        mesh.faces.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
-      }
-    }
-    return prepare(mesh);
+PreparedMesh sheet(int n) {
+  Mesh mesh;
+  mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) mesh.vertices.row(i * (n + 1) + j) << i, j, 0;
   }
+  mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j;
+      const int b = a + n + 1;
+      mesh.faces.row(2 * (i * n + j)) << a, b, b + 1;
+      mesh.faces.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
+    }
+  }
+  return prepare(mesh);
+}
 
-  static FoundRegion columns(const PreparedMesh& prepared, int n, int count) {
-    FoundRegion region;
-    for (int f = 0; f < 2 * n * count; ++f) region.faces.push_back(f);
-    region.area = area_of(prepared, region.faces);
-    return region;
-  }
-};
+FoundRegion columns(const PreparedMesh& prepared, int n, int count) {
+  FoundRegion region;
+  for (int f = 0; f < 2 * n * count; ++f) region.faces.push_back(f);
+  region.area = area_of(prepared, region.faces);
+  return region;
+}
+
+class Sheet : public testing::TestWithParam<int> {};
 
 TEST_P(Sheet, ARegionsBorderIsUncertainByASmallTriangle) {
   const int n = GetParam();
@@ -255,6 +254,39 @@ TEST(DropFeatureless, PiecesOfALargerSurfaceGoTheWholeStays) {
   EXPECT_EQ(explanation.notes[0].stage, "featureless");
   EXPECT_FALSE(explanation.notes[0].kept);
 }
+
+// A region of D8h over 20 of 40 columns, and one of a subgroup over some more.
+struct Wider {
+  const char* symbol;
+  int columns;
+  bool stays;
+
+  friend void PrintTo(const Wider& wider, std::ostream* out) { *out << wider.symbol << " on " << wider.columns; }
+};
+
+class Subgroup : public testing::TestWithParam<Wider> {};
+
+TEST_P(Subgroup, MustKeepMoreTheSmallerItIs) {
+  constexpr int kColumns = 40;
+  constexpr int kOuter = 20;
+  const auto& [symbol, count, stays] = GetParam();
+  const PreparedMesh prepared = sheet(kColumns);
+  FoundRegion outer = columns(prepared, kColumns, kOuter);
+  FoundRegion inner = columns(prepared, kColumns, count);
+  outer.placement.group = *PointGroup::parse("D8h");
+  inner.placement.group = *PointGroup::parse(symbol);
+  const std::vector<FoundRegion> both{outer, inner};
+  for (std::vector<FoundRegion> regions : {both, std::vector<FoundRegion>(both.rbegin(), both.rend())}) {
+    drop_repeats(prepared, test::kTolerance, regions);
+    EXPECT_EQ(regions.size(), stays ? 2U : 1U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shares, Subgroup,
+                         testing::Values(Wider{"Cs", 24, false}, Wider{"Cs", 26, true}, Wider{"C2", 24, false},
+                                         Wider{"C2v", 22, false}, Wider{"C2v", 24, true}, Wider{"C4v", 22, true},
+                                         Wider{"C8v", 22, true}, Wider{"C8v", 20, false}, Wider{"Cs", 40, true}),
+                         [](const auto& each) { return each.param.symbol + std::to_string(each.param.columns); });
 
 }  // namespace
 }  // namespace orbifit

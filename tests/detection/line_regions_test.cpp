@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/plane_regions.h"
 #include "orbifit/detection/segments.h"
+#include "orbifit/detection/wider_subgroups.h"
 
 #include "shapes.h"
 
@@ -49,6 +51,10 @@ class Screened {
     options.least_share = 0.02;
     return find_plane_regions(surface_, whole_, mirror_planes(surface_, {}, options.least_share, {}), {}, {}, options,
                               {});
+  }
+
+  std::vector<FoundRegion> wider(const std::vector<FoundRegion>& known) const {
+    return find_wider_subgroups(surface_, whole_, known, {}, known, {}, {});
   }
 
   const ScreenedSurface& surface() const { return surface_; }
@@ -131,6 +137,48 @@ TEST_P(ThinnedDisc, KeepsWhatHasItsImagesInIt) {
 INSTANTIATE_TEST_SUITE_P(Missing, ThinnedDisc, testing::Values(-1, 0, 5), [](const auto& each) {
   return each.param < 0 ? "None" : "Bolt" + std::to_string(each.param);
 });
+
+// A prism with a smaller one on one of its ends, turned by some angle against it.
+struct Stacked {
+  int order;
+  double turn;  // degrees
+  const char* both;
+
+  friend void PrintTo(const Stacked& stacked, std::ostream* out) { *out << stacked.both << " of two prisms"; }
+};
+
+// What keeps more than the prism that comes first.
+std::vector<FoundRegion> wider_than_prism(const Screened& screened, int order, const Mesh& prism) {
+  FoundRegion known{screened.placement("D" + std::to_string(order) + "h"), {}, 0, "prism"};
+  for (int f = 0; f < prism.faces.rows(); ++f) known.faces.push_back(f);
+  known.area = area_of(screened.surface().prepared, known.faces);
+  return screened.wider({known});
+}
+
+class WiderSubgroups : public testing::TestWithParam<Stacked> {};
+
+TEST_P(WiderSubgroups, KeepWhatTheGroupDoesNot) {
+  const auto& [order, turn, both] = GetParam();
+  const Mesh lower = test::prism(order, 1, 0.8);
+  const Mesh upper = test::moved(test::prism(order, 0.7, 0.9), test::shift(0, 0, 0.85));
+  const Motion turned = Motion::rotation(Vector3d::UnitZ(), turn * std::numbers::pi / 180, Vector3d::Zero());
+  const Screened screened(test::joined({lower, test::moved(upper, turned)}));
+  const std::vector<FoundRegion> found = wider_than_prism(screened, order, lower);
+  ASSERT_EQ(symbols(found), std::vector<std::string>{both});
+  EXPECT_NEAR(screened.share_of(found.front().faces), 1, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Prisms, WiderSubgroups,
+                         testing::Values(Stacked{3, 0, "C3v"}, Stacked{5, 0, "C5v"}, Stacked{6, 0, "C6v"},
+                                         Stacked{8, 0, "C8v"}, Stacked{5, 11, "C5"}, Stacked{6, 11, "C6"}),
+                         [](const auto& each) { return std::string(each.param.both); });
+
+TEST(SubgroupsOfAPost, AreNotFoundWhereAllThatIsMoreHasNoPartInThem) {
+  const Mesh post = test::prism(6, 1, 4);
+  const Mesh block = test::moved(test::box(0.7, 0.4, 0.5), {Eigen::Matrix3d::Identity(), {2.2, 0.3, 0.4}});
+  const Screened both(test::joined({post, block}));
+  EXPECT_EQ(symbols(wider_than_prism(both, 6, post)), std::vector<std::string>{});
+}
 
 TEST(AxisRegions, AreNotFoundAboutAnyAxis) {
   const Screened scalene(test::scalene());

@@ -1,8 +1,11 @@
 #include "orbifit/detection/detect.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -143,6 +146,40 @@ void write_explanation(const std::string& folder, const Explanation& explanation
   write_file(folder + "/stages.tsv", text);
 }
 
+/// The wall-clock time of each stage, by when progress comes to the next one.
+class StageTimes {
+ public:
+  /// Listens to the progress of the run; must outlive it.
+  explicit StageTimes(RunContext& run) {
+    run.on_progress = [this, next = run.on_progress](std::string_view stage, double fraction) {
+      if (stages_.empty() || stages_.back().first != stage) {
+        end_stage();
+        stages_.emplace_back(stage, 0);
+      }
+      if (next) next(stage, fraction);
+    };
+  }
+
+  void write(const std::string& folder) {
+    end_stage();
+    std::string text = "stage\tseconds\n";
+    for (const auto& [stage, seconds] : stages_) text += stage + "\t" + short_number(seconds, 3) + "\n";
+    write_file(folder + "/times.tsv", text);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void end_stage() {
+    const Clock::time_point now = Clock::now();
+    if (!stages_.empty()) stages_.back().second += std::chrono::duration<double>(now - begin_).count();
+    begin_ = now;
+  }
+
+  Clock::time_point begin_ = Clock::now();
+  std::vector<std::pair<std::string, double>> stages_;
+};
+
 nlohmann::ordered_json points_json(const SymmetryAnnotation& found) {
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
   for (const Region& region : found.regions) {
@@ -209,7 +246,8 @@ CommandBody detect(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
   app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
-  app.add_option("--explain", arguments->explain, "Folder for what each stage kept and dropped, and why (created)")
+  app.add_option("--explain", arguments->explain,
+                 "Folder for what each stage kept and dropped, why, and how long it took (created)")
       ->type_name("DIR");
   app.add_option("--up", arguments->up, "Upward direction of the preview")
       ->type_size(3)
@@ -226,10 +264,18 @@ CommandBody detect(CLI::App& app) {
     context.run.check();
     Explanation explanation;
     DetectOptions chosen = arguments->options;
-    if (!arguments->explain.empty()) chosen.explanation = &explanation;
+    RunContext run = context.run;
+    std::optional<StageTimes> times;
+    if (!arguments->explain.empty()) {
+      chosen.explanation = &explanation;
+      times.emplace(run);
+    }
     const SymmetryAnnotation found =
-        share_axes(mesh, orbifit::detect(mesh, chosen, context.run), chosen.tolerance, MayMove::inexact);
-    if (!arguments->explain.empty()) write_explanation(arguments->explain, explanation);
+        share_axes(mesh, orbifit::detect(mesh, chosen, run), chosen.tolerance, MayMove::inexact);
+    if (times) {
+      write_explanation(arguments->explain, explanation);
+      times->write(arguments->explain);
+    }
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
     if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
