@@ -16,6 +16,7 @@
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/denoise.h"
 #include "orbifit/detection/found_region.h"
+#include "orbifit/detection/noise_check.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/part_regions.h"
 #include "orbifit/detection/pattern_search.h"
@@ -74,6 +75,7 @@ class Detector {
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
+    drop_made_by_smoothing();
     write_regions(annotation);
     annotation.patterns = std::move(patterns_);
     context_.progress("regions", 1);
@@ -92,11 +94,25 @@ class Detector {
     const double noise = noise_of(prepared_);
     if (noise < kLeastNoise) return;
     context_.progress("noise", 0);
+    given_ = prepared_;
     denoise(prepared_, noise, context_);
+    noise_check_.emplace(*given_, prepared_, noise, options_.tolerance, context_);
     if (options_.explanation != nullptr) {
       options_.explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
                                              "taken out of the vertices before anything else"});
     }
+  }
+
+  void drop_made_by_smoothing() {
+    if (!noise_check_) return;
+    std::erase_if(regions_, [&](const FoundRegion& region) {
+      const bool holds = noise_check_->holds(region);
+      if (!holds && options_.explanation != nullptr) {
+        options_.explanation->notes.push_back({"noise", region.placement.group.symbol() + " on " + region.name, false,
+                                               "does not hold on the mesh before its noise was taken out"});
+      }
+      return !holds;
+    });
   }
 
   void find_whole() {
@@ -291,6 +307,8 @@ class Detector {
   RunContext& context_;
   std::chrono::steady_clock::time_point start_;
   PreparedMesh prepared_;
+  std::optional<PreparedMesh> given_;  // before its noise was taken out
+  std::optional<NoiseCheck> noise_check_;
   DirectionSet screen_;
   std::shared_ptr<const SurfaceIndex> whole_index_;
   std::vector<FoundRegion> regions_;

@@ -1,0 +1,96 @@
+#include "orbifit/detection/noise_check.h"
+
+#include <cmath>
+#include <numeric>
+#include <ostream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/detection/denoise.h"
+#include "orbifit/model/random.h"
+
+#include "shapes.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+// A hilly sheet over a square of side 1 about the origin, of n by n cells: even in x but for waves of a given height,
+// which are even in y.
+Mesh hills(int n, double odd) {
+  Mesh mesh;
+  mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      const double x = static_cast<double>(i) / n - 0.5;
+      const double y = static_cast<double>(j) / n - 0.5;
+      const double z = 0.1 * std::cos(7 * x) + 0.07 * std::sin(5 * y) + odd * std::sin(9 * x);
+      mesh.vertices.row(i * (n + 1) + j) << x, y, z;
+    }
+  }
+  mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j;
+      const int b = a + n + 1;
+      mesh.faces.row(2 * (i * n + j)) << a, b, b + 1;
+      mesh.faces.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
+    }
+  }
+  return mesh;
+}
+
+Mesh with_noise(Mesh mesh, double sigma) {
+  Random random(3);
+  for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices(v, 2) += sigma * random.normal();
+  return mesh;
+}
+
+// What detection makes of a noisy mesh, and a mirror claimed for all of it.
+struct Claim {
+  PreparedMesh given, clean;
+  double sigma;
+  FoundRegion region;
+
+  explicit Claim(const Mesh& mesh) : given(prepare(mesh)), clean(given), sigma(noise_of(given)) {
+    denoise(clean, sigma, {});
+    const Similarity& input = given.input_of_normalised;
+    const GroupPlacement mirror{*PointGroup::parse("Cs"), frame_about(Vector3d::UnitX()),
+                                -input.translation / input.scale};
+    region = {mirror, std::vector<int>(static_cast<std::size_t>(mesh.faces.rows())), given.area, "all"};
+    std::iota(region.faces.begin(), region.faces.end(), 0);
+  }
+};
+
+class NoisyHills : public testing::TestWithParam<double> {};
+
+TEST_P(NoisyHills, AreSymmetricAsFarAsNoiseLetsThem) {
+  const Claim claim(with_noise(hills(60, 0), GetParam()));
+  EXPECT_NEAR(claim.sigma, GetParam() / diagonal(hills(60, 0).vertices), 0.25 * GetParam() + 1e-5);
+  const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, {});
+  EXPECT_TRUE(check.holds(claim.region));
+  const NoiseCheck::Share share = check.share(claim.region);
+  EXPECT_NEAR(share.kept, share.expected, 0.04);
+}
+
+TEST_P(NoisyHills, AreNotWhereTheyDifferByMoreThanTheTolerance) {
+  const Claim claim(with_noise(hills(60, 0.008), GetParam()));
+  const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, {});
+  EXPECT_FALSE(check.holds(claim.region));
+}
+
+INSTANTIATE_TEST_SUITE_P(Sigma, NoisyHills, testing::Values(0, 0.001, 0.003, 0.006), [](const auto& each) {
+  return "PerMille" + std::to_string(static_cast<int>(std::lround(1000 * each.param)));
+});
+
+TEST(NoiseCheck, AsksNothingOfNoNoise) {
+  const Claim claim(hills(60, 0));
+  const NoiseCheck check(claim.given, claim.clean, 0, test::kTolerance, {});
+  EXPECT_EQ(check.share(claim.region).expected, 1);
+  EXPECT_EQ(check.share(claim.region).kept, 1);
+}
+
+}  // namespace
+}  // namespace orbifit
