@@ -88,18 +88,66 @@ class Completion {
     std::vector<int> faces;             // where neither is known: the faces; empty where there is no such surface
   };
 
+  // Motions that differ by elements of a region's own group: the region has one image under all of them.
+  struct Coset {
+    std::vector<Motion> motions;
+    bool keeps;  // those elements themselves
+  };
+
+  std::vector<Coset> cosets_of(std::size_t q, const std::vector<Motion>& motions) const {
+    constexpr double kSame = 0.5;  // tolerances
+    const GroupElements own(regions_[q].placement);
+    const SurfaceMoments& mine = moments_[q];
+    std::vector<Coset> result;
+    const auto in_own = [&](const Motion& motion) {
+      return own.hold(motion, mine.centroid, mine.radius, kSame * tolerance_of(q));
+    };
+    for (const Motion& motion : motions) {
+      const auto known = std::ranges::find_if(result, [&](const Coset& coset) {
+        return coset.keeps ? in_own(motion) : in_own(inverse(coset.motions.front()) * motion);
+      });
+      if (known == result.end()) {
+        result.push_back({{motion}, in_own(motion)});
+      } else {
+        known->motions.push_back(motion);
+      }
+    }
+    return result;
+  }
+
+  // Motions by which the region has not been carried before: regions within one another share many.
+  std::vector<Motion> untried(std::size_t q, const std::vector<Motion>& motions) {
+    constexpr double kSame = 0.5;  // tolerances
+    tried_.resize(regions_.size());
+    const SurfaceMoments& mine = moments_[q];
+    std::vector<Motion> fresh;
+    std::ranges::copy_if(motions, std::back_inserter(fresh), [&](const Motion& motion) {
+      return std::ranges::none_of(tried_[q], [&](const Motion& known) {
+        return motion_distance(motion, known, mine.centroid, mine.radius) <= kSame * tolerance_of(q);
+      });
+    });
+    tried_[q].insert(tried_[q].end(), fresh.begin(), fresh.end());
+    return fresh;
+  }
+
   // Makes all images of region q; their numbers.
-  std::vector<std::size_t> carry(std::size_t q, const std::vector<Motion>& motions) {
-    std::vector<Image> images(motions.size());
-    parallel_for(context_, motions.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) images[i] = look(q, motions[i]);
+  std::vector<std::size_t> carry(std::size_t q, const std::vector<Motion>& all) {
+    const std::vector<Coset> cosets = cosets_of(q, untried(q, all));
+    std::vector<Image> images(cosets.size());
+    parallel_for(context_, cosets.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!cosets[i].keeps) images[i] = look(q, cosets[i].motions.front());
+      }
     });
     std::vector<Motion> stabiliser;
-    for (std::size_t i = 0; i < motions.size(); ++i) {
+    std::vector<Motion> motions;
+    for (std::size_t i = 0; i < cosets.size(); ++i) {
       const Image& image = images[i];
       const bool itself =
-          image.same ? *image.same == q : !image.within && overlap(image.faces, regions_[q].faces) > 0.85;
-      if (itself) stabiliser.push_back(motions[i]);
+          cosets[i].keeps ||
+          (image.same ? *image.same == q : !image.within && overlap(image.faces, regions_[q].faces) > 0.85);
+      if (itself) stabiliser.insert(stabiliser.end(), cosets[i].motions.begin(), cosets[i].motions.end());
+      motions.push_back(cosets[i].motions.front());
     }
     settle(q, stabiliser);
     std::vector<std::size_t> result;
@@ -334,6 +382,7 @@ class Completion {
   const RunContext& context_;
   std::vector<FoundRegion>& regions_;
   std::vector<SurfaceMoments> moments_;
+  std::vector<std::vector<Motion>> tried_;  // by region
   std::mutex surfaces_mutex_;
   std::vector<std::unique_ptr<Surface>> surfaces_;  // of the regions, built when first needed
   Points centroids_;

@@ -49,21 +49,12 @@ double area_apart(const PreparedMesh& prepared, const std::vector<int>& inner, c
   return area;
 }
 
-// Few elements keep much by chance: a small subgroup of a large group must keep more to be worth naming.
-double share_by_chance(double share, const PointGroup& larger, const PointGroup& smaller) {
-  if (smaller.continuous()) return share;
-  const double index = larger.continuous() ? 16 : static_cast<double>(larger.order()) / smaller.order();
-  const double most = smaller.order() <= 2 ? 4 : (smaller.order() <= 4 ? 2 : 1);
-  return share * std::clamp(std::log2(index), 1.0, most);
-}
-
 // Whether what a far smaller group keeps beyond the outer region is no more than chance would give it. The whole, or
 // nearly, is never left out.
-bool mostly_within(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
-  constexpr double kByChance = 0.05;
+bool more_by_chance(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kNearlyWhole = 0.9;
-  const double share = share_by_chance(kByChance, outer.placement.group, inner.placement.group);
-  return share >= 2 * kByChance && inner.area < kNearlyWhole * prepared.area &&
+  const double share = share_of_few(outer.placement.group, inner.placement.group);
+  return share > 0 && inner.area < kNearlyWhole * prepared.area &&
          area_outside(prepared, inner.faces, outer.faces) <= share * inner.area;
 }
 
@@ -96,10 +87,23 @@ double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner,
   double area = 0;
   auto at = outer.begin();
   for (const int face : inner) {
-    at = std::lower_bound(at, outer.end(), face);
+    while (at != outer.end() && *at < face) ++at;
     if (at == outer.end() || *at != face) area += prepared.areas[face];
   }
   return area;
+}
+
+double share_by_chance(double share, const PointGroup& larger, const PointGroup& smaller) {
+  if (smaller.continuous()) return share;
+  const double index = larger.continuous() ? 16 : static_cast<double>(larger.order()) / smaller.order();
+  const double most = smaller.order() <= 2 ? 4 : (smaller.order() <= 4 ? 2 : 1);
+  return share * std::clamp(std::log2(index), 1.0, most);
+}
+
+double share_of_few(const PointGroup& larger, const PointGroup& smaller) {
+  constexpr double kByChance = 0.05;
+  const double share = share_by_chance(kByChance, larger, smaller);
+  return share >= 2 * kByChance ? share : 0;
 }
 
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
@@ -139,8 +143,8 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
     bool repeats = false;
     for (std::size_t j = 0; j < regions.size() && !repeats; ++j) {
       if (i == j) continue;
-      if (!covers(prepared, regions[j], mine) && !mostly_within(prepared, regions[j], mine)) continue;
       if (!contains_group(regions[j].placement, mine.placement, moments.centroid, moments.radius, reach)) continue;
+      if (!covers(prepared, regions[j], mine) && !more_by_chance(prepared, regions[j], mine)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
       repeats = (!mutual || j < i) && !looser(prepared, tolerance, regions[j], mine);
       if (repeats)

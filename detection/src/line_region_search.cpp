@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "orbifit/detection/axis_orders.h"
 #include "orbifit/detection/featureless.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
@@ -90,6 +91,7 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   if (!measure()) return note(stage, region, false, "too small");
   if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
+  if (hopeless(patch, start)) return note(stage, region, false, "not verified: a first look keeps too little");
   region.placement = refine(patch, start, context_);
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
   std::vector<int> again = grid_region(surface_, region.placement, context_);
@@ -127,6 +129,19 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
   note(stage, region, true, "verified");
   said_.push_back(said_of(region));
   found_.push_back(std::move(region));
+}
+
+// Whether a rough fit keeps so little of the patch that a better one will not do. Most candidates end here.
+bool LineRegionSearch::hopeless(const SurfacePatch& patch, const GroupPlacement& start) const {
+  constexpr int kLooks = 300;
+  constexpr double kSlack = 0.04;  // of the share: two standard deviations, and what the fit may gain
+  RefinementOptions rough;
+  rough.samples = 150;
+  rough.iterations = 6;
+  const GroupPlacement placement = refine(patch, start, context_, rough);
+  const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+  const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
+  return verify(patch, motions, tolerance, kLooks, kNearly - kSlack, context_).joint < kNearly - kSlack;
 }
 
 // Whether the faces lie in a few planes only: any two plates are mirror images, and so are two walls with floor and

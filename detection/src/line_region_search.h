@@ -36,6 +36,7 @@ class LineRegionSearch {
   };
   Said said_of(const FoundRegion& region) const;
   bool leaves(const GroupPlacement& placement, const Line& axis) const;
+  bool hopeless(const SurfacePatch& patch, const GroupPlacement& start) const;
   bool mere_plates(const std::vector<int>& faces) const;
   bool says_nothing_new(const FoundRegion& region) const;
   void note(std::string_view stage, const FoundRegion& region, bool kept, std::string_view reason) const;

@@ -135,11 +135,23 @@ class Search {
            orbifit::mere_border(prepared_, faces_of(parts), moments_of(parts), placement, options_.tolerance, context_);
   }
 
+  // Whether the other region holds the parts, or but for what a group of few elements keeps by chance.
+  bool holds_nearly(const Found& other, const GroupPlacement& placement, const std::vector<int>& parts,
+                    double area) const {
+    constexpr double kNearlyWhole = 0.9;
+    if (std::ranges::includes(other.parts, parts)) return true;
+    const double share = share_of_few(other.placement.group, placement.group);
+    if (share <= 0 || area > kNearlyWhole * prepared_.area) return false;
+    std::vector<int> outside;
+    std::ranges::set_difference(parts, other.parts, std::back_inserter(outside));
+    return area_of(outside) <= share * area;
+  }
+
   bool already_known(const GroupPlacement& placement, const std::vector<int>& parts) const {
     const SurfaceMoments mine = moments_of(parts);
     const double tolerance = options_.tolerance * std::min(1.0, 4 * mine.diagonal);
     return std::ranges::any_of(found_, [&](const Found& other) {
-      return std::ranges::includes(other.parts, parts) &&
+      return holds_nearly(other, placement, parts, mine.area) &&
              contains_group(other.placement, placement, mine.centroid, mine.radius, tolerance);
     });
   }

@@ -37,9 +37,30 @@ constexpr std::size_t kMostMasks = 12;
 
 }  // namespace
 
+GroupElements::GroupElements(const GroupPlacement& placement) : placement_(placement) {
+  if (placement.group.continuous()) return;
+  finite_ = judged_motions(placement.group, placement.frame, placement.centre);
+  finite_.emplace_back();
+}
+
+bool GroupElements::hold(const Motion& motion, const Vector3d& centre, double reach, double tolerance) const {
+  const PointGroup& group = placement_.group;
+  if (!group.continuous()) {
+    return std::ranges::any_of(finite_, [&](const Motion& element) {
+      return motion_distance(motion, element, centre, reach) <= 3 * tolerance;
+    });
+  }
+  const Vector3d axis = placement_.frame.col(2);
+  if (!belongs_to_continuous(motion.linear, group, axis, tolerance / std::max(reach, 1e-9))) return false;
+  // The element must also leave the group's fixed set in place.
+  Vector3d moved = motion(placement_.centre) - placement_.centre;
+  const bool slides = group.family == Family::Cinf || group.family == Family::Cinfv;
+  if (slides) moved -= axis * axis.dot(moved);
+  return moved.norm() <= 2 * tolerance;
+}
+
 bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, const Vector3d& centre, double reach,
                     double tolerance) {
-  const double angle = tolerance / std::max(reach, 1e-9);
   if (inner.group.continuous()) {
     if (!outer.group.continuous()) return false;
     if (rotates_all(inner.group)) {
@@ -48,21 +69,9 @@ bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, co
     }
   }
   if (!outer.group.continuous() && inner.group.order() > outer.group.order()) return false;
-  const std::vector<Motion> wanted = judged_motions(inner.group, inner.frame, inner.centre);
-  if (outer.group.continuous()) {
-    return std::ranges::all_of(wanted, [&](const Motion& motion) {
-      if (!belongs_to_continuous(motion.linear, outer.group, outer.frame.col(2), angle)) return false;
-      // The element must also leave the outer group's fixed set in place.
-      Vector3d moved = motion(outer.centre) - outer.centre;
-      const bool slides = outer.group.family == Family::Cinf || outer.group.family == Family::Cinfv;
-      if (slides) moved -= outer.frame.col(2) * outer.frame.col(2).dot(moved);
-      return moved.norm() <= 2 * tolerance;
-    });
-  }
-  const std::vector<Motion> have = judged_motions(outer.group, outer.frame, outer.centre);
-  return std::ranges::all_of(wanted, [&](const Motion& motion) {
-    return std::ranges::any_of(
-        have, [&](const Motion& other) { return motion_distance(motion, other, centre, reach) <= 3 * tolerance; });
+  const GroupElements elements_of_outer(outer);
+  return std::ranges::all_of(judged_motions(inner.group, inner.frame, inner.centre), [&](const Motion& motion) {
+    return elements_of_outer.hold(motion, centre, reach, tolerance);
   });
 }
 

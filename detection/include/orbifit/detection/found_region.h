@@ -26,17 +26,24 @@ double area_outside(const PreparedMesh& prepared, const std::vector<int>& inner,
 /// not counting small triangles along the border of `outer`.
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner);
 
+/// The share of what a subgroup keeps that may lie outside of a larger group's region without being news: few elements
+/// keep much by chance. \return `share`; of mirrors and half-turns beside large groups up to four times that, of groups
+/// of up to four elements up to twice
+double share_by_chance(double share, const PointGroup& larger, const PointGroup& smaller);
+
+/// The same for groups of few elements beside far larger ones, as a fraction of area; 0 for all others.
+double share_of_few(const PointGroup& larger, const PointGroup& smaller);
+
 /// Whether one of the others says what the region says: it holds all but `outside` of the region's area, and its group
-/// all elements of the region's, to twice the tolerance. Few elements keep much by chance: of mirrors and half-turns
-/// beside large groups up to four times as much may be outside, of groups of up to four elements twice as much.
+/// all elements of the region's, to twice the tolerance. More may be outside by chance, see share_by_chance().
 /// \param tolerance of the detector, a fraction of the diagonal \param outside a fraction of the region's area
 bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<FoundRegion>& others,
                              const FoundRegion& region, double tolerance, double outside);
 
 /// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the
-/// same of one another the earlier stays. A group of at most four elements that keeps but a little more than a large
-/// group says nothing new either, unless on nearly the whole mesh. A region of whole components stays beside one of
-/// pieces that fits far less well. \param tolerance of the detector, a fraction of the diagonal
+/// same of one another the earlier stays. A group that keeps but a little more than a far larger one, see
+/// share_of_few(), says nothing new either, unless on nearly the whole mesh. A region of whole components stays beside
+/// one of pieces that fits far less well. \param tolerance of the detector, a fraction of the diagonal
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation = nullptr);
 

@@ -60,7 +60,22 @@ class ComponentMover {
   std::vector<SurfaceSamples> samples_;                        // of each component, drawn when first needed
 };
 
-/// Whether every element of `inner` is one of `outer` on points within `reach` of `centre`, to `tolerance` (a length).
+/// The elements of a group, the identity among them, to ask whether motions are some of them.
+class GroupElements {
+ public:
+  explicit GroupElements(const GroupPlacement& placement);
+
+  /// Whether the motion is one of the elements: of a finite group to three times `tolerance` (a length) on points
+  /// within `reach` of `centre`; of a continuous one by angles of tolerance / reach, and to twice the tolerance where
+  /// the group's centre or axis goes.
+  bool hold(const Motion& motion, const Eigen::Vector3d& centre, double reach, double tolerance) const;
+
+ private:
+  GroupPlacement placement_;
+  std::vector<Motion> finite_;
+};
+
+/// Whether every element of `inner` is one of `outer`, see GroupElements.
 bool contains_group(const GroupPlacement& outer, const GroupPlacement& inner, const Eigen::Vector3d& centre,
                     double reach, double tolerance);
 
