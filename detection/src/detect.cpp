@@ -10,8 +10,11 @@
 #include <string>
 #include <utility>
 
+#include "orbifit/detection/annotate.h"
 #include "orbifit/detection/axis_regions.h"
 #include "orbifit/detection/candidates.h"
+#include "orbifit/detection/carry_back.h"
+#include "orbifit/detection/coarse_mesh.h"
 #include "orbifit/detection/completion.h"
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/denoise.h"
@@ -43,19 +46,22 @@ constexpr int kScreenDirections = 2500;
 constexpr int kScreenSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
-/// One run of the detector on a normalised mesh.
+/// One run of the detector on a prepared mesh.
 class Detector {
  public:
-  Detector(const Mesh& mesh, const DetectOptions& options, RunContext& context)
+  using Clock = std::chrono::steady_clock;
+
+  /// \param segments pieces of surface between creases; empty: those of the mesh
+  Detector(const PreparedMesh& prepared, Components segments, const DetectOptions& options, Clock::time_point start,
+           RunContext& context)
       : options_(options),
         context_(context),
-        start_(std::chrono::steady_clock::now()),
-        prepared_(prepare(mesh)),
+        start_(start),
+        prepared_(prepared),
+        segments_(std::move(segments)),
         screen_(hemisphere_directions(kScreenDirections)) {}
 
-  SymmetryAnnotation run(const Mesh& mesh) {
-    SymmetryAnnotation annotation = empty_annotation(mesh, options_.tolerance);
-    take_noise_out();
+  Findings run() {
     find_whole();
     if (prepared_.components.faces.size() > 1) {
       const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
@@ -73,29 +79,15 @@ class Detector {
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
-    write_regions(annotation);
-    annotation.patterns = std::move(patterns_);
-    context_.progress("regions", 1);
-    return annotation;
+    return {std::move(regions_), std::move(patterns_)};
   }
 
  private:
   // Whether the share of the time is spent. What was found is worth more with its images: they get the last part.
   bool late(double share = 0.8) const {
     if (options_.max_seconds <= 0) return false;
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    const std::chrono::duration<double> spent = Clock::now() - start_;
     return spent.count() > share * options_.max_seconds;
-  }
-
-  void take_noise_out() {
-    const double noise = noise_of(prepared_);
-    if (noise < kLeastNoise) return;
-    context_.progress("noise", 0);
-    denoise(prepared_, noise, context_);
-    if (options_.explanation != nullptr) {
-      options_.explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
-                                             "taken out of the vertices before anything else"});
-    }
   }
 
   void find_whole() {
@@ -129,7 +121,7 @@ class Detector {
   void find_in_segments() {
     if (late()) return;
     PreparedMesh partition = prepared_;
-    partition.components = smooth_segments(prepared_);
+    partition.components = segments_.faces.empty() ? smooth_segments(prepared_) : std::move(segments_);
     const std::size_t count = partition.components.faces.size();
     if (count > kMostSegments) return;
     // Of one surface what lines say is asked first: pieces have little to add to it.
@@ -250,50 +242,43 @@ class Detector {
     }
   }
 
-  void write_regions(SymmetryAnnotation& annotation) {
-    std::ranges::stable_sort(regions_, std::greater<>(), &FoundRegion::area);
-    for (const FoundRegion& found : regions_) {
-      const GroupPlacement& placement = found.placement;
-      Region region = make_region(placement.group, prepared_.input_of_normalised(placement.centre), placement.frame,
-                                  found.faces, found.name);
-      const SurfacePatch patch = make_patch(prepared_, found.faces, 1000, options_.tolerance, context_, "residual");
-      region.residual =
-          measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context_);
-      annotation.regions.push_back(std::move(region));
-    }
-    drop_coincidences(annotation.regions);
-    for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
-    set_parents(annotation.regions);
-  }
-
-  void drop_coincidences(std::vector<Region>& regions) const {
-    const std::vector<Region> all = regions;
-    std::erase_if(regions, [&](const Region& region) {
-      const double area = area_of(prepared_, region.faces);
-      const bool coincidence = !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
-        return around.faces.size() > region.faces.size() &&
-               by_coincidence(area, region.residual.max, area_of(prepared_, around.faces), around.residual.max,
-                              options_.tolerance) &&
-               std::ranges::includes(around.faces, region.faces);
-      });
-      if (coincidence && options_.explanation != nullptr) {
-        options_.explanation->notes.push_back({"coincidences", region.group.symbol() + " on " + region.name, false,
-                                               "far less exact than a region around it"});
-      }
-      return coincidence;
-    });
-  }
-
   const DetectOptions& options_;
   RunContext& context_;
-  std::chrono::steady_clock::time_point start_;
-  PreparedMesh prepared_;
+  Clock::time_point start_;
+  const PreparedMesh& prepared_;
+  Components segments_;
   DirectionSet screen_;
   std::shared_ptr<const SurfaceIndex> whole_index_;
   std::vector<FoundRegion> regions_;
   std::vector<Pattern> patterns_;
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
 };
+
+void take_noise_out(PreparedMesh& prepared, Explanation* explanation, const RunContext& context) {
+  const double noise = noise_of(prepared);
+  if (noise < kLeastNoise) return;
+  context.progress("noise", 0);
+  denoise(prepared, noise, context);
+  if (explanation != nullptr) {
+    explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
+                                  "taken out of the vertices before anything else"});
+  }
+}
+
+// A coarse mesh to detect on in place of a fine one; nothing where the mesh is not as fine as that.
+std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, const DetectOptions& options,
+                                       const RunContext& context) {
+  const Eigen::Index count = fine.mesh.faces.rows();
+  if (options.stand_in_from == 0 || count < options.stand_in_from) return std::nullopt;
+  context.progress("coarse mesh", 0);
+  std::optional<CoarseMesh> coarse = coarse_mesh(fine, {options.tolerance}, context);
+  if (coarse && options.explanation != nullptr) {
+    options.explanation->notes.push_back(
+        {"coarse mesh", std::to_string(coarse->mesh.faces.rows()) + " faces for " + std::to_string(count), true,
+         "the mesh is finer than the tolerance asks for"});
+  }
+  return coarse;
+}
 
 }  // namespace
 
@@ -304,13 +289,31 @@ void DetectOptions::validate() const {
   if (!(tolerance >= 1e-6 && tolerance <= 0.1))
     refuse("tolerance", std::to_string(tolerance), "1e-6 <= tolerance <= 0.1");
   if (samples < 100) refuse("samples", std::to_string(samples), "samples >= 100");
+  if (stand_in_from < 0) refuse("stand_in_from", std::to_string(stand_in_from), "stand_in_from >= 0");
   if (!(max_seconds >= 0)) refuse("max_seconds", std::to_string(max_seconds), "max_seconds >= 0");
 }
 
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
   options.validate();
-  Detector detector(mesh, options, context);
-  return detector.run(mesh);
+  const auto start = Detector::Clock::now();
+  PreparedMesh prepared = prepare(mesh);
+  SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
+  take_noise_out(prepared, options.explanation, context);
+  Findings found;
+  if (const std::optional<CoarseMesh> coarse = stand_in_for(prepared, options, context)) {
+    const PreparedMesh stand_in = prepare(coarse->mesh);
+    // Where creases end within the surface is known to the fine mesh only.
+    Components segments = carried_pieces(smooth_segments(prepared), prepared, *coarse);
+    found = Detector(stand_in, std::move(segments), options, start, context).run();
+    found = carried_back(prepared, *coarse, stand_in, std::move(found),
+                         {options.tolerance, options.samples, options.explanation}, context);
+  } else {
+    found = Detector(prepared, {}, options, start, context).run();
+  }
+  annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
+  annotation.patterns = std::move(found.patterns);
+  context.progress("regions", 1);
+  return annotation;
 }
 
 }  // namespace orbifit
