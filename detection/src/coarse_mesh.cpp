@@ -42,7 +42,7 @@ class Coarsening {
       : prepared_(prepared),
         context_(context),
         sites_(prepared),
-        clustering_(prepared, sites_, options.tolerance),
+        clustering_(prepared, sites_, options.tolerance, options.noise),
         most_(options.most_faces * static_cast<double>(prepared.mesh.faces.rows())),
         clusters_(clustering_.clusters(context)),
         as_it_is_(prepared.components.faces.size(), 0) {}

@@ -254,24 +254,26 @@ class Detector {
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
 };
 
-void take_noise_out(PreparedMesh& prepared, Explanation* explanation, const RunContext& context) {
+// How much noise was in the vertices, in diagonals; 0 where there was too little to matter.
+double take_noise_out(PreparedMesh& prepared, Explanation* explanation, const RunContext& context) {
   const double noise = noise_of(prepared);
-  if (noise < kLeastNoise) return;
+  if (noise < kLeastNoise) return 0;
   context.progress("noise", 0);
   denoise(prepared, noise, context);
   if (explanation != nullptr) {
     explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
                                   "taken out of the vertices before anything else"});
   }
+  return noise;
 }
 
 // A coarse mesh to detect on in place of a fine one; nothing where the mesh is not as fine as that.
-std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, const DetectOptions& options,
+std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, double noise, const DetectOptions& options,
                                        const RunContext& context) {
   const Eigen::Index count = fine.mesh.faces.rows();
   if (options.stand_in_from == 0 || count < options.stand_in_from) return std::nullopt;
   context.progress("coarse mesh", 0);
-  std::optional<CoarseMesh> coarse = coarse_mesh(fine, {options.tolerance}, context);
+  std::optional<CoarseMesh> coarse = coarse_mesh(fine, {options.tolerance, noise}, context);
   if (coarse && options.explanation != nullptr) {
     options.explanation->notes.push_back(
         {"coarse mesh", std::to_string(coarse->mesh.faces.rows()) + " faces for " + std::to_string(count), true,
@@ -298,9 +300,9 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   const auto start = Detector::Clock::now();
   PreparedMesh prepared = prepare(mesh);
   SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
-  take_noise_out(prepared, options.explanation, context);
+  const double noise = take_noise_out(prepared, options.explanation, context);
   Findings found;
-  if (const std::optional<CoarseMesh> coarse = stand_in_for(prepared, options, context)) {
+  if (const std::optional<CoarseMesh> coarse = stand_in_for(prepared, noise, options, context)) {
     const PreparedMesh stand_in = prepare(coarse->mesh);
     // Where creases end within the surface is known to the fine mesh only.
     Components segments = carried_pieces(smooth_segments(prepared), prepared, *coarse);

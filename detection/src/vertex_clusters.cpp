@@ -19,12 +19,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kCoarsest = 2;      // size of a cell of level 0, tolerances of the component
-constexpr double kSmallest = 1e-12;  // cell, so that its numbers do not overflow
-constexpr int kLevels = 5;           // beyond, each site is for itself
-constexpr double kFlat = 0.1;        // root mean square distance from the planes, tolerances of the component
-constexpr double kOneSided = 0.35;   // length of the mean normal: less, and both sides of something are in one cell
-constexpr double kSmooth = 0.97;     // the same where there is no crease: none must arise
+constexpr double kCoarsest = 2;       // size of a cell of level 0, tolerances of the component
+constexpr double kSmallest = 1e-12;   // cell, so that its numbers do not overflow
+constexpr int kLevels = 5;            // beyond, each site is for itself
+constexpr double kFlat = 0.1;         // root mean square distance from the planes, tolerances of the component
+constexpr double kLeftOfNoise = 0.5;  // of its standard deviation, after it was taken out
+constexpr double kOneSided = 0.35;    // length of the mean normal: less, and both sides of something are in one cell
+constexpr double kSmooth = 0.97;      // the same where there is no crease: none must arise
 constexpr double kCreaseCosine = 0.90630778703665;  // 25 degrees
 constexpr double kDetermined = 1e-3;                // of the largest eigenvalue: below, planes leave a direction open
 constexpr double kFarthest = 0.8;                   // of a place from the mean of its sites, in cells
@@ -92,8 +93,12 @@ struct VertexClustering::Quadric {
   }
 };
 
-VertexClustering::VertexClustering(const PreparedMesh& prepared, const Sites& sites, double tolerance)
-    : prepared_(prepared), sites_(sites), on_rim_(sites.group.size(), 0), at_crease_(sites.group.size(), 0) {
+VertexClustering::VertexClustering(const PreparedMesh& prepared, const Sites& sites, double tolerance, double noise)
+    : prepared_(prepared),
+      sites_(sites),
+      rough_(kLeftOfNoise * noise),
+      on_rim_(sites.group.size(), 0),
+      at_crease_(sites.group.size(), 0) {
   std::vector<Eigen::AlignedBox3d> boxes(prepared.components.faces.size());
   for (std::size_t s = 0; s < sites.group.size(); ++s) {
     boxes[static_cast<std::size_t>(sites.component[s])].extend(place_of(static_cast<int>(s)));
@@ -232,7 +237,7 @@ void VertexClustering::settle(std::vector<int> sites, int level, std::vector<Ver
   const double aligned = std::ranges::any_of(sites, [&](int s) { return at_crease_[static_cast<std::size_t>(s)] != 0; })
                              ? kOneSided
                              : kSmooth;
-  if (quadric.normals.norm() >= aligned * quadric.area && quadric.distance(place) <= kFlat * tolerance) {
+  if (quadric.normals.norm() >= aligned * quadric.area && quadric.distance(place) <= kFlat * tolerance + rough_) {
     settled.push_back({std::move(sites), level, place});
     return;
   }

@@ -35,7 +35,8 @@ struct VertexCluster {
 class VertexClustering {
  public:
   /// \param prepared, sites kept by reference \param tolerance of the detector, a fraction of the diagonal
-  VertexClustering(const PreparedMesh& prepared, const Sites& sites, double tolerance);
+  /// \param noise standard deviation of what noise was in the vertices, in diagonals
+  VertexClustering(const PreparedMesh& prepared, const Sites& sites, double tolerance, double noise);
 
   /// Costs O(F).
   std::vector<VertexCluster> clusters(const RunContext& context) const;
@@ -61,6 +62,7 @@ class VertexClustering {
 
   const PreparedMesh& prepared_;
   const Sites& sites_;
+  double rough_;                          // how far planes may be off for what is left of noise
   std::vector<double> tolerances_;        // by component
   std::vector<std::array<int, 2>> rims_;  // edges of one face only, as ascending sites; sorted
   std::vector<char> on_rim_;              // by site

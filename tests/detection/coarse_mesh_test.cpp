@@ -159,7 +159,7 @@ TEST(CoarseMesh, LeavesASoupAlone) {
   Mesh soup = test::joined(triangles);
   const PreparedMesh prepared = prepare(soup);
   EXPECT_FALSE(coarse_mesh(prepared, {kWide}, RunContext{}).has_value());
-  const std::optional<CoarseMesh> same = coarse_mesh(prepared, {kWide, 1.0}, RunContext{});
+  const std::optional<CoarseMesh> same = coarse_mesh(prepared, {kWide, 0, 1.0}, RunContext{});
   ASSERT_TRUE(same.has_value());
   EXPECT_EQ(same->mesh.faces.rows(), soup.faces.rows());
 }

@@ -18,6 +18,7 @@ struct CoarseMesh {
 
 struct CoarseMeshOptions {
   double tolerance = 0.005;  ///< of the detector, a fraction of the diagonal
+  double noise = 0;          ///< standard deviation that was in the vertices, in diagonals; some of it is left
   double most_faces = 0.5;   ///< of the fine mesh's: with more nothing is gained
 };
 

@@ -27,7 +27,9 @@ struct DetectOptions {
 /// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of
 /// its connected components and sets of congruent components, and the congruences among components as patterns. Every
 /// element of a returned group was verified against the surface. Sorted by area, largest first; parents set. The result
-/// is the same for any number of threads. \throw InputError when the mesh has no area
+/// is the same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance
+/// asks for; the search itself depends on how much shape there is at the size of the tolerance. \throw InputError when
+/// the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 
 }  // namespace orbifit
