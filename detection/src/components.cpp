@@ -21,6 +21,7 @@ using Eigen::Vector3d;
 constexpr double kNormalCosine = 0.8;
 constexpr double kCongruentShare = 0.96;
 constexpr int kRepresentativeSamples = 400;
+constexpr double kReach = 0.25;  // of the fit at its start, radii
 constexpr int kTurns = 48;       // about one free axis
 constexpr int kRotations = 400;  // where moments leave all axes open
 
@@ -98,15 +99,32 @@ double mean_distance(const SurfacePatch& patch, const SurfaceIndex& target, cons
   return sum / static_cast<double>(std::max<Eigen::Index>(1, chosen));
 }
 
+// The motion that carries the patch onto a copy whose faces name their corners in the same order; nothing where they do
+// not.
+std::optional<Motion> motion_by_order(const SurfacePatch& patch, const PreparedMesh& prepared,
+                                      const std::vector<int>& part) {
+  if (part.size() != patch.faces.size()) return std::nullopt;
+  const Points from = corners_in_order(prepared, patch.faces);
+  const Points to = corners_in_order(prepared, part);
+  for (const int determinant : {1, -1}) {
+    const Motion motion = best_motion(from, to, determinant);
+    const Points moved = ((from * motion.linear.transpose()).rowwise() + motion.translation.transpose()) - to;
+    if (moved.rowwise().norm().maxCoeff() < 0.2 * patch.tolerance) return motion;
+  }
+  return std::nullopt;
+}
+
 // Point-to-plane ICP of all six degrees of freedom; the determinant stays as it is.
-Motion fit_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const SurfaceIndex& target, Motion motion) {
+// \param reach at the start, of the patch's radius
+Motion fit_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const SurfaceIndex& target, Motion motion,
+                  double reach) {
   const Eigen::Index total = patch.samples.points.rows();
   const Eigen::Index count = std::min<Eigen::Index>(total, 150);
   const double size = std::max(patch.moments.radius, 1e-12);
   constexpr int kIterations = 14;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const double width =
-        iteration < 8 ? std::max(2 * patch.tolerance, 0.25 * size * std::pow(0.6, iteration)) : 2 * patch.tolerance;
+        iteration < 8 ? std::max(2 * patch.tolerance, reach * size * std::pow(0.6, iteration)) : 2 * patch.tolerance;
     const Vector3d centre = motion(patch.moments.centroid);
     Matrix6d matrix = Matrix6d::Zero();
     Vector6d right = Vector6d::Zero();
@@ -190,16 +208,8 @@ std::optional<Motion> align(const SurfacePatch& patch, const PreparedMesh& prepa
   const auto verified = [&](const Motion& motion) {
     return carried_share(patch, target, motion, patch.tolerance, 200) >= kCongruentShare;
   };
-  if (part.size() == patch.faces.size()) {
-    // Copies made by a modelling program keep the order of their faces: try that correspondence first.
-    const Points from = corners_in_order(prepared, patch.faces);
-    const Points to = corners_in_order(prepared, part);
-    for (const int determinant : {1, -1}) {
-      const Motion motion = best_motion(from, to, determinant);
-      const Points moved = ((from * motion.linear.transpose()).rowwise() + motion.translation.transpose()) - to;
-      if (moved.rowwise().norm().maxCoeff() < 0.2 * patch.tolerance) return motion;
-    }
-  }
+  // Copies made by a modelling program keep the order of their faces: try that correspondence first.
+  if (const std::optional<Motion> motion = motion_by_order(patch, prepared, part)) return motion;
   for (const int determinant : {1, -1}) {
     std::vector<Start> starts;
     std::vector<Matrix3d> turns = starting_turns(patch.moments, part_moments, patch.tolerance);
@@ -211,7 +221,7 @@ std::optional<Motion> align(const SurfacePatch& patch, const PreparedMesh& prepa
     std::ranges::sort(starts, {}, [](const Start& s) { return std::pair(s.distance, s.number); });
     if (starts.size() > 4) starts.resize(4);
     for (const Start& start : starts) {
-      const Motion motion = fit_motion(patch, prepared, target, start.motion);
+      const Motion motion = fit_motion(patch, prepared, target, start.motion, kReach);
       if (!verified(motion)) continue;
       // Along what slides on itself, such as a round bar, the fit leaves it open; the centroid does not.
       Motion centred = motion;
@@ -221,6 +231,14 @@ std::optional<Motion> align(const SurfacePatch& patch, const PreparedMesh& prepa
     }
   }
   return std::nullopt;
+}
+
+Motion refined_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const std::vector<int>& part,
+                      const Motion& start) {
+  const std::optional<Motion> motion = motion_by_order(patch, prepared, part);
+  const double off = motion ? motion_distance(*motion, start, patch.moments.centroid, patch.moments.radius) : 1;
+  if (off <= patch.tolerance) return *motion;
+  return fit_motion(patch, prepared, SurfaceIndex(prepared.mesh, part), start, 0);
 }
 
 ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance, double least_share,

@@ -10,8 +10,11 @@
 #include <string>
 #include <utility>
 
+#include "orbifit/detection/annotate.h"
 #include "orbifit/detection/axis_regions.h"
 #include "orbifit/detection/candidates.h"
+#include "orbifit/detection/carry_back.h"
+#include "orbifit/detection/coarse_mesh.h"
 #include "orbifit/detection/completion.h"
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/denoise.h"
@@ -45,19 +48,22 @@ constexpr int kScreenDirections = 2500;
 constexpr int kScreenSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
-/// One run of the detector on a normalised mesh.
+/// One run of the detector on a prepared mesh.
 class Detector {
  public:
-  Detector(const Mesh& mesh, const DetectOptions& options, RunContext& context)
+  using Clock = std::chrono::steady_clock;
+
+  /// \param segments pieces of surface between creases; empty: those of the mesh
+  Detector(const PreparedMesh& prepared, Components segments, const DetectOptions& options, Clock::time_point start,
+           RunContext& context)
       : options_(options),
         context_(context),
-        start_(std::chrono::steady_clock::now()),
-        prepared_(prepare(mesh)),
+        start_(start),
+        prepared_(prepared),
+        segments_(std::move(segments)),
         screen_(hemisphere_directions(kScreenDirections)) {}
 
-  SymmetryAnnotation run(const Mesh& mesh) {
-    SymmetryAnnotation annotation = empty_annotation(mesh, options_.tolerance);
-    take_noise_out();
+  Findings run() {
     find_whole();
     if (prepared_.components.faces.size() > 1) {
       const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
@@ -75,44 +81,15 @@ class Detector {
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
-    drop_made_by_smoothing();
-    write_regions(annotation);
-    annotation.patterns = std::move(patterns_);
-    context_.progress("regions", 1);
-    return annotation;
+    return {std::move(regions_), std::move(patterns_)};
   }
 
  private:
   // Whether the share of the time is spent. What was found is worth more with its images: they get the last part.
   bool late(double share = 0.8) const {
     if (options_.max_seconds <= 0) return false;
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    const std::chrono::duration<double> spent = Clock::now() - start_;
     return spent.count() > share * options_.max_seconds;
-  }
-
-  void take_noise_out() {
-    const double noise = noise_of(prepared_);
-    if (noise < kLeastNoise) return;
-    context_.progress("noise", 0);
-    given_ = prepared_;
-    denoise(prepared_, noise, context_);
-    noise_check_.emplace(*given_, prepared_, noise, options_.tolerance, context_);
-    if (options_.explanation != nullptr) {
-      options_.explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
-                                             "taken out of the vertices before anything else"});
-    }
-  }
-
-  void drop_made_by_smoothing() {
-    if (!noise_check_) return;
-    std::erase_if(regions_, [&](const FoundRegion& region) {
-      const bool holds = noise_check_->holds(region);
-      if (!holds && options_.explanation != nullptr) {
-        options_.explanation->notes.push_back({"noise", region.placement.group.symbol() + " on " + region.name, false,
-                                               "does not hold on the mesh before its noise was taken out"});
-      }
-      return !holds;
-    });
   }
 
   void find_whole() {
@@ -146,7 +123,7 @@ class Detector {
   void find_in_segments() {
     if (late()) return;
     PreparedMesh partition = prepared_;
-    partition.components = smooth_segments(prepared_);
+    partition.components = segments_.faces.empty() ? smooth_segments(prepared_) : std::move(segments_);
     const std::size_t count = partition.components.faces.size();
     if (count > kMostSegments) return;
     // Of one surface what lines say is asked first: pieces have little to add to it.
@@ -269,52 +246,53 @@ class Detector {
     }
   }
 
-  void write_regions(SymmetryAnnotation& annotation) {
-    std::ranges::stable_sort(regions_, std::greater<>(), &FoundRegion::area);
-    for (const FoundRegion& found : regions_) {
-      const GroupPlacement& placement = found.placement;
-      Region region = make_region(placement.group, prepared_.input_of_normalised(placement.centre), placement.frame,
-                                  found.faces, found.name);
-      const SurfacePatch patch = make_patch(prepared_, found.faces, 1000, options_.tolerance, context_, "residual");
-      region.residual =
-          measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context_);
-      annotation.regions.push_back(std::move(region));
-    }
-    drop_coincidences(annotation.regions);
-    for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
-    set_parents(annotation.regions);
-  }
-
-  void drop_coincidences(std::vector<Region>& regions) const {
-    const std::vector<Region> all = regions;
-    std::erase_if(regions, [&](const Region& region) {
-      const double area = area_of(prepared_, region.faces);
-      const bool coincidence = !region.group.continuous() && std::ranges::any_of(all, [&](const Region& around) {
-        return around.faces.size() > region.faces.size() &&
-               by_coincidence(area, region.residual.max, area_of(prepared_, around.faces), around.residual.max,
-                              options_.tolerance) &&
-               std::ranges::includes(around.faces, region.faces);
-      });
-      if (coincidence && options_.explanation != nullptr) {
-        options_.explanation->notes.push_back({"coincidences", region.group.symbol() + " on " + region.name, false,
-                                               "far less exact than a region around it"});
-      }
-      return coincidence;
-    });
-  }
-
   const DetectOptions& options_;
   RunContext& context_;
-  std::chrono::steady_clock::time_point start_;
-  PreparedMesh prepared_;
-  std::optional<PreparedMesh> given_;  // before its noise was taken out
-  std::optional<NoiseCheck> noise_check_;
+  Clock::time_point start_;
+  const PreparedMesh& prepared_;
+  Components segments_;
   DirectionSet screen_;
   std::shared_ptr<const SurfaceIndex> whole_index_;
   std::vector<FoundRegion> regions_;
   std::vector<Pattern> patterns_;
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
 };
+
+void take_noise_out(PreparedMesh& prepared, double noise, Explanation* explanation, const RunContext& context) {
+  context.progress("noise", 0);
+  denoise(prepared, noise, context);
+  if (explanation != nullptr) {
+    explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
+                                  "taken out of the vertices before anything else"});
+  }
+}
+
+// Regions that only the smoothing made symmetric go.
+void drop_made_by_smoothing(const NoiseCheck& check, Explanation* explanation, std::vector<FoundRegion>& regions) {
+  std::erase_if(regions, [&](const FoundRegion& region) {
+    const bool holds = check.holds(region);
+    if (!holds && explanation != nullptr) {
+      explanation->notes.push_back({"noise", region.placement.group.symbol() + " on " + region.name, false,
+                                    "does not hold on the mesh before its noise was taken out"});
+    }
+    return !holds;
+  });
+}
+
+// A coarse mesh to detect on in place of a fine one; nothing where the mesh is not as fine as that.
+std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, double noise, const DetectOptions& options,
+                                       const RunContext& context) {
+  const Eigen::Index count = fine.mesh.faces.rows();
+  if (options.stand_in_from == 0 || count < options.stand_in_from) return std::nullopt;
+  context.progress("coarse mesh", 0);
+  std::optional<CoarseMesh> coarse = coarse_mesh(fine, {options.tolerance, noise}, context);
+  if (coarse && options.explanation != nullptr) {
+    options.explanation->notes.push_back(
+        {"coarse mesh", std::to_string(coarse->mesh.faces.rows()) + " faces for " + std::to_string(count), true,
+         "the mesh is finer than the tolerance asks for"});
+  }
+  return coarse;
+}
 
 }  // namespace
 
@@ -325,13 +303,42 @@ void DetectOptions::validate() const {
   if (!(tolerance >= 1e-6 && tolerance <= 0.1))
     refuse("tolerance", std::to_string(tolerance), "1e-6 <= tolerance <= 0.1");
   if (samples < 100) refuse("samples", std::to_string(samples), "samples >= 100");
+  if (stand_in_from < 0) refuse("stand_in_from", std::to_string(stand_in_from), "stand_in_from >= 0");
   if (!(max_seconds >= 0)) refuse("max_seconds", std::to_string(max_seconds), "max_seconds >= 0");
 }
 
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
   options.validate();
-  Detector detector(mesh, options, context);
-  return detector.run(mesh);
+  const auto start = Detector::Clock::now();
+  PreparedMesh prepared = prepare(mesh);
+  SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
+  std::optional<PreparedMesh> given;  // where there is noise: before it was taken out
+  double noise = noise_of(prepared);
+  if (noise >= kLeastNoise) {
+    given = prepared;
+    take_noise_out(prepared, noise, options.explanation, context);
+  } else {
+    noise = 0;
+  }
+  Findings found;
+  if (const std::optional<CoarseMesh> coarse = stand_in_for(prepared, noise, options, context)) {
+    const PreparedMesh stand_in = prepare(coarse->mesh);
+    // Where creases end within the surface is known to the fine mesh only.
+    Components segments = carried_pieces(smooth_segments(prepared), prepared, *coarse);
+    found = Detector(stand_in, std::move(segments), options, start, context).run();
+    found = carried_back(prepared, *coarse, stand_in, std::move(found),
+                         {options.tolerance, options.samples, options.explanation}, context);
+  } else {
+    found = Detector(prepared, {}, options, start, context).run();
+  }
+  if (given) {
+    drop_made_by_smoothing(NoiseCheck(*given, prepared, noise, options.tolerance, context), options.explanation,
+                           found.regions);
+  }
+  annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
+  annotation.patterns = std::move(found.patterns);
+  context.progress("regions", 1);
+  return annotation;
 }
 
 }  // namespace orbifit

@@ -120,7 +120,7 @@ class Search {
       const SurfaceMoments& other = parts_.survey.moments[c];
       if (used_[c] != 0 || std::abs(other.area - patch.moments.area) > kAlike * patch.moments.area) continue;
       if ((other.centroid - motion(patch.moments.centroid)).norm() > 3 * options_.tolerance) continue;
-      if (copy_on(patch, motion, prepared_.components.faces[c]).kept >= kKept) return static_cast<int>(c);
+      if (fit_of_copy(patch, motion, prepared_.components.faces[c]).kept >= kKeptOfCopy) return static_cast<int>(c);
     }
     return -1;
   }
@@ -224,8 +224,8 @@ class Search {
     for (std::size_t i = 0; i < instances.parts.size(); ++i) {
       const Motion& motion = instances.arrangement.motions[i];
       const std::vector<int> faces = faces_of(instances.parts[i]);
-      const Copy copy = copy_on(patch, motion, faces);
-      if (copy.kept < kKept) continue;
+      const CopyFit copy = fit_of_copy(patch, motion, faces);
+      if (copy.kept < kKeptOfCopy) continue;
       square += copy.square;
       count += static_cast<int>(patch.samples.points.rows());
       pattern.residual.max = std::max(pattern.residual.max, copy.largest);
@@ -237,25 +237,6 @@ class Search {
     if (enough) found_.push_back(std::move(pattern));
   }
 
-  struct Copy {
-    double kept = 0;  // share of the samples within the tolerance
-    double square = 0, largest = 0;
-  };
-
-  // How the motion brings the patch's samples onto the faces.
-  Copy copy_on(const SurfacePatch& patch, const Motion& motion, const std::vector<int>& faces) const {
-    const SurfaceIndex surface(prepared_.mesh, faces);
-    Copy copy;
-    for (Eigen::Index s = 0; s < patch.samples.points.rows(); ++s) {
-      const double distance = surface.nearest(motion(patch.samples.points.row(s))).distance;
-      if (distance <= patch.tolerance) copy.kept += 1;
-      copy.square += distance * distance;
-      copy.largest = std::max(copy.largest, distance);
-    }
-    copy.kept /= static_cast<double>(std::max<Eigen::Index>(1, patch.samples.points.rows()));
-    return copy;
-  }
-
   void note(const Instances& instances, bool kept) const {
     if (options_.explanation == nullptr) return;
     options_.explanation->notes.push_back({options_.pieces ? "segments: patterns" : "patterns",
@@ -265,7 +246,6 @@ class Search {
                                            kept, kept ? "no region relates them" : "not verified"});
   }
 
-  static constexpr double kKept = 0.9;      // of the samples of a copy
   static constexpr double kRelated = 0.02;  // of the area outside of the region
 
   const PreparedMesh& prepared_;

@@ -17,6 +17,19 @@ namespace orbifit {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+CopyFit fit_of_copy(const SurfacePatch& patch, const Motion& motion, const std::vector<int>& faces) {
+  const SurfaceIndex surface(patch.prepared->mesh, faces);
+  CopyFit copy;
+  for (Eigen::Index s = 0; s < patch.samples.points.rows(); ++s) {
+    const double distance = surface.nearest(motion(patch.samples.points.row(s))).distance;
+    if (distance <= patch.tolerance) copy.kept += 1;
+    copy.square += distance * distance;
+    copy.largest = std::max(copy.largest, distance);
+  }
+  copy.kept /= static_cast<double>(std::max<Eigen::Index>(1, patch.samples.points.rows()));
+  return copy;
+}
+
 Motion straightened(const Motion& motion, const GroupPlacement& own) {
   const auto turn_of = [](const Motion& m) { return (m.linear - Matrix3d::Identity()).norm(); };
   if (own.group.family == PointGroup::Family::K || own.group.family == PointGroup::Family::Kh) {

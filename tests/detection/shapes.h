@@ -78,6 +78,30 @@ inline Mesh joined(const std::vector<Mesh>& parts) {
   return mesh;
 }
 
+// Each triangle cut into four, so many times; vertices at one place are not one.
+inline Mesh subdivided(Mesh mesh, int times) {
+  for (; times > 0; --times) {
+    Mesh finer;
+    finer.vertices.resize(6 * mesh.faces.rows(), 3);
+    finer.faces.resize(4 * mesh.faces.rows(), 3);
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const auto a = mesh.vertices.row(mesh.faces(f, k));
+        const auto b = mesh.vertices.row(mesh.faces(f, (k + 1) % 3));
+        finer.vertices.row(6 * f + k) = a;
+        finer.vertices.row(6 * f + 3 + k) = (a + b) / 2;
+      }
+      const int first = 6 * static_cast<int>(f);
+      finer.faces.row(4 * f) << first, first + 3, first + 5;
+      finer.faces.row(4 * f + 1) << first + 3, first + 1, first + 4;
+      finer.faces.row(4 * f + 2) << first + 5, first + 4, first + 2;
+      finer.faces.row(4 * f + 3) << first + 3, first + 4, first + 5;
+    }
+    mesh = finer;
+  }
+  return mesh;
+}
+
 inline std::vector<int> all_faces(const Mesh& mesh) {
   std::vector<int> faces(static_cast<std::size_t>(mesh.faces.rows()));
   std::iota(faces.begin(), faces.end(), 0);

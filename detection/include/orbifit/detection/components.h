@@ -30,4 +30,9 @@ ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance
 std::optional<Motion> align(const SurfacePatch& patch, const PreparedMesh& prepared, const std::vector<int>& part,
                             const SurfaceMoments& part_moments, const RunContext& context);
 
+/// Moves a motion that all but carries the patch onto `part` to where it does: where the two name their corners in the
+/// same order, to rounding; else by point-to-plane ICP within two tolerances.
+Motion refined_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const std::vector<int>& part,
+                      const Motion& start);
+
 }  // namespace orbifit

@@ -12,6 +12,9 @@ struct DetectOptions {
   double tolerance = 0.005;  // 1e-6 <= tolerance <= 0.1
   /// Surface samples on which a whole mesh is verified; parts get a share by area.
   int samples = 4000;  // >= 100
+  /// Meshes of at least as many faces are looked at by a coarser stand-in, where the tolerance allows one of at most
+  /// half the faces, and what is found there is carried back, refined and verified on the mesh itself; 0: none are.
+  int stand_in_from = 60000;  // >= 0
   /// Stop after this many seconds and return what is verified by then.
   double max_seconds = 0;  // >= 0; 0: no limit
   /// Where to note what each stage kept and dropped; null: nowhere.
@@ -24,7 +27,9 @@ struct DetectOptions {
 /// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of
 /// its connected components and sets of congruent components, and the congruences among components as patterns. Every
 /// element of a returned group was verified against the surface. Sorted by area, largest first; parents set. The result
-/// is the same for any number of threads. \throw InputError when the mesh has no area
+/// is the same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance
+/// asks for; the search itself depends on how much shape there is at the size of the tolerance. \throw InputError when
+/// the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 
 }  // namespace orbifit

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "orbifit/detection/explanation.h"
 #include "orbifit/detection/refinement.h"
 #include "orbifit/detection/surface_patch.h"
+#include "orbifit/model/annotation.h"
 #include "orbifit/model/run_context.h"
 
 namespace orbifit {
@@ -16,7 +18,8 @@ struct FoundRegion {
   std::vector<int> faces;  ///< ascending
   double area = 0;         ///< of the faces that count
   std::string name;
-  bool of_pieces = false;  ///< made of pieces of surface, not of whole components
+  bool of_pieces = false;                 ///< made of pieces of surface, not of whole components
+  std::optional<Residual> residual = {};  ///< where it was measured
 };
 
 /// Area of the faces of `inner` that are not in `outer`; both ascending.

@@ -24,6 +24,14 @@ struct Arrangement {
 Arrangement arrange(const std::vector<Motion>& motions, const GroupPlacement* own, const Eigen::Vector3d& centroid,
                     double reach, double tolerance);
 
+/// How a motion brings a patch's samples onto some faces: distances in the frame of the prepared mesh.
+struct CopyFit {
+  double kept = 0;  ///< share of the samples within the patch's tolerance
+  double square = 0, largest = 0;
+};
+CopyFit fit_of_copy(const SurfacePatch& patch, const Motion& motion, const std::vector<int>& faces);
+inline constexpr double kKeptOfCopy = 0.9;  ///< the least that an instance keeps
+
 /// The motion that takes a copy to the same place as `motion` and turns least: motion g for g in the copy's own group.
 Motion straightened(const Motion& motion, const GroupPlacement& own);
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "orbifit/detection/explanation.h"
+#include "orbifit/detection/found_region.h"
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// The regions as an annotation has them: in the frame of the mesh as it was given, largest first, numbered, residuals
+/// measured, parents set; without those that are symmetric by coincidence. Costs O(F) a region.
+/// \param tolerance of the detector, a fraction of the diagonal
+std::vector<Region> annotated(const PreparedMesh& prepared, std::vector<FoundRegion> found, double tolerance,
+                              const RunContext& context, Explanation* explanation);
+
+}  // namespace orbifit
