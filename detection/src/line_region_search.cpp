@@ -116,15 +116,16 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     region.placement = refine(patch, region.placement, context_);
   }
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
+  // What slides is turned or straight, and was looked for as such: no larger group is.
+  const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context_); };
+  if (slides()) return note(stage, region, false, "other motions keep it as well");
   std::optional<OwnGroup> own;
   if (enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
   if (own && contains_group(own->placement, region.placement, patch.moments.centroid, patch.moments.radius,
                             2 * patch.tolerance)) {
     region.placement = own->placement;
     if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-  }
-  if (featureless(patch, region.placement, whole_, surface_.tolerance, context_)) {
-    return note(stage, region, false, "other motions keep it as well");
+    if (slides()) return note(stage, region, false, "other motions keep it as well");
   }
   note(stage, region, true, "verified");
   said_.push_back(said_of(region));
