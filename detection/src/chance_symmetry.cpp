@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "orbifit/model/dense.h"
 
@@ -23,6 +24,28 @@ bool mere_pair(const std::vector<int>& parts, const std::vector<CongruenceClass>
   return std::ranges::any_of(kinds, [&](const CongruenceClass& kind) {
     return kind.members.size() > 2 && std::ranges::includes(kind.members, parts);
   });
+}
+
+std::vector<std::size_t> kinds_of_a_row(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds,
+                                        const std::vector<SurfaceMoments>& moments) {
+  constexpr std::size_t kRow = 5;
+  constexpr double kMost = 0.5;
+  const auto area_of = [&](int part) { return moments[static_cast<std::size_t>(part)].area; };
+  double all = 0;
+  for (const int part : parts) all += area_of(part);
+  double in_rows = 0;
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const std::vector<int>& members = kinds[k].members;
+    if (members.size() < kRow) continue;
+    std::vector<int> common;
+    std::ranges::set_intersection(parts, members, std::back_inserter(common));
+    if (common.size() < 2 || common.size() == members.size()) continue;
+    for (const int part : common) in_rows += area_of(part);
+    result.push_back(k);
+  }
+  if (in_rows <= kMost * all) result.clear();
+  return result;
 }
 
 std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {

@@ -23,6 +23,11 @@ bool flat_mirror_only(const SurfaceMoments& moments, const GroupPlacement& place
 /// symmetric together, wherever they are.
 bool mere_pair(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds);
 
+/// Kinds of at least five members of which some, but neither one nor all, are among the parts, where they make up most
+/// of the parts' area: then the parts are some of a row or a grid. Empty where they are not.
+std::vector<std::size_t> kinds_of_a_row(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds,
+                                        const std::vector<SurfaceMoments>& moments);
+
 /// The fit of an axis of revolution to the patch's samples.
 std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch);
 

@@ -75,11 +75,13 @@ class Detector {
     if (!late(1)) {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
+      drop_lesser_groups(prepared_, options_.tolerance, regions_, options_.explanation);
       complete_regions(prepared_, *whole_index_,
                        {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }}, context_,
                        regions_);
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
+    drop_lesser_groups(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
     return {std::move(regions_), std::move(patterns_)};
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "orbifit/detection/featureless.h"
@@ -58,21 +59,22 @@ bool more_by_chance(const PreparedMesh& prepared, const FoundRegion& outer, cons
          area_outside(prepared, inner.faces, outer.faces) <= share * inner.area;
 }
 
+// Root mean square distance of the region's images from it.
+double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion& region) {
+  constexpr int kSamples = 250;
+  constexpr std::size_t kQueries = 2500;
+  const RunContext context;
+  const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "repeats");
+  const GroupPlacement& placement = region.placement;
+  const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+  return measure_residual(patch, motions, context, kQueries).rms;
+}
+
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
-  constexpr int kSamples = 250;
-  constexpr std::size_t kQueries = 2500;
   if (!outer.of_pieces || inner.of_pieces) return false;
-  const RunContext context;
-  const auto fit = [&](const FoundRegion& region) {
-    const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "repeats");
-    const GroupPlacement& placement = region.placement;
-    return measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context,
-                            kQueries)
-        .rms;
-  };
-  return fit(outer) > kFarLess * fit(inner);
+  return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
 }
 
 void note_drop(Explanation* explanation, const std::string& stage, const FoundRegion& region,
@@ -151,6 +153,32 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
         note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
     }
     if (!repeats) kept.push_back(mine);
+  }
+  regions = std::move(kept);
+}
+
+void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
+                        Explanation* explanation) {
+  const auto elements_of = [](const FoundRegion& region) {
+    const PointGroup& group = region.placement.group;
+    return group.continuous() ? std::numeric_limits<int>::max() : group.order();
+  };
+  std::vector<char> dropped(regions.size(), 0);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    for (std::size_t j = i + 1; j < regions.size() && dropped[i] == 0; ++j) {
+      FoundRegion& a = regions[i];
+      FoundRegion& b = regions[j];
+      if (dropped[j] != 0 || !covers(prepared, a, b) || !covers(prepared, b, a)) continue;
+      const int most = elements_of(a) - elements_of(b);
+      const bool first = most != 0 ? most > 0 : misfit(prepared, tolerance, a) <= misfit(prepared, tolerance, b);
+      dropped[first ? j : i] = 1;
+      const FoundRegion& stays = first ? a : b;
+      note_drop(explanation, "same faces", first ? b : a, stays.placement.group.symbol() + " is more of a group there");
+    }
+  }
+  std::vector<FoundRegion> kept;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (dropped[i] == 0) kept.push_back(std::move(regions[i]));
   }
   regions = std::move(kept);
 }

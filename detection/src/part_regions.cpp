@@ -218,6 +218,24 @@ class Search {
     });
   }
 
+  // Whether the parts are some of a row or a grid, all of which has such a group: any few in a row have one.
+  bool some_of_a_row(const GroupPlacement& placement, const std::vector<int>& parts) const {
+    constexpr double kAngle = 0.01;  // radians
+    std::vector<int> rows;
+    for (const std::size_t kind : kinds_of_a_row(parts, classes(), survey().moments)) {
+      const std::vector<int>& members = classes()[kind].members;
+      rows.insert(rows.end(), members.begin(), members.end());
+    }
+    if (rows.empty() || placement.group.continuous()) return false;
+    std::ranges::sort(rows);
+    const Vector3d origin = Vector3d::Zero();
+    const GroupPlacement mine{placement.group, placement.frame, origin};
+    return std::ranges::any_of(found_, [&](const Found& other) {
+      const GroupPlacement theirs{other.placement.group, other.placement.frame, origin};
+      return std::ranges::includes(other.parts, rows) && contains_group(theirs, mine, origin, 1, kAngle);
+    });
+  }
+
   // Adds a region for a group known on `seed`, grown to all parts that the group permutes.
   void add(std::string_view stage, const GroupPlacement& placement, const std::vector<int>& seed, double strictness) {
     if (already_known(placement, seed)) return note(stage, placement, seed, false, "known from a larger region");
@@ -226,6 +244,7 @@ class Search {
     if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
     if (area < least_area()) return note(stage, placement, grown, false, "too small");
+    if (some_of_a_row(placement, grown)) return note(stage, placement, grown, false, "some of a row that has it");
     if (mere_border(placement, grown))
       return note(stage, placement, grown, false, "only its border gives it the group");
     const double off = misfit(placement, patch_of(grown, "misfit"));

@@ -255,6 +255,34 @@ TEST(DropFeatureless, PiecesOfALargerSurfaceGoTheWholeStays) {
   EXPECT_FALSE(explanation.notes[0].kept);
 }
 
+TEST_F(Regions, OfGroupsOnTheSameFacesTheLargestStays) {
+  const std::vector<int> all{0, 1, 2, 3, 4, 5};
+  const FoundRegion four = region("C4v", all);
+  const FoundRegion two = region("C2h", all, {1, 0, 0});
+  const FoundRegion post = region("D4h", {5});
+  for (std::vector<FoundRegion> regions : {std::vector{four, two, post}, {two, post, four}, {post, four, two}}) {
+    Explanation explanation;
+    drop_lesser_groups(prepared_, test::kTolerance, regions, &explanation);
+    Names names;
+    for (const FoundRegion& each : regions) names.push_back(each.name);
+    std::ranges::sort(names);
+    EXPECT_EQ(names, (Names{"C4v of 6", "D4h of 1"}));
+    ASSERT_EQ(explanation.notes.size(), 1U);
+    EXPECT_FALSE(explanation.notes[0].kept);
+  }
+}
+
+TEST_F(Regions, OfEqualGroupsOnTheSameFacesTheOneThatFitsStays) {
+  const std::vector<int> all{0, 1, 2, 3, 4, 5};
+  const FoundRegion fits = region("C2v", all);
+  const FoundRegion fits_not = region("C2v", all, {1, 1, 0});
+  for (std::vector<FoundRegion> regions : {std::vector{fits, fits_not}, {fits_not, fits}}) {
+    drop_lesser_groups(prepared_, test::kTolerance, regions);
+    ASSERT_EQ(regions.size(), 1U);
+    EXPECT_EQ(regions[0].placement.frame, fits.placement.frame);
+  }
+}
+
 // A region of D8h over 20 of 40 columns, and one of a subgroup over some more.
 struct Wider {
   const char* symbol;

@@ -264,5 +264,29 @@ TEST(NameOfParts, GivesRunsAndStopsInTime) {
   EXPECT_TRUE(name.ends_with(", ..."));
 }
 
+// A row of equal scalene blocks on a rail, so that each has a mirror of its own and so has any few of them.
+class Row : public testing::TestWithParam<int> {};
+
+TEST_P(Row, IsNamedOnceNotByItsPieces) {
+  const int count = GetParam();
+  std::vector<Mesh> parts{test::box(count + 1.0, 0.4, 0.2)};
+  for (int i = 0; i < count; ++i) {
+    parts.push_back(test::moved(test::box(0.3, 0.5, 0.9), test::shift(i - 0.5 * (count - 1), 0.1, 0.3)));
+  }
+  const PreparedMesh prepared = prepare(test::joined(parts));
+  const PartRegions found = regions_of(prepared);
+  expect_sound(prepared, found);
+  const std::size_t block = prepared.components.faces[1].size();
+  for (const FoundRegion& region : found.regions) {
+    const bool some = region.faces.size() > block && region.faces.size() < static_cast<std::size_t>(count) * block;
+    EXPECT_FALSE(some) << region.placement.group.symbol() << " on " << region.name;
+  }
+  EXPECT_TRUE(std::ranges::any_of(found.regions, [&](const FoundRegion& region) {
+    return region.faces.size() == static_cast<std::size_t>(count + 1) * block;
+  }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Blocks, Row, testing::Values(5, 6, 9));
+
 }  // namespace
 }  // namespace orbifit

@@ -50,6 +50,12 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<Fou
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation = nullptr);
 
+/// Faces have one maximal group. Where several that do not hold one another were found on the same faces, a larger one
+/// narrowly failed: the one of most elements stays, of equal ones the one that fits best.
+/// \param tolerance of the detector, a fraction of the diagonal
+void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
+                        Explanation* explanation = nullptr);
+
 /// Whether a region is symmetric by coincidence: another one, around it and at least twice as large, is far more exact
 /// and shows how exact this mesh is. Kept, its group would also clash with the exact ones. To be asked of finite groups
 /// only: a turned part's residual is that of its facets and says nothing.
