@@ -13,12 +13,15 @@
 #include "orbifit/detection/revolution.h"
 #include "orbifit/detection/verification.h"
 
+#include "chance_symmetry.h"
+
 namespace orbifit {
 
 namespace {
 
 constexpr int kPatchSamples = 1000;
 constexpr double kNearly = 0.9;       // of the samples: less is not worth thinning out
+constexpr double kNearlyWhole = 0.9;  // of the mesh's area: what is kept of it may be rough
 constexpr int kRounds = 2;            // of thinning out what does not verify
 constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
 
@@ -116,6 +119,9 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
     region.placement = refine(patch, region.placement, context_);
   }
   if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
+  if (region.area < kNearlyWhole * surface_.prepared.area && fades(patch, region.placement, context_)) {
+    return note(stage, region, false, "fades as the tolerance shrinks");
+  }
   // What slides is turned or straight, and was looked for as such: no larger group is.
   const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context_); };
   if (slides()) return note(stage, region, false, "other motions keep it as well");

@@ -247,7 +247,11 @@ class Search {
     if (some_of_a_row(placement, grown)) return note(stage, placement, grown, false, "some of a row that has it");
     if (mere_border(placement, grown))
       return note(stage, placement, grown, false, "only its border gives it the group");
-    const double off = misfit(placement, patch_of(grown, "misfit"));
+    const SurfacePatch patch = patch_of(grown, "misfit");
+    if (options_.pieces && grown.size() > 1 && fades(patch, placement, context_)) {
+      return note(stage, placement, grown, false, "fades as the tolerance shrinks");
+    }
+    const double off = misfit(placement, patch);
     if (coincidence(placement, grown, area, off))
       return note(stage, placement, grown, false, "far less exact than a region around it");
     note(stage, placement, grown, true, grown.size() > seed.size() ? "grown and verified" : "verified");

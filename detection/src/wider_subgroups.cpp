@@ -26,7 +26,8 @@ constexpr std::size_t kMostIndex = 4;  // smaller subgroups keep much by chance;
 constexpr double kLeastMask = 0.01;    // of the samples, that the same elements keep
 constexpr double kMaterial = 0.02;     // of the samples, by which a subgroup must keep more than a larger one
 constexpr double kRelative = 0.05;     // of what it keeps, likewise
-constexpr double kWholePiece = 0.97;   // of a piece's samples
+constexpr double kWholePiece = 0.9;    // of a piece's samples
+constexpr double kWholeFlat = 0.97;    // of a flat piece's: a polygon keeps much of itself turned a little
 constexpr double kSlides = 0.2;        // sine of the angle between a normal and the mirror's plane
 
 using Mask = std::bitset<kMostElements>;
@@ -134,8 +135,9 @@ class Lattice {
     for (std::size_t i = 0; i < kept.size(); ++i) {
       if (kept[i] == 0 || known[i] != 0) continue;
       const auto piece = static_cast<std::size_t>(surface_.piece_of_sample[i]);
-      const bool whole = kept_of_piece[piece] >= kWholePiece * of_piece[piece];
-      const bool speaks = surface_.piece_flat[piece] == 0 && !slides(i, group);
+      const bool flat = surface_.piece_flat[piece] != 0;
+      const bool whole = kept_of_piece[piece] >= (flat ? kWholeFlat : kWholePiece) * of_piece[piece];
+      const bool speaks = !flat && !slides(i, group);
       if (whole || speaks) ++more;
     }
     return more >= kMaterial * static_cast<double>(kept.size()) && more >= kRelative * all_kept;

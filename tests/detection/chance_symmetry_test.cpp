@@ -1,10 +1,15 @@
 #include "chance_symmetry.h"
 
+#include <cmath>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "orbifit/detection/verification.h"
+
+#include "shapes.h"
 
 namespace orbifit {
 namespace {
@@ -36,6 +41,36 @@ INSTANTIATE_TEST_SUITE_P(Parts, KindsOfARow,
                                          Some{"FourAndAHandle", {1, 2, 3, 4, 9}, {0}},
                                          Some{"PostsAreTooFew", {6, 7}, {}}),
                          [](const auto& each) { return std::string(each.param.name); });
+
+// What a mirror keeps of hills that are odd in x by waves of some height: all where there are none, else up to where
+// they differ by the tolerance.
+class MirroredHills : public testing::TestWithParam<double> {
+ protected:
+  MirroredHills() {
+    const Similarity& input = prepared_.input_of_normalised;
+    mirror_ = {*PointGroup::parse("Cs"), frame_about(Eigen::Vector3d::UnitX()), -input.translation / input.scale};
+    const Points& vertices = prepared_.mesh.vertices;
+    for (int f = 0; f < prepared_.mesh.faces.rows(); ++f) {
+      double x = 0;
+      for (int k = 0; k < 3; ++k) x += (vertices(prepared_.mesh.faces(f, k), 0) - mirror_.centre.x()) * input.scale / 3;
+      if (2 * GetParam() * std::abs(std::sin(9 * x)) < test::kTolerance * input.scale) kept_.push_back(f);
+    }
+  }
+
+  PreparedMesh prepared_ = prepare(test::hills(80, GetParam()));
+  GroupPlacement mirror_;
+  std::vector<int> kept_;
+};
+
+TEST_P(MirroredHills, FadeWhereTheirWavesAreCutOffByTheTolerance) {
+  const SurfacePatch patch = make_patch(prepared_, kept_, 1000, test::kTolerance, {}, "test");
+  EXPECT_TRUE(passes(verify_group(patch, mirror_, {}), {.joint = 0.9, .worst = 0.9, .cluster = 1, .part = 0}));
+  EXPECT_EQ(fades(patch, mirror_, {}), GetParam() > 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Waves, MirroredHills, testing::Values(0, 0.005, 0.01, 0.02), [](const auto& each) {
+  return "PerMille" + std::to_string(static_cast<int>(std::lround(1000 * each.param)));
+});
 
 }  // namespace
 }  // namespace orbifit

@@ -17,31 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A hilly sheet over a square of side 1 about the origin, of n by n cells: even in x but for waves of a given height,
-// which are even in y.
-Mesh hills(int n, double odd) {
-  Mesh mesh;
-  mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
-  for (int i = 0; i <= n; ++i) {
-    for (int j = 0; j <= n; ++j) {
-      const double x = static_cast<double>(i) / n - 0.5;
-      const double y = static_cast<double>(j) / n - 0.5;
-      const double z = 0.1 * std::cos(7 * x) + 0.07 * std::sin(5 * y) + odd * std::sin(9 * x);
-      mesh.vertices.row(i * (n + 1) + j) << x, y, z;
-    }
-  }
-  mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const int a = i * (n + 1) + j;
-      const int b = a + n + 1;
-      mesh.faces.row(2 * (i * n + j)) << a, b, b + 1;
-      mesh.faces.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
-    }
-  }
-  return mesh;
-}
-
 Mesh with_noise(Mesh mesh, double sigma) {
   Random random(3);
   for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices(v, 2) += sigma * random.normal();
@@ -67,8 +42,8 @@ struct Claim {
 class NoisyHills : public testing::TestWithParam<double> {};
 
 TEST_P(NoisyHills, AreSymmetricAsFarAsNoiseLetsThem) {
-  const Claim claim(with_noise(hills(60, 0), GetParam()));
-  EXPECT_NEAR(claim.sigma, GetParam() / diagonal(hills(60, 0).vertices), 0.25 * GetParam() + 1e-5);
+  const Claim claim(with_noise(test::hills(60, 0), GetParam()));
+  EXPECT_NEAR(claim.sigma, GetParam() / diagonal(test::hills(60, 0).vertices), 0.25 * GetParam() + 1e-5);
   const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, {});
   EXPECT_TRUE(check.holds(claim.region));
   const NoiseCheck::Share share = check.share(claim.region);
@@ -76,7 +51,7 @@ TEST_P(NoisyHills, AreSymmetricAsFarAsNoiseLetsThem) {
 }
 
 TEST_P(NoisyHills, AreNotWhereTheyDifferByMoreThanTheTolerance) {
-  const Claim claim(with_noise(hills(60, 0.008), GetParam()));
+  const Claim claim(with_noise(test::hills(60, 0.008), GetParam()));
   const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, {});
   EXPECT_FALSE(check.holds(claim.region));
 }
@@ -86,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Sigma, NoisyHills, testing::Values(0, 0.001, 0.003, 0.0
 });
 
 TEST(NoiseCheck, AsksNothingOfNoNoise) {
-  const Claim claim(hills(60, 0));
+  const Claim claim(test::hills(60, 0));
   const NoiseCheck check(claim.given, claim.clean, 0, test::kTolerance, {});
   EXPECT_EQ(check.share(claim.region).expected, 1);
   EXPECT_EQ(check.share(claim.region).kept, 1);
