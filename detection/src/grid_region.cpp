@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "orbifit/detection/segments.h"
 #include "orbifit/detection/verification.h"
 
 #include "face_points.h"
@@ -14,7 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFlat = 0.999;        // length of the mean normal of a flat piece
 constexpr double kMostOff = 0.1;       // of a face's points
 constexpr double kMostCut = 0.3;       // of the border of what is taken of a flat piece, within the piece
 constexpr double kNearlyWhole = 0.97;  // of a piece
@@ -100,14 +100,8 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
     piece_of_sample.push_back(mesh.components.component_of_face[static_cast<std::size_t>(face)]);
   }
   for (const std::vector<int>& piece : mesh.components.faces) {
-    Vector3d sum = Vector3d::Zero();
-    double area = 0;
-    for (const int f : piece) {
-      sum += mesh.areas[f] * mesh.normals.row(f).transpose();
-      area += mesh.areas[f];
-    }
-    piece_areas.push_back(area);
-    piece_flat.push_back(area > 0 && sum.norm() > kFlat * area ? 1 : 0);
+    piece_areas.push_back(area_of(mesh, piece));
+    piece_flat.push_back(flat_piece(mesh, piece) ? 1 : 0);
   }
   for (const Edge& edge : welded_edges(mesh.mesh, mesh.weld)) {
     const auto end = [&](std::size_t k) -> Vector3d {

@@ -10,6 +10,7 @@
 #include "orbifit/detection/axis_orders.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
+#include "orbifit/detection/segments.h"
 #include "orbifit/detection/verification.h"
 
 #include "face_points.h"
@@ -61,16 +62,6 @@ class Turned {
   std::vector<Motion> turns_;
 };
 
-double planarity(const PreparedMesh& prepared, const std::vector<int>& faces) {
-  Vector3d sum = Vector3d::Zero();
-  double area = 0;
-  for (const int f : faces) {
-    sum += prepared.areas[f] * prepared.normals.row(f).transpose();
-    area += prepared.areas[f];
-  }
-  return area > 0 ? sum.norm() / area : 0;
-}
-
 class Search {
  public:
   Search(const PreparedMesh& prepared, const SurfaceIndex& whole, const std::vector<FoundRegion>& known,
@@ -78,7 +69,7 @@ class Search {
       : prepared_(prepared), whole_(whole), known_(known), options_(options), context_(context) {
     for (const std::vector<int>& faces : prepared.components.faces) {
       areas_.push_back(area_of(prepared, faces));
-      flat_.push_back(planarity(prepared, faces) > 0.999 ? 1 : 0);
+      flat_.push_back(flat_piece(prepared, faces) ? 1 : 0);
     }
   }
 

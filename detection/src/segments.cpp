@@ -164,4 +164,19 @@ Components smooth_segments(const PreparedMesh& prepared, const SegmentOptions& o
   return result;
 }
 
+bool flat_piece(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  constexpr double kCosine = 0.9962;  // 5 degrees
+  constexpr double kShare = 0.9;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const int f : faces) sum += prepared.areas[f] * prepared.normals.row(f).transpose();
+  const Eigen::Vector3d way = sum.stableNormalized();
+  double area = 0;
+  double along = 0;
+  for (const int f : faces) {
+    area += prepared.areas[f];
+    if (way.dot(prepared.normals.row(f)) >= kCosine) along += prepared.areas[f];
+  }
+  return area > 0 && along >= kShare * area;
+}
+
 }  // namespace orbifit

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -213,6 +216,39 @@ TEST(SmoothSegments, AKnifesEdgeIsACrease) {
   mesh.faces.resize(8, 3);
   mesh.faces << 0, 2, 1, 1, 2, 3, 0, 1, 4, 1, 5, 4, 2, 4, 3, 3, 4, 5, 0, 4, 2, 1, 3, 5;
   EXPECT_EQ(segments_of(mesh).faces.size(), 5U);
+}
+
+// Faces that look up but for a share of the area, which is tilted.
+class FlatPiece : public testing::TestWithParam<std::tuple<double, double>> {};
+
+TEST_P(FlatPiece, LooksOneWayButForATenth) {
+  const auto [share, degrees] = GetParam();
+  const Mesh flat = test::box(1, 1 - share, 1);
+  const Motion tilt =
+      Motion::rotation(Eigen::Vector3d::UnitX(), degrees * std::numbers::pi / 180, Eigen::Vector3d::Zero());
+  const Mesh tilted = test::moved(test::box(1, share, 1), tilt);
+  const PreparedMesh prepared = prepare(test::joined({flat, test::moved(tilted, test::shift(0, 5, 0))}));
+  std::vector<int> tops;
+  for (int f = 0; f < prepared.mesh.faces.rows(); ++f) {
+    if (prepared.normals(f, 2) > 0.8) tops.push_back(f);
+  }
+  EXPECT_EQ(tops.size(), 4U);
+  EXPECT_EQ(flat_piece(prepared, tops), share < 0.1 || degrees < 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tilts, FlatPiece,
+                         testing::Combine(testing::Values(0.05, 0.09, 0.12, 0.3), testing::Values(2.0, 15.0, 30.0)),
+                         [](const auto& each) {
+                           return std::to_string(std::lround(100 * std::get<0>(each.param))) + "PercentBy" +
+                                  std::to_string(std::lround(std::get<1>(each.param))) + "Degrees";
+                         });
+
+TEST(FlatPieces, AreNoSheetsOfTwoSidesNorNothing) {
+  const PreparedMesh box = prepare(test::box(1, 1, 1e-3));
+  std::vector<int> all(static_cast<std::size_t>(box.mesh.faces.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  EXPECT_FALSE(flat_piece(box, all));
+  EXPECT_FALSE(flat_piece(box, {}));
 }
 
 }  // namespace

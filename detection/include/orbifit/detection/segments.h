@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "orbifit/detection/surface_patch.h"
 
 namespace orbifit {
@@ -13,5 +15,8 @@ struct SegmentOptions {
 /// of which is a crease, a border, or shared by more than two faces. Faces without area follow their neighbours.
 /// Segments are numbered by first appearance; no segment spans two components. Costs O(F log F).
 Components smooth_segments(const PreparedMesh& prepared, const SegmentOptions& options = {});
+
+/// Whether nine tenths of the faces' area look one way, to 5 degrees: a part of a plane, perhaps with rounded edges.
+bool flat_piece(const PreparedMesh& prepared, const std::vector<int>& faces);
 
 }  // namespace orbifit
