@@ -295,20 +295,24 @@ class Search {
     return look;
   }
 
-  // The groups of the parts, each class's by one of its members.
+  // The groups of the parts, each class's by one of its members. Batch by batch: what was looked at when time is up is
+  // not lost.
   void find_part_groups() {
-    std::vector<std::optional<PartLook>> looks(classes().size());
+    constexpr std::size_t kBatch = 32;
+    const std::size_t count = classes().size();
     const GroupHints known = hints();
-    for_each(looks.size(), [&](std::size_t c) {
-      const CongruenceClass& kind = classes()[c];
-      const int first = kind.members.front();
-      if (moments(first).area * static_cast<double>(kind.members.size()) < least_area()) return;
-      looks[c] = look_at_part(first, known);
-    });
-    for (std::size_t c = 0; c < looks.size() && !late(); ++c) {
-      context_.progress("parts", static_cast<double>(c) / static_cast<double>(looks.size()));
-      if (looks[c]) take_part_group(c, *looks[c]);
-      looks[c].reset();
+    for (std::size_t first = 0; first < count && !late(); first += kBatch) {
+      context_.progress("parts", static_cast<double>(first) / static_cast<double>(count));
+      std::vector<std::optional<PartLook>> looks(std::min(kBatch, count - first));
+      for_each(looks.size(), [&](std::size_t i) {
+        const CongruenceClass& kind = classes()[first + i];
+        const int part = kind.members.front();
+        if (moments(part).area * static_cast<double>(kind.members.size()) < least_area()) return;
+        looks[i] = look_at_part(part, known);
+      });
+      for (std::size_t i = 0; i < looks.size(); ++i) {
+        if (looks[i]) take_part_group(first + i, *looks[i]);
+      }
     }
   }
 
