@@ -4,7 +4,7 @@
 #include <bitset>
 #include <cmath>
 #include <functional>
-#include <iterator>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 

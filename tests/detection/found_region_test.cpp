@@ -166,23 +166,9 @@ TEST_F(Regions, EveryDropIsExplained) {
   }
 }
 
-// A square sheet of n by n cells, each of two triangles, column by column.
-PreparedMesh sheet(int n) {
-  Mesh mesh;
-  mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
-  for (int i = 0; i <= n; ++i) {
-    for (int j = 0; j <= n; ++j) mesh.vertices.row(i * (n + 1) + j) << i, j, 0;
-  }
-  mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      const int a = i * (n + 1) + j;
-      const int b = a + n + 1;
-      mesh.faces.row(2 * (i * n + j)) << a, b, b + 1;
-      mesh.faces.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
-    }
-  }
-  return prepare(mesh);
+// A square sheet of n by n cells, column by column.
+PreparedMesh flat_sheet(int n) {
+  return prepare(test::sheet(n, [](double, double) { return 0.0; }));
 }
 
 FoundRegion columns(const PreparedMesh& prepared, int n, int count) {
@@ -196,7 +182,7 @@ class Sheet : public testing::TestWithParam<int> {};
 
 TEST_P(Sheet, ARegionsBorderIsUncertainByASmallTriangle) {
   const int n = GetParam();
-  const PreparedMesh prepared = sheet(n);
+  const PreparedMesh prepared = flat_sheet(n);
   const FoundRegion outer = columns(prepared, n, n / 2);
   const bool fine = n > 100;
   EXPECT_TRUE(covers(prepared, outer, columns(prepared, n, n / 2)));
@@ -298,7 +284,7 @@ TEST_P(Subgroup, MustKeepMoreTheSmallerItIs) {
   constexpr int kColumns = 40;
   constexpr int kOuter = 20;
   const auto& [symbol, count, stays] = GetParam();
-  const PreparedMesh prepared = sheet(kColumns);
+  const PreparedMesh prepared = flat_sheet(kColumns);
   FoundRegion outer = columns(prepared, kColumns, kOuter);
   FoundRegion inner = columns(prepared, kColumns, count);
   outer.placement.group = *PointGroup::parse("D8h");

@@ -49,17 +49,17 @@ inline Mesh prism(int n, double radius, double height) {
   return mesh;
 }
 
-// A hilly sheet over a square of side 1 about the origin, of n by n cells: even in x but for waves of a given height,
-// which are even in y.
-inline Mesh hills(int n, double odd) {
+// A sheet of some height over a square of side 1 about the origin, of n by n cells, each of two triangles, in columns
+// along y.
+template <typename Height>
+Mesh sheet(int n, const Height& height) {
   Mesh mesh;
   mesh.vertices.resize(static_cast<Eigen::Index>(n + 1) * (n + 1), 3);
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) {
       const double x = static_cast<double>(i) / n - 0.5;
       const double y = static_cast<double>(j) / n - 0.5;
-      const double z = 0.1 * std::cos(7 * x) + 0.07 * std::sin(5 * y) + odd * std::sin(9 * x);
-      mesh.vertices.row(i * (n + 1) + j) << x, y, z;
+      mesh.vertices.row(i * (n + 1) + j) << x, y, height(x, y);
     }
   }
   mesh.faces.resize(static_cast<Eigen::Index>(2) * n * n, 3);
@@ -72,6 +72,12 @@ inline Mesh hills(int n, double odd) {
     }
   }
   return mesh;
+}
+
+// Even in x but for waves of a given height.
+inline Mesh hills(int n, double odd) {
+  return sheet(
+      n, [odd](double x, double y) { return 0.1 * std::cos(7 * x) + 0.07 * std::sin(5 * y) + odd * std::sin(9 * x); });
 }
 
 // A tetrahedron with six different edges: no symmetry at all.

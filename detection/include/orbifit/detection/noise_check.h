@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "orbifit/detection/found_region.h"
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/model/run_context.h"
