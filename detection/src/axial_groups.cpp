@@ -20,9 +20,10 @@ constexpr std::size_t kLooks = 160;  // samples that judge an angle or a height
 constexpr std::size_t kAngles = 2;
 constexpr std::size_t kHeights = 2;
 
-class Search {
+class AxialSearch {
  public:
-  Search(const ScreenedSurface& surface, const Line& axis, int n, const std::vector<int>& samples, double least_share)
+  AxialSearch(const ScreenedSurface& surface, const Line& axis, int n, const std::vector<int>& samples,
+              double least_share)
       : surface_(surface),
         n_(n),
         samples_(samples),
@@ -151,13 +152,13 @@ class Search {
 
 std::vector<AxialGroup> larger_groups(const ScreenedSurface& surface, const Line& axis, int n,
                                       const std::vector<int>& samples, double least_share) {
-  return Search(surface, axis, n, samples, least_share).run();
+  return AxialSearch(surface, axis, n, samples, least_share).run();
 }
 
 std::vector<GroupPlacement> groups_with_middle(const ScreenedSurface& surface, const Line& axis,
                                                const std::vector<int>& samples, double least_share) {
   std::vector<GroupPlacement> result;
-  for (const Vector3d& middle : Search(surface, axis, 1, samples, least_share).middles()) {
+  for (const Vector3d& middle : AxialSearch(surface, axis, 1, samples, least_share).middles()) {
     result.push_back({{Family::Dinfh, 1}, frame_about(axis.direction), middle});
   }
   return result;

@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kScreenShare = 0.80;  // of the samples, while the axis is not refined yet
-constexpr int kScreenSamples = 96;
-constexpr int kHighestOrder = 180;
+constexpr int kOrderSamples = 96;
+constexpr int kHighestScreenedOrder = 180;
 // A rotation that moves no point by more than this many tolerances cannot be told from none.
 constexpr double kLeastMove = 6;
 // Low orders move far around the axis what they move little along it: for them less will do.
@@ -46,11 +46,11 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
                                  double slack) {
   std::vector<int> result;
   const double around = 2 * std::numbers::pi * radius_about(patch, axis, centre) / patch.tolerance;
-  const int highest = static_cast<int>(
-      std::min<double>(kHighestOrder, std::max(around / kLeastMove, std::min(around / kLeastMoveLow, kLowOrder))));
+  const int highest = static_cast<int>(std::min<double>(
+      kHighestScreenedOrder, std::max(around / kLeastMove, std::min(around / kLeastMoveLow, kLowOrder))));
   const auto kept = [&](int k, int n) {
     const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
-    return kept_share(patch, turn, slack * patch.tolerance, kScreenSamples, kScreenShare) >= kScreenShare;
+    return kept_share(patch, turn, slack * patch.tolerance, kOrderSamples, kScreenShare) >= kScreenShare;
   };
   constexpr std::size_t kNearlyRound = 16;  // orders: with so many, those between say nothing more
   constexpr int kLow = 12;

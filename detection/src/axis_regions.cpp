@@ -13,6 +13,7 @@
 
 #include "axial_groups.h"
 #include "line_region_search.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -21,7 +22,6 @@ namespace {
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kHighestOrder = 72;
 constexpr std::array<int, 20> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71};
 constexpr int kIrrational = 11;   // rotations that stand for all
 constexpr double kLeastStep = 5;  // tolerances: shorter steps are not told from none

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr int kGridCells = 48;
 constexpr int kGridPoints = 20000;
-constexpr int kScreenSamples = 220;
+constexpr int kCandidateSamples = 220;
 constexpr std::size_t kMostMaxima = 24;
 constexpr std::size_t kMostCorners = 130;
 constexpr std::size_t kMostCornerAxes = 600;
@@ -66,7 +66,7 @@ class Screen {
       : centre_(patch.moments.centroid),
         grid_(dense_points(patch, context), centre_, 1.05 * patch.moments.radius, kGridCells) {
     const Eigen::Index total = patch.samples.points.rows();
-    const Eigen::Index count = std::min<Eigen::Index>(total, kScreenSamples);
+    const Eigen::Index count = std::min<Eigen::Index>(total, kCandidateSamples);
     for (Eigen::Index i = 0; i < count; ++i) {
       points_.emplace_back(patch.samples.points.row(i * total / count).transpose() - centre_);
     }

@@ -26,9 +26,9 @@ using Eigen::Vector3d;
 
 constexpr int kPartSamples = 1000;
 constexpr int kCopySamples = 300;
-constexpr int kRefined = 800;           // samples
-constexpr std::size_t kQueries = 3000;  // for a misfit
-constexpr double kExact = 1e-3;         // root mean square distance, tolerances
+constexpr int kRefined = 800;                 // samples
+constexpr std::size_t kBorderQueries = 3000;  // for a misfit
+constexpr double kExact = 1e-3;               // root mean square distance, tolerances
 
 class CarryBack {
  public:
@@ -110,7 +110,7 @@ class CarryBack {
 
   double misfit(const SurfacePatch& patch, const GroupPlacement& placement) const {
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-    return measure_residual(patch, motions, context_, kQueries).rms;
+    return measure_residual(patch, motions, context_, kBorderQueries).rms;
   }
 
   // Where the placements are when the groups of regions that are images of one another are: refined each by itself

@@ -16,6 +16,8 @@
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/point_index.h"
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -24,9 +26,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kNormalCosine = 0.64;  // 50 degrees: the facets of small round parts differ by more than 25
 constexpr int kMostElements = 120;
-constexpr int kSamples = 500;
+constexpr int kSpreadSamples = 500;
 
 /// Regions, and which of them are images of which.
 class Completion {
@@ -220,7 +221,7 @@ class Completion {
     for (std::size_t i = 0; i < kLooks; ++i) {
       const int face = faces[i * faces.size() / kLooks];
       const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
-      if (surface.within_facing(motion(centroids_.row(face)), normal, kNormalCosine, reach)) ++hits;
+      if (surface.within_facing(motion(centroids_.row(face)), normal, kFacetNormals, reach)) ++hits;
     }
     return static_cast<double>(hits) / kLooks;
   }
@@ -230,7 +231,8 @@ class Completion {
     if (surfaces_.size() <= region) surfaces_.resize(region + 1);
     if (!surfaces_[region]) {
       surfaces_[region] = std::make_unique<Surface>(Surface{
-          make_patch(prepared_, regions_[region].faces, kSamples, options_.tolerance, context_, "completion"), {}});
+          make_patch(prepared_, regions_[region].faces, kSpreadSamples, options_.tolerance, context_, "completion"),
+          {}});
     }
     return *surfaces_[region];
   }
@@ -255,7 +257,7 @@ class Completion {
       for (int k = 3; k >= 0 && hits < 3 && misses < 2; --k) {
         Vector3d point = centroid;
         if (k < 3) point = 0.5 * (centroid + prepared_.mesh.vertices.row(prepared_.mesh.faces(face, k)).transpose());
-        const bool hit = surface.within_facing(back(point), normal, kNormalCosine, reach);
+        const bool hit = surface.within_facing(back(point), normal, kFacetNormals, reach);
         ++(hit ? hits : misses);
       }
       if (hits < 3) continue;
@@ -289,7 +291,7 @@ class Completion {
   }
 
   bool holds(const GroupPlacement& placement, const std::vector<int>& faces) const {
-    return holds(placement, make_patch(prepared_, faces, kSamples, options_.tolerance, context_, "completion"));
+    return holds(placement, make_patch(prepared_, faces, kSpreadSamples, options_.tolerance, context_, "completion"));
   }
 
   // Of a region that was verified where it was found: fewer samples tell whether anything was lost on the way.

@@ -11,6 +11,8 @@
 
 #include "orbifit/model/dense.h"
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -18,7 +20,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kNormalCosine = 0.8;
 constexpr double kCongruentShare = 0.96;
 constexpr int kRepresentativeSamples = 400;
 constexpr double kReach = 0.25;  // of the fit at its start, radii
@@ -81,7 +82,7 @@ double carried_share(const SurfacePatch& patch, const SurfaceIndex& target, cons
     const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
     const bool free = patch.at_crease[static_cast<std::size_t>(s)] != 0;
     const bool on =
-        free ? target.within(image, tolerance) : target.within_facing(image, normal, kNormalCosine, tolerance);
+        free ? target.within(image, tolerance) : target.within_facing(image, normal, kNearNormals, tolerance);
     if (on) ++kept;
   }
   return static_cast<double>(kept) / static_cast<double>(std::max<Eigen::Index>(1, chosen));
@@ -132,7 +133,7 @@ Motion fit_motion(const SurfacePatch& patch, const PreparedMesh& prepared, const
       const Eigen::Index s = i * total / count;
       const Vector3d image = motion(patch.samples.points.row(s));
       const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
-      const SurfaceIndex::Nearest near = target.nearest_facing(image, normal, kNormalCosine, width, true);
+      const SurfaceIndex::Nearest near = target.nearest_facing(image, normal, kNearNormals, width, true);
       if (near.face < 0) continue;
       const Vector3d facing = prepared.normals.row(near.face);
       Vector6d row;

@@ -45,7 +45,7 @@ constexpr double kLeastNoise = 3e-4;     // of the diagonal
 constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
 constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
 constexpr int kScreenDirections = 2500;
-constexpr int kScreenSamples = 6000;
+constexpr int kDetectSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
 /// One run of the detector on a prepared mesh.
@@ -186,7 +186,7 @@ class Detector {
   void find_about_lines(const PreparedMesh& partition, const ComponentSurvey& survey) {
     if (late()) return;
     context_.progress("axes", 0);
-    const ScreenedSurface surface(partition, options_.tolerance, kScreenSamples, context_);
+    const ScreenedSurface surface(partition, options_.tolerance, kDetectSamples, context_);
     const SymmetryLines lines = find_symmetry_lines(partition, survey, options_.tolerance);
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);

@@ -10,6 +10,8 @@
 #include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -17,10 +19,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
-constexpr double kSlippable = 0.05;                 // of the largest eigenvalue
+constexpr double kSlippable = 0.05;  // of the largest eigenvalue
 constexpr double kFits = 0.95;
-constexpr int kSamples = 300;
+constexpr int kPlanarSamples = 300;
 
 // The motion that the twist (w, v) about `centre` reaches at time 1.
 Motion reached(const Vector3d& w, const Vector3d& v, const Vector3d& centre) {
@@ -39,7 +40,7 @@ Motion reached(const Vector3d& w, const Vector3d& v, const Vector3d& centre) {
 
 bool fits(const SurfacePatch& patch, const SurfaceIndex& whole, const Motion& motion, double tolerance) {
   const Eigen::Index total = patch.samples.points.rows();
-  const Eigen::Index count = std::min<Eigen::Index>(total, kSamples);
+  const Eigen::Index count = std::min<Eigen::Index>(total, kPlanarSamples);
   Eigen::Index kept = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index s = i * total / count;
@@ -47,7 +48,7 @@ bool fits(const SurfacePatch& patch, const SurfaceIndex& whole, const Motion& mo
     const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
     const bool free = patch.at_crease[static_cast<std::size_t>(s)] != 0;
     const bool on =
-        free ? whole.within(image, tolerance) : whole.within_facing(image, normal, kNormalCosine, tolerance);
+        free ? whole.within(image, tolerance) : whole.within_facing(image, normal, kAlikeNormals, tolerance);
     kept += on ? 1 : 0;
     if (static_cast<double>(i + 1 - kept) > (1 - kFits) * static_cast<double>(count)) return false;
   }

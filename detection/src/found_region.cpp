@@ -11,6 +11,8 @@
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/verification.h"
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -53,7 +55,6 @@ double area_apart(const PreparedMesh& prepared, const std::vector<int>& inner, c
 // Whether what a far smaller group keeps beyond the outer region is no more than chance would give it. The whole, or
 // nearly, is never left out.
 bool more_by_chance(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
-  constexpr double kNearlyWhole = 0.9;
   const double share = share_of_few(outer.placement.group, inner.placement.group);
   return share > 0 && inner.area < kNearlyWhole * prepared.area &&
          area_outside(prepared, inner.faces, outer.faces) <= share * inner.area;

@@ -8,6 +8,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "face_points.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -15,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMostOff = 0.1;       // of a face's points
-constexpr double kMostCut = 0.3;       // of the border of what is taken of a flat piece, within the piece
-constexpr double kNearlyWhole = 0.97;  // of a piece
-constexpr double kSpacing = 4;         // of a face's points, tolerances
-constexpr int kMostCuts = 6;           // of an edge
+constexpr double kMostOff = 0.1;      // of a face's points
+constexpr double kMostCut = 0.3;      // of the border of what is taken of a flat piece, within the piece
+constexpr double kWholePiece = 0.97;  // of a piece
+constexpr double kSpacing = 4;        // of a face's points, tolerances
+constexpr int kMostCuts = 6;          // of an edge
 
 std::vector<int> with_area(const PreparedMesh& prepared) {
   std::vector<int> faces;
@@ -79,7 +80,7 @@ std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int
   std::vector<int> result;
   for (std::size_t piece = 0; piece < pieces.faces.size(); ++piece) {
     if (in[piece] <= 0) continue;
-    const bool whole = in[piece] >= kNearlyWhole * surface.piece_areas[piece];
+    const bool whole = in[piece] >= kWholePiece * surface.piece_areas[piece];
     if (!whole && surface.piece_flat[piece] != 0 && cut[piece] > kMostCut * border[piece]) continue;
     std::ranges::copy_if(pieces.faces[piece], std::back_inserter(result),
                          [&](int f) { return whole || taken[static_cast<std::size_t>(f)] != 0; });
@@ -127,8 +128,7 @@ std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacemen
 std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePatch& patch,
                                 const Verification& verification, const GroupPlacement& placement,
                                 const RunContext& context) {
-  constexpr double kFaultless = 0.98;     // of the samples of a piece
-  constexpr double kNormalCosine = 0.64;  // 50 degrees
+  constexpr double kFaultless = 0.98;  // of the samples of a piece
   const PreparedMesh& prepared = surface.prepared;
   const auto piece_of = [&](int face) {
     return static_cast<std::size_t>(prepared.components.component_of_face[static_cast<std::size_t>(face)]);
@@ -150,7 +150,7 @@ std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePat
       const Vector3d centroid = face_centroid(prepared, patch.faces[i]);
       const Vector3d normal = prepared.normals.row(patch.faces[i]);
       const bool all = std::ranges::all_of(motions, [&](const Motion& motion) {
-        return patch.index->within_facing(motion(centroid), motion.linear * normal, kNormalCosine, patch.tolerance);
+        return patch.index->within_facing(motion(centroid), motion.linear * normal, kFacetNormals, patch.tolerance);
       });
       stays[i] = all ? 1 : 0;
     }

@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 using About = RegionHint::About;
 
-constexpr double kSlack = 2.5;  // tolerances, while the axis is not refined yet
+constexpr double kGuideSlack = 2.5;  // tolerances, while the axis is not refined yet
 constexpr int kScreenDirections = 2500;
 
 bool polyhedral(const PointGroup& group) {
@@ -84,7 +84,7 @@ class Guide {
     const GroupPlacement any{{Family::Cinfv, 1}, frame_about(hint_.direction), point_};
     const SurfacePatch patch = surroundings(prepared_, whole_, any, hint_.seeds, options_.tolerance, context_);
     if (continuous_about(patch, hint_.direction, point_)) return any.group;
-    const std::vector<int> orders = rotation_orders(patch, hint_.direction, point_, kSlack);
+    const std::vector<int> orders = rotation_orders(patch, hint_.direction, point_, kGuideSlack);
     const std::vector<RankedOrder> ranked = rank_orders(patch, orders, hint_.direction, point_);
     if (!ranked.empty()) return {Family::Cn, ranked.front().order};
     return {Family::Cn, orders.empty() ? 2 : orders.front()};
@@ -162,7 +162,7 @@ class Guide {
         const GroupPlacement placement{group, frame, centre};
         double least = 1;
         for (const Matrix3d& linear : generators(group, frame)) {
-          least = std::min(least, kept_share(patch, Motion::about(linear, centre), kSlack * patch.tolerance, 300));
+          least = std::min(least, kept_share(patch, Motion::about(linear, centre), kGuideSlack * patch.tolerance, 300));
         }
         if (least <= most) continue;
         most = least;

@@ -14,6 +14,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "chance_symmetry.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -21,7 +22,6 @@ namespace {
 
 constexpr int kPatchSamples = 1000;
 constexpr double kNearly = 0.9;       // of the samples: less is not worth thinning out
-constexpr double kNearlyWhole = 0.9;  // of the mesh's area: what is kept of it may be rough
 constexpr int kRounds = 2;            // of thinning out what does not verify
 constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
 
@@ -141,14 +141,14 @@ void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& star
 // Whether a rough fit keeps so little of the patch that a better one will not do. Most candidates end here.
 bool LineRegionSearch::hopeless(const SurfacePatch& patch, const GroupPlacement& start) const {
   constexpr int kLooks = 300;
-  constexpr double kSlack = 0.04;  // of the share: two standard deviations, and what the fit may gain
+  constexpr double kLineSlack = 0.04;  // of the share: two standard deviations, and what the fit may gain
   RefinementOptions rough;
   rough.samples = 150;
   rough.iterations = 6;
   const GroupPlacement placement = refine(patch, start, context_, rough);
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
   const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-  return verify(patch, motions, tolerance, kLooks, kNearly - kSlack, context_).joint < kNearly - kSlack;
+  return verify(patch, motions, tolerance, kLooks, kNearly - kLineSlack, context_).joint < kNearly - kLineSlack;
 }
 
 // Whether the faces lie in a few planes only: any two plates are mirror images, and so are two walls with floor and

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSamples = 1500;
+constexpr int kNoiseSamples = 1500;
 
 // The mesh with its vertices moved along their normals at random; copies of a vertex move together.
 Mesh with_noise(const PreparedMesh& clean, double sigma, const RunContext& context) {
@@ -44,7 +44,7 @@ NoiseCheck::NoiseCheck(const PreparedMesh& given, const PreparedMesh& clean, dou
 NoiseCheck::Share NoiseCheck::share(const FoundRegion& region) const {
   const GroupPlacement& placement = region.placement;
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-  SurfacePatch patch = make_patch(given_, region.faces, kSamples, tolerance_, context_, "given");
+  SurfacePatch patch = make_patch(given_, region.faces, kNoiseSamples, tolerance_, context_, "given");
   const double kept = verify(patch, motions, patch.tolerance, 0, 0, context_).joint;
   patch.index = noisy_;
   const double one = kept_share(patch, Motion{}, patch.tolerance, 0);

@@ -11,6 +11,7 @@
 
 #include "creases.h"
 #include "face_points.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -18,12 +19,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
-constexpr double kSpacing = 4;                      // of a face's sample points, tolerances
-constexpr int kMostCuts = 8;                        // of each edge
-constexpr double kCreaseReach = 3;                  // tolerances, as in verification
-constexpr double kMostOff = 0.03;                   // of a face's points, off the surface
-constexpr double kMostAstray = 0.5;                 // of a face's points, on faces that are out
+constexpr double kSpacing = 4;       // of a face's sample points, tolerances
+constexpr int kMostCuts = 8;         // of each edge
+constexpr double kCreaseReach = 3;   // tolerances, as in verification
+constexpr double kMostOff = 0.03;    // of a face's points, off the surface
+constexpr double kMostAstray = 0.5;  // of a face's points, on faces that are out
 
 /// Asks whether motions keep faces on a surface.
 class OrbitTest {
@@ -59,7 +59,7 @@ class OrbitTest {
   // The face of the surface on which the point's image lies with a compatible normal, -1 for none.
   int image(const SurfaceIndex& surface, const Motion& motion, int face, const Vector3d& point) const {
     const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
-    return surface.nearest_facing(motion(point), normal, kNormalCosine, tolerance_, true).face;
+    return surface.nearest_facing(motion(point), normal, kAlikeNormals, tolerance_, true).face;
   }
 
  private:

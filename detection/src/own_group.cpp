@@ -17,9 +17,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kSlack = 2.5;         // tolerances, while directions are not refined yet
+constexpr double kGroupSlack = 2.5;    // tolerances, while directions are not refined yet
 constexpr double kScreenShare = 0.80;  // of the samples, likewise
-constexpr int kScreenSamples = 96;
+constexpr int kGroupSamples = 96;
 constexpr double kSameDirection = 0.03;     // radians
 constexpr std::size_t kMostRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
 constexpr double kClassifyTolerance = 0.02;
@@ -80,10 +80,10 @@ double sagitta(const SurfacePatch& patch, const GroupPlacement& placement) {
 }
 
 /// The search for one patch: directions found so far, and the best group.
-class Search {
+class GroupSearch {
  public:
   /// \param thorough every attempt on all samples \param finite no continuous groups
-  Search(const SurfacePatch& patch, const RunContext& context, bool thorough, bool finite)
+  GroupSearch(const SurfacePatch& patch, const RunContext& context, bool thorough, bool finite)
       : patch_(patch), context_(context), thorough_(thorough), finite_(finite), centre_(patch.moments.centroid) {}
 
   std::optional<OwnGroup> run(const DirectionSet* screen, const GroupHints& hints) {
@@ -104,7 +104,7 @@ class Search {
     if (polish()) return continuous() ? no_treads(screen, hints) : best_;
     if (thorough_) return std::nullopt;
     // The quick look was deceived: every attempt again, on all samples.
-    return Search(patch_, context_, true, finite_).run(screen, hints);
+    return GroupSearch(patch_, context_, true, finite_).run(screen, hints);
   }
 
  private:
@@ -124,14 +124,14 @@ class Search {
     const double share = std::min(1.0, kStrict * any / patch_.tolerance);
     strict.tolerance *= share;
     strict.relative_tolerance *= share;
-    const std::optional<OwnGroup> some = Search(strict, context_, thorough_, true).run(screen, hints);
+    const std::optional<OwnGroup> some = GroupSearch(strict, context_, thorough_, true).run(screen, hints);
     return some && misfit(patch_, some->placement, context_) < kFarLess * any ? some : best_;
   }
 
   bool continuous() const { return best_ && best_->placement.group.continuous(); }
 
   bool screen_passes(const Matrix3d& linear) const {
-    return kept_share(patch_, Motion::about(linear, centre_), kSlack * patch_.tolerance, kScreenSamples,
+    return kept_share(patch_, Motion::about(linear, centre_), kGroupSlack * patch_.tolerance, kGroupSamples,
                       kScreenShare) >= kScreenShare;
   }
 
@@ -239,7 +239,7 @@ class Search {
     parallel_for(context_, shares.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const Motion motion = Motion::about(element(direction(static_cast<int>(k))), centre_);
-        shares[k] = kept_share(patch_, motion, kSlack * patch_.tolerance, kScreenSamples, kPhaseShare);
+        shares[k] = kept_share(patch_, motion, kGroupSlack * patch_.tolerance, kGroupSamples, kPhaseShare);
       }
     });
     std::vector<std::pair<double, int>> peaks;
@@ -267,7 +267,7 @@ class Search {
       const GroupFrame frame = frame_about(axis);
       if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
     }
-    const std::vector<int> orders = rotation_orders(patch_, axis, centre_, kSlack);
+    const std::vector<int> orders = rotation_orders(patch_, axis, centre_, kGroupSlack);
     if (orders.empty()) return;
     // The axis is better known once the rotations that fit best have been fitted; the orders are then ranked.
     const std::vector<RankedOrder> first = rank_orders(patch_, orders, axis, centre_);
@@ -432,7 +432,7 @@ bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const 
 
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,
                                        const RunContext& context) {
-  return Search(patch, context, false, false).run(screen, hints);
+  return GroupSearch(patch, context, false, false).run(screen, hints);
 }
 
 }  // namespace orbifit

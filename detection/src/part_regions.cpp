@@ -19,6 +19,7 @@
 #include "orbifit/model/dense.h"
 
 #include "chance_symmetry.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -29,7 +30,6 @@ using Family = PointGroup::Family;
 
 constexpr int kPartSamples = 700;
 constexpr std::size_t kMostPartRegions = 200;
-constexpr int kHighestOrder = 72;
 
 struct Found {
   GroupPlacement placement;
@@ -39,10 +39,10 @@ struct Found {
   double misfit = 0;   // largest, a fraction of the diagonal
 };
 
-class Search {
+class PartSearch {
  public:
-  Search(const PreparedMesh& prepared, ComponentSurvey survey, const SurfaceIndex& whole, const DirectionSet& screen,
-         const PartRegionOptions& options, const RunContext& context)
+  PartSearch(const PreparedMesh& prepared, ComponentSurvey survey, const SurfaceIndex& whole,
+             const DirectionSet& screen, const PartRegionOptions& options, const RunContext& context)
       : prepared_(prepared), whole_(whole), screen_(screen), options_(options), context_(context) {
     result_.survey = std::move(survey);
   }
@@ -138,7 +138,6 @@ class Search {
   // Whether the other region holds the parts, or but for what a group of few elements keeps by chance.
   bool holds_nearly(const Found& other, const GroupPlacement& placement, const std::vector<int>& parts,
                     double area) const {
-    constexpr double kNearlyWhole = 0.9;
     if (std::ranges::includes(other.parts, parts)) return true;
     const double share = share_of_few(other.placement.group, placement.group);
     if (share <= 0 || area > kNearlyWhole * prepared_.area) return false;
@@ -495,7 +494,7 @@ std::string name_of_parts(const std::vector<int>& parts) {
 PartRegions find_part_regions(const PreparedMesh& prepared, ComponentSurvey survey, const SurfaceIndex& whole,
                               const std::vector<FoundRegion>& known, const DirectionSet& screen,
                               const PartRegionOptions& options, const RunContext& context) {
-  return Search(prepared, std::move(survey), whole, screen, options, context).run(known);
+  return PartSearch(prepared, std::move(survey), whole, screen, options, context).run(known);
 }
 
 }  // namespace orbifit

@@ -17,10 +17,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-class Search {
+class PatternSearch {
  public:
-  Search(const PreparedMesh& prepared, const PartRegions& parts, const std::vector<FoundRegion>& regions,
-         const PartRegionOptions& options, const RunContext& context)
+  PatternSearch(const PreparedMesh& prepared, const PartRegions& parts, const std::vector<FoundRegion>& regions,
+                const PartRegionOptions& options, const RunContext& context)
       : prepared_(prepared),
         parts_(parts),
         regions_(regions),
@@ -263,7 +263,7 @@ class Search {
 std::vector<Pattern> find_patterns(const PreparedMesh& prepared, const PartRegions& parts,
                                    const std::vector<FoundRegion>& regions, const PartRegionOptions& options,
                                    const RunContext& context) {
-  return Search(prepared, parts, regions, options, context).run();
+  return PatternSearch(prepared, parts, regions, options, context).run();
 }
 
 }  // namespace orbifit

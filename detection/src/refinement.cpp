@@ -11,6 +11,8 @@
 #include "orbifit/model/dense.h"
 #include "orbifit/model/point_index.h"
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -19,8 +21,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 using Jacobian = Eigen::Matrix<double, 3, 6>;
-
-constexpr double kNormalCosine = 0.8;  // 37 degrees: looser than when verifying, the start may be off
 
 Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d matrix;
@@ -100,7 +100,7 @@ struct Pairs {
     const Vector3d point = patch.samples.points.row(s);
     const Vector3d image = motion(point);
     const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
-    const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNormalCosine, width, true);
+    const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNearNormals, width, true);
     if (near.face < 0) return;
     const Vector3d facing = patch.prepared->normals.row(near.face);
     const double residual = facing.dot(image - near.point);

@@ -11,6 +11,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "face_points.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -20,7 +21,6 @@ using Eigen::Vector3d;
 
 constexpr double kPiece = 0.5;                      // size, tolerances
 constexpr double kSmoothCosine = 0.90630778703665;  // 25 degrees: beyond is a crease, where regions end for good
-constexpr double kNormalCosine = 0.64;              // 50 degrees, as when regions are thinned
 
 }  // namespace
 
@@ -113,7 +113,7 @@ std::vector<int> RegionBorder::settled(const FoundRegion& region, const RunConte
     for (std::size_t i = begin; i < end; ++i) {
       if (i % 256 == 0) context.check();
       const bool all = std::ranges::all_of(motions, [&](const Motion& motion) {
-        return surface.within_facing(motion(pieces[i].point), motion.linear * pieces[i].normal, kNormalCosine, reach);
+        return surface.within_facing(motion(pieces[i].point), motion.linear * pieces[i].normal, kFacetNormals, reach);
       });
       kept[i] = all ? 1 : 0;
     }

@@ -14,6 +14,7 @@
 #include "orbifit/model/random.h"
 
 #include "subgroups_within.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -23,7 +24,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr int kComponentSamples = 96;
 constexpr double kKeptShare = 0.9;
 constexpr double kKeptByAll = 0.96;  // by rotations of a continuous group: a regular polygon keeps 0.9 of itself
@@ -149,7 +149,7 @@ int ComponentMover::image(std::size_t component, const Motion& motion, double re
   for (Eigen::Index s = 0; s < samples.points.rows(); ++s) {
     const Vector3d normal = motion.linear * samples.normals.row(s).transpose();
     const Vector3d place = motion(samples.points.row(s));
-    if (whole_.within_facing(place, normal, kNormalCosine, reach)) ++hits;
+    if (whole_.within_facing(place, normal, kAlikeNormals, reach)) ++hits;
     if (s + 1 - hits > (1 - least_share) * kComponentSamples) return -1;
   }
   return target;

@@ -14,6 +14,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "face_points.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -23,9 +24,8 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr int kAngles = 12;
-constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr int kPatchSamples = 700;
-constexpr double kSlack = 1.2;       // of the tolerance, for faces that are collected
+constexpr double kFacesSlack = 1.2;  // of the tolerance, for faces that are collected
 constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
 
 /// The faces about one axis.
@@ -50,7 +50,7 @@ class Turned {
     const Vector3d centroid = face_centroid(prepared_, face);
     const Vector3d normal = prepared_.normals.row(face);
     return std::ranges::all_of(turns_, [&](const Motion& motion) {
-      return surface_.within_facing(motion(centroid), motion.linear * normal, kNormalCosine, tolerance_);
+      return surface_.within_facing(motion(centroid), motion.linear * normal, kAlikeNormals, tolerance_);
     });
   }
 
@@ -62,10 +62,10 @@ class Turned {
   std::vector<Motion> turns_;
 };
 
-class Search {
+class RevolutionSearch {
  public:
-  Search(const PreparedMesh& prepared, const SurfaceIndex& whole, const std::vector<FoundRegion>& known,
-         const RevolutionRegionOptions& options, const RunContext& context)
+  RevolutionSearch(const PreparedMesh& prepared, const SurfaceIndex& whole, const std::vector<FoundRegion>& known,
+                   const RevolutionRegionOptions& options, const RunContext& context)
       : prepared_(prepared), whole_(whole), known_(known), options_(options), context_(context) {
     for (const std::vector<int>& faces : prepared.components.faces) {
       areas_.push_back(area_of(prepared, faces));
@@ -78,7 +78,7 @@ class Search {
   void look_at(const Line& axis) {
     constexpr int kRounds = 4;
     GroupPlacement turn{{Family::Cinfv, 1}, frame_about(axis.direction), axis.point};
-    FoundRegion region{turn, faces_about(axis, whole_, kSlack * options_.tolerance), 0, "turned about an axis"};
+    FoundRegion region{turn, faces_about(axis, whole_, kFacesSlack * options_.tolerance), 0, "turned about an axis"};
     for (int round = 0; round < kRounds; ++round) {
       region.area = area_of(prepared_, region.faces);
       if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
@@ -90,7 +90,7 @@ class Search {
       if (!options_.fine) break;
       const Line better{region.placement.centre, region.placement.frame.col(2)};
       std::vector<int> fewer =
-          faces_about(better, round == 0 ? whole_ : *patch.index, kSlack * continuous_tolerance(patch));
+          faces_about(better, round == 0 ? whole_ : *patch.index, kFacesSlack * continuous_tolerance(patch));
       if (fewer == region.faces) break;
       region.faces = std::move(fewer);
     }
@@ -253,7 +253,7 @@ std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance
 std::vector<FoundRegion> find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
                                                  const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
                                                  const RevolutionRegionOptions& options, const RunContext& context) {
-  Search search(prepared, whole, known, options, context);
+  RevolutionSearch search(prepared, whole, known, options, context);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (options.late && options.late()) break;
     context.check();

@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 using Corners = std::array<Vector3d, 3>;
 
-constexpr int kSamples = 1500;
-constexpr double kLeastReach = 0.02;  // of the diagonal
-constexpr double kFineness = 5;       // pieces of triangle on the reach
+constexpr int kSurroundingSamples = 1500;
+constexpr double kLeastSurroundings = 0.02;  // of the diagonal
+constexpr double kFineness = 5;              // pieces of triangle on the reach
 
 bool about_point(const PointGroup& group) {
   return group.family == Family::K || group.family == Family::Kh;
@@ -107,7 +107,7 @@ class Cutter {
 
 // Every so much area one fragment, in the order of the faces.
 std::vector<Fragment> thinned(const std::vector<Fragment>& fragments, double area) {
-  const double step = area / kSamples;
+  const double step = area / kSurroundingSamples;
   std::vector<Fragment> result;
   double sum = 0;
   double next = step / 2;
@@ -133,7 +133,7 @@ SurfacePatch surroundings(const PreparedMesh& prepared, const std::shared_ptr<co
     return result;
   };
   std::vector<OrbitDistance> orbits;
-  double reach = kLeastReach;
+  double reach = kLeastSurroundings;
   for (const int seed : seeds) {
     const Corners c = corners(seed);
     const Vector3d centroid = (c[0] + c[1] + c[2]) / 3;

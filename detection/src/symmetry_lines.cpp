@@ -10,6 +10,8 @@
 
 #include "orbifit/model/dense.h"
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -23,7 +25,6 @@ constexpr std::size_t kMostPairs = 24;   // members of a class of which all pair
 constexpr std::size_t kNeighbours = 6;
 constexpr std::size_t kMostAxes = 60;
 constexpr std::size_t kMostPlanes = 40;
-constexpr int kHighestOrder = 72;
 constexpr double kRevolutionAngle = 0.1;  // radians
 
 // What a motion that carries one part onto another must carry along.

@@ -7,13 +7,14 @@
 #include <numbers>
 #include <numeric>
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNormalCosine = 0.90630778703665;  // 25 degrees
 constexpr int kContinuousAngles = 20;
 constexpr double kFarOff = 2;  // tolerances
 
@@ -26,7 +27,7 @@ bool on_surface(const SurfacePatch& patch, const Motion& motion, const SurfaceSa
   const Vector3d image = motion(row(samples.points, sample));
   if (at_crease) return patch.index->within(image, tolerance);
   const Vector3d normal = motion.linear * row(samples.normals, sample);
-  return patch.index->within_facing(image, normal, kNormalCosine, tolerance);
+  return patch.index->within_facing(image, normal, kAlikeNormals, tolerance);
 }
 
 bool keeps(const SurfacePatch& patch, const Motion& motion, std::size_t sample, double tolerance) {

@@ -1,0 +1,16 @@
+#pragma once
+
+namespace orbifit {
+
+/// Cosines of the angles within which the normals of a surface and of its image agree.
+inline constexpr double kAlikeNormals = 0.90630778703665;  ///< 25 degrees: where a symmetry is verified
+inline constexpr double kNearNormals = 0.8;                ///< 37 degrees: the motion may be a little off yet
+inline constexpr double kFacetNormals = 0.64;              ///< 50 degrees: between facets of small round parts
+
+/// The highest order of a finite rotation that is looked for; beyond it a shape counts as turned.
+inline constexpr int kHighestOrder = 72;
+
+/// Of the mesh's area: what keeps more of it may be rough, and is not asked whether it is chance.
+inline constexpr double kNearlyWhole = 0.9;
+
+}  // namespace orbifit
