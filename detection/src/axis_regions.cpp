@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "orbifit/detection/verification.h"
@@ -189,13 +191,10 @@ class AxisSearch {
     std::ranges::stable_sort(orders_, [](const Order& x, const Order& y) {
       return (x.n > 2) != (y.n > 2) ? x.n > 2 : x.n * x.evidence > y.n * y.evidence;
     });
-    int half_turns = 0;
-    for (std::size_t i = 0; i < orders_.size() && !late(); ++i) {
-      // A row of n things has 2 n half-turns; the strongest will do.
-      if (orders_[i].n == 2 && half_turns++ >= kMostHalfTurns) break;
-      context_.progress("axes", 0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(orders_.size()));
-      look_at(orders_[i]);
-    }
+    const auto halves = std::ranges::find(orders_, 2, &Order::n);
+    // A row of n things has 2 n half-turns; the strongest will do.
+    if (orders_.end() - halves > kMostHalfTurns) orders_.erase(halves + kMostHalfTurns, orders_.end());
+    search_.settle_all<Place>({}, [&](Place& place) { return next(place); });
     result.regions = search_.take();
     return result;
   }
@@ -262,40 +261,72 @@ class AxisSearch {
     const double share = std::max(kLeast, kLeastOfTurned * static_cast<double>(turns.turned().size()) / count);
     if (static_cast<double>(turns.turned().size()) < kLeast * count) return;
     for (const GroupPlacement& placement : groups_with_middle(surface_, turns.axis(), turns.turned(), share)) {
-      search_.settle("axes", placement, false);
+      search_.settle({"axes", placement, false});
     }
   }
 
-  void look_at(const Order& order) {
-    const Turns& turns = *turns_[order.axis];
-    const Line& axis = axes_[order.axis];
-    const GroupPlacement turn{{Family::Cn, order.n}, frame_about(axis.direction), axis.point};
-    const double least = order.n > 2 ? options_.least_share : kLeastOfHalfTurns;
-    if (order.evidence < least) return;
-    const auto fresh = [&](const GroupPlacement& placement, const std::vector<std::size_t>& kept) {
-      std::vector<char> explained = search_.explained(placement);
-      // What was tried for a multiple of the order and failed is not tried again.
-      for (const auto& [of, samples] : tried_) {
-        if (of.first != order.axis || of.second % order.n != 0) continue;
-        for (const int sample : samples) explained[static_cast<std::size_t>(sample)] = 1;
+  // Where the search for candidates is: which order, and which of the groups that turn by it, itself last.
+  struct Place {
+    std::size_t order = 0;
+    std::size_t group = 0;
+    std::vector<GroupPlacement> larger;  // of the order, once its first group is asked for
+  };
+
+  // The next candidate, `place` after it.
+  std::optional<LineRegionSearch::Candidate> next(Place& place) {
+    for (; place.order < orders_.size(); place = {place.order + 1, 0, {}}) {
+      const Order& order = orders_[place.order];
+      const Turns& turns = *turns_[order.axis];
+      const GroupPlacement turn{
+          {Family::Cn, order.n}, frame_about(axes_[order.axis].direction), axes_[order.axis].point};
+      if (place.group == 0) {
+        context_.progress("axes", 0.5 + 0.5 * static_cast<double>(place.order) / static_cast<double>(orders_.size()));
+        tried_.resize(place.order);
+        tried_.emplace_back();
+        if (order.evidence < least(order) || !fresh(place.order, turn, order.kept)) continue;
+        place.larger = larger(order);
       }
-      return turns.evidence(kept, explained) >= least;
-    };
-    if (!fresh(turn, order.kept)) return;
-    // Half-turns are many; what more there is to theirs, mirrors will say.
-    if (order.n > 2) {
-      const std::vector<std::size_t> spoken = turns.speaking(order.kept);
-      for (const AxialGroup& group : larger_groups(surface_, axis, order.n, turns.samples(spoken), least)) {
-        if (fresh(group.placement, turns.kept_by(order.kept, group.placement))) {
-          search_.settle("axes", group.placement, false);
+      while (place.group < place.larger.size()) {
+        const GroupPlacement& group = place.larger[place.group++];
+        if (fresh(place.order, group, turns.kept_by(order.kept, group))) {
+          return LineRegionSearch::Candidate{"axes", group, false};
         }
       }
+      if (place.group++ == place.larger.size() && fresh(place.order, turn, order.kept)) {
+        return LineRegionSearch::Candidate{"axes", turn, true};
+      }
+      tried_[place.order] = turns.samples(order.kept);
     }
-    if (fresh(turn, order.kept)) search_.settle("axes", turn, true);
-    tried_.push_back({{order.axis, order.n}, turns.samples(order.kept)});
+    return std::nullopt;
   }
 
-  static constexpr int kMostHalfTurns = 12;
+  double least(const Order& order) const { return order.n > 2 ? options_.least_share : kLeastOfHalfTurns; }
+
+  // Half-turns are many; what more there is to theirs, mirrors will say.
+  std::vector<GroupPlacement> larger(const Order& order) const {
+    std::vector<GroupPlacement> result;
+    if (order.n <= 2) return result;
+    const Turns& turns = *turns_[order.axis];
+    const std::vector<int> spoken = turns.samples(turns.speaking(order.kept));
+    for (const AxialGroup& group : larger_groups(surface_, axes_[order.axis], order.n, spoken, least(order))) {
+      result.push_back(group.placement);
+    }
+    return result;
+  }
+
+  // Whether enough speaks for a group that turns by the order, and keeps the samples, that is not explained yet.
+  bool fresh(std::size_t number, const GroupPlacement& placement, const std::vector<std::size_t>& kept) const {
+    const Order& order = orders_[number];
+    std::vector<char> explained = search_.explained(placement);
+    // What was tried for a multiple of the order and failed is not tried again.
+    for (std::size_t other = 0; other < number; ++other) {
+      if (orders_[other].axis != order.axis || orders_[other].n % order.n != 0) continue;
+      for (const int sample : tried_[other]) explained[static_cast<std::size_t>(sample)] = 1;
+    }
+    return turns_[order.axis]->evidence(kept, explained) >= least(order);
+  }
+
+  static constexpr std::ptrdiff_t kMostHalfTurns = 12;
   static constexpr double kLeastOfHalfTurns = 0.03;  // of the surface: any few things have one
 
   const ScreenedSurface& surface_;
@@ -305,7 +336,7 @@ class AxisSearch {
   LineRegionSearch search_;
   std::vector<std::unique_ptr<Turns>> turns_;  // of the axes, none where time was up
   std::vector<Order> orders_;
-  std::vector<std::pair<std::pair<std::size_t, int>, std::vector<int>>> tried_;  // axis, order, samples
+  std::vector<std::vector<int>> tried_;  // by order: the samples that it keeps, where it was looked at
 };
 
 }  // namespace

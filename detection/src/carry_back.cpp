@@ -39,8 +39,7 @@ class CarryBack {
         prepared_(prepared),
         options_(options),
         context_(context),
-        border_(fine, coarse, prepared, options.tolerance),
-        whole_(std::make_shared<const SurfaceIndex>(fine.mesh)) {}
+        border_(fine, coarse, prepared, options.tolerance) {}
 
   Findings run(Findings found) {
     context_.progress("carrying back", 0);
@@ -104,7 +103,7 @@ class CarryBack {
   // Samples of the region, and the whole surface to find their images on: one index serves all regions.
   SurfacePatch on_whole(const FoundRegion& region) const {
     SurfacePatch patch = sample_patch(fine_, region.faces, kPartSamples, options_.tolerance, context_, "carried back");
-    patch.index = whole_;
+    patch.index = fine_.index;
     return patch;
   }
 
@@ -123,8 +122,7 @@ class CarryBack {
       regions[i].placement = refined[i].placement;
       regions[i].placement.centre = coarse_of_fine(refined[i].placement.centre);
     }
-    complete_regions(prepared_, SurfaceIndex(prepared_.mesh), {options_.tolerance, regions.size(), nullptr, {}},
-                     context_, regions);
+    complete_regions(prepared_, *prepared_.index, {options_.tolerance, regions.size(), nullptr, {}}, context_, regions);
     std::vector<GroupPlacement> result;
     for (const FoundRegion& region : regions) {
       result.push_back(region.placement);
@@ -222,7 +220,6 @@ class CarryBack {
   const CarryBackOptions& options_;
   const RunContext& context_;
   RegionBorder border_;
-  std::shared_ptr<const SurfaceIndex> whole_;
 };
 
 }  // namespace

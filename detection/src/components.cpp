@@ -239,7 +239,7 @@ Motion refined_motion(const SurfacePatch& patch, const PreparedMesh& prepared, c
   const std::optional<Motion> motion = motion_by_order(patch, prepared, part);
   const double off = motion ? motion_distance(*motion, start, patch.moments.centroid, patch.moments.radius) : 1;
   if (off <= patch.tolerance) return *motion;
-  return fit_motion(patch, prepared, SurfaceIndex(prepared.mesh, part), start, 0);
+  return fit_motion(patch, prepared, prepared.index->part(part), start, 0);
 }
 
 ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance, double least_share,

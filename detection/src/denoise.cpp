@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -187,6 +188,7 @@ void denoise(PreparedMesh& prepared, double sigma, const RunContext& context) {
     }
   }
   prepared.area = prepared.areas.sum();
+  prepared.index = std::make_shared<const SurfaceIndex>(mesh);
 }
 
 }  // namespace orbifit

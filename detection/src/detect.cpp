@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "orbifit/detection/annotate.h"
@@ -45,6 +46,8 @@ constexpr double kLeastNoise = 3e-4;     // of the diagonal
 constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
 constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
 constexpr int kScreenDirections = 2500;
+constexpr double kLongest = 1e8;     // seconds, which a clock can add
+constexpr double kLeastSeconds = 1;  // for the whole
 constexpr int kDetectSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
@@ -58,35 +61,55 @@ class Detector {
            RunContext& context)
       : options_(options),
         context_(context),
+        limited_(context),
         start_(start),
         prepared_(prepared),
         segments_(std::move(segments)),
         screen_(hemisphere_directions(kScreenDirections)) {}
 
   Findings run() {
-    find_whole();
-    if (prepared_.components.faces.size() > 1) {
-      const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
-      for (const FoundRegion& region : parts.regions) regions_.push_back(region);
-      drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
-      add_patterns(prepared_, parts, false);
-    }
-    find_in_segments();
+    // The whole's own group tells most; it gets its time even where the mesh took long to prepare.
+    limit(Clock::now(), std::max(options_.max_seconds, kLeastSeconds));
+    in_time("whole", [this] { find_whole(); });
+    limit(start_, options_.max_seconds);
+    in_time("parts", [this] { find_in_components(); });
+    in_time("pieces", [this] { find_in_segments(); });
     if (!late(1)) {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
       drop_lesser_groups(prepared_, options_.tolerance, regions_, options_.explanation);
-      complete_regions(prepared_, *whole_index_,
+      complete_regions(prepared_, *prepared_.index,
                        {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }}, context_,
                        regions_);
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     drop_lesser_groups(prepared_, options_.tolerance, regions_, options_.explanation);
-    drop_featureless(prepared_, *whole_index_, options_.tolerance, context_, regions_, options_.explanation);
+    drop_featureless(prepared_, *prepared_.index, options_.tolerance, context_, regions_, options_.explanation);
     return {std::move(regions_), std::move(patterns_)};
   }
 
  private:
+  void limit(Clock::time_point from, double seconds) {
+    limited_.deadline = context_.deadline;
+    if (options_.max_seconds <= 0) return;
+    const std::chrono::duration<double> time(std::min(seconds, kLongest));
+    const auto end = from + std::chrono::duration_cast<Clock::duration>(time);
+    if (!context_.deadline || end < *context_.deadline) limited_.deadline = end;
+  }
+
+  // Stages look at the time between two candidates; where one alone takes too long it is given up, with its stage.
+  template <typename Stage>
+  void in_time(std::string_view name, const Stage& stage) {
+    try {
+      stage();
+    } catch (const TimeoutError&) {
+      context_.check();  // the caller's time has passed as well
+      if (options_.explanation != nullptr) {
+        options_.explanation->notes.push_back({std::string(name), "all", false, "no time left"});
+      }
+    }
+  }
+
   // Whether the share of the time is spent. What was found is worth more with its images: they get the last part.
   bool late(double share = 0.8) const {
     if (options_.max_seconds <= 0) return false;
@@ -95,12 +118,11 @@ class Detector {
   }
 
   void find_whole() {
-    context_.progress("whole", 0);
+    limited_.progress("whole", 0);
     std::vector<int> all(static_cast<std::size_t>(prepared_.mesh.faces.rows()));
     std::iota(all.begin(), all.end(), 0);
-    const SurfacePatch patch = make_patch(prepared_, all, options_.samples, options_.tolerance, context_, "whole");
-    whole_index_ = patch.index;
-    const std::optional<OwnGroup> group = find_own_group(patch, &screen_, {}, context_);
+    const SurfacePatch patch = make_patch(prepared_, all, options_.samples, options_.tolerance, limited_, "whole");
+    const std::optional<OwnGroup> group = find_own_group(patch, &screen_, {}, limited_);
     if (!group) return;
     regions_.push_back({group->placement, all, prepared_.area, "whole"});
     if (options_.explanation != nullptr) {
@@ -108,17 +130,25 @@ class Detector {
     }
   }
 
+  void find_in_components() {
+    if (prepared_.components.faces.size() < 2) return;
+    const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
+    for (const FoundRegion& region : parts.regions) regions_.push_back(region);
+    drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
+    add_patterns(prepared_, parts, false);
+  }
+
   PartRegionOptions part_options(bool pieces) const {
     return {options_.tolerance, kLeastShare, pieces, options_.explanation, [this] { return late(); }};
   }
 
   ComponentSurvey survey_of(const PreparedMesh& partition) const {
-    return survey_components(partition, options_.tolerance, kLeastShare, context_);
+    return survey_components(partition, options_.tolerance, kLeastShare, limited_);
   }
 
   PartRegions find_in_parts(const PreparedMesh& partition, ComponentSurvey survey, bool pieces) const {
-    return find_part_regions(partition, std::move(survey), *whole_index_, regions_, screen_, part_options(pieces),
-                             context_);
+    return find_part_regions(partition, std::move(survey), *prepared_.index, regions_, screen_, part_options(pieces),
+                             limited_);
   }
 
   // Pieces of surface between creases take the place of components.
@@ -185,23 +215,24 @@ class Detector {
   // What turns and mirrors into itself about axes and planes that pieces suggest, wherever it ends.
   void find_about_lines(const PreparedMesh& partition, const ComponentSurvey& survey) {
     if (late()) return;
-    context_.progress("axes", 0);
-    const ScreenedSurface surface(partition, options_.tolerance, kDetectSamples, context_);
+    limited_.progress("axes", 0);
+    const ScreenedSurface surface(partition, options_.tolerance, kDetectSamples, limited_);
     const SymmetryLines lines = find_symmetry_lines(partition, survey, options_.tolerance);
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }};
     axes = distinct_lines(axes);
-    AxisRegions about = find_axis_regions(surface, *whole_index_, axes, regions_, options, context_);
+    AxisRegions about = find_axis_regions(surface, *prepared_.index, axes, regions_, options, limited_);
     add_of_pieces(std::move(about.regions));
-    context_.progress("subgroups", 0);
-    add_of_pieces(find_wider_subgroups(surface, *whole_index_, regions_, about.turning, regions_, options, context_));
+    limited_.progress("subgroups", 0);
+    add_of_pieces(
+        find_wider_subgroups(surface, *prepared_.index, regions_, about.turning, regions_, options, limited_));
     if (late()) return;
     options.least_share = kLeastMirrored;
-    std::vector<CandidateLine> planes = mirror_planes(surface, about.turning, options.least_share, context_);
+    std::vector<CandidateLine> planes = mirror_planes(surface, about.turning, options.least_share, limited_);
     planes.insert(planes.end(), lines.planes.begin(), lines.planes.end());
-    add_of_pieces(find_plane_regions(surface, *whole_index_, planes, about.turning, regions_, options, context_));
+    add_of_pieces(find_plane_regions(surface, *prepared_.index, planes, about.turning, regions_, options, limited_));
   }
 
   // Of regions that turn by a third or less.
@@ -233,16 +264,16 @@ class Detector {
   void find_turned(const PreparedMesh& partition, bool fine) {
     if (late()) return;
     std::vector<Line> axes = axes_of_regions();
-    fitted_axes_ = revolution_axes(partition, options_.tolerance, context_);
+    fitted_axes_ = revolution_axes(partition, options_.tolerance, limited_);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
     RevolutionRegionOptions turned{options_.tolerance, kLeastShare, fine, options_.explanation,
                                    [this] { return late(); }};
-    add_of_pieces(find_revolution_regions(partition, *whole_index_, distinct, regions_, turned, context_));
+    add_of_pieces(find_revolution_regions(partition, *prepared_.index, distinct, regions_, turned, limited_));
   }
 
   void add_patterns(const PreparedMesh& partition, const PartRegions& parts, bool pieces) {
-    for (Pattern& pattern : find_patterns(partition, parts, regions_, part_options(pieces), context_)) {
+    for (Pattern& pattern : find_patterns(partition, parts, regions_, part_options(pieces), limited_)) {
       pattern.id = static_cast<int>(patterns_.size());
       patterns_.push_back(std::move(pattern));
     }
@@ -250,11 +281,11 @@ class Detector {
 
   const DetectOptions& options_;
   RunContext& context_;
+  RunContext limited_;  // which the time of the options ends
   Clock::time_point start_;
   const PreparedMesh& prepared_;
   Components segments_;
   DirectionSet screen_;
-  std::shared_ptr<const SurfaceIndex> whole_index_;
   std::vector<FoundRegion> regions_;
   std::vector<Pattern> patterns_;
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -83,72 +84,104 @@ bool LineRegionSearch::leaves(const GroupPlacement& placement, const Line& axis)
   });
 }
 
-void LineRegionSearch::settle(std::string_view stage, const GroupPlacement& start, bool enlarge) {
-  FoundRegion region{start, grid_region(surface_, start, context_), 0, "turns or mirrors into itself"};
+LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, const RunContext& context) const {
+  const GroupPlacement& start = candidate.start;
+  FoundRegion region{start, grid_region(surface_, start, context), 0, "turns or mirrors into itself"};
+  const auto judged = [&](bool kept, std::string_view reason) {
+    Judgement result;
+    if (options_.explanation != nullptr) {
+      result.notes.push_back({std::string(candidate.stage),
+                              region.placement.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces",
+                              kept, std::string(reason)});
+    }
+    if (kept) result.region = std::move(region);
+    return result;
+  };
   const double least = options_.least_share * surface_.prepared.area;
   const auto measure = [&] {
     region.area = 0;
     for (const int f : region.faces) region.area += surface_.prepared.areas[f];
     return region.area >= least;
   };
-  if (!measure()) return note(stage, region, false, "too small");
-  if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
-  SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
-  if (hopeless(patch, start)) return note(stage, region, false, "not verified: a first look keeps too little");
-  region.placement = refine(patch, start, context_);
-  if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-  std::vector<int> again = grid_region(surface_, region.placement, context_);
+  if (!measure()) return judged(false, "too small");
+  if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
+  SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
+  if (hopeless(patch, start, context)) return judged(false, "not verified: a first look keeps too little");
+  region.placement = refine(patch, start, context);
+  if (says_nothing_new(region)) return judged(false, "known from a larger region");
+  std::vector<int> again = grid_region(surface_, region.placement, context);
   if (again != region.faces) {
     region.faces = std::move(again);
-    if (!measure()) return note(stage, region, false, "too small once refined");
-    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
-    region.placement = refine(patch, region.placement, context_);
+    if (!measure()) return judged(false, "too small once refined");
+    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
+    region.placement = refine(patch, region.placement, context);
   }
-  if (mere_plates(region.faces)) return note(stage, region, false, "any two plates are mirror images");
-  if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
+  if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
+  if (says_nothing_new(region)) return judged(false, "known from a larger region");
   for (int round = 0;; ++round) {
-    const Verification verification = verify_group(patch, region.placement, context_);
+    const Verification verification = verify_group(patch, region.placement, context);
     const std::string reason = objection(verification);
     if (reason.empty()) break;
-    if (round == kRounds || verification.joint < kNearly) return note(stage, region, false, reason);
-    std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context_);
-    if (fewer == region.faces) return note(stage, region, false, reason);
+    if (round == kRounds || verification.joint < kNearly) return judged(false, reason);
+    std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context);
+    if (fewer == region.faces) return judged(false, reason);
     region.faces = std::move(fewer);
-    if (!measure()) return note(stage, region, false, "too small once thinned out");
-    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context_, "line");
-    region.placement = refine(patch, region.placement, context_);
+    if (!measure()) return judged(false, "too small once thinned out");
+    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
+    region.placement = refine(patch, region.placement, context);
   }
-  if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-  if (region.area < kNearlyWhole * surface_.prepared.area && fades(patch, region.placement, context_)) {
-    return note(stage, region, false, "fades as the tolerance shrinks");
+  if (says_nothing_new(region)) return judged(false, "known from a larger region");
+  if (region.area < kNearlyWhole * surface_.prepared.area && fades(patch, region.placement, context)) {
+    return judged(false, "fades as the tolerance shrinks");
   }
   // What slides is turned or straight, and was looked for as such: no larger group is.
-  const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context_); };
-  if (slides()) return note(stage, region, false, "other motions keep it as well");
+  const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context); };
+  if (slides()) return judged(false, "other motions keep it as well");
   std::optional<OwnGroup> own;
-  if (enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
+  if (candidate.enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context);
   if (own && contains_group(own->placement, region.placement, patch.moments.centroid, patch.moments.radius,
                             2 * patch.tolerance)) {
     region.placement = own->placement;
-    if (says_nothing_new(region)) return note(stage, region, false, "known from a larger region");
-    if (slides()) return note(stage, region, false, "other motions keep it as well");
+    if (says_nothing_new(region)) return judged(false, "known from a larger region");
+    if (slides()) return judged(false, "other motions keep it as well");
   }
-  note(stage, region, true, "verified");
-  said_.push_back(said_of(region));
-  found_.push_back(std::move(region));
+  return judged(true, "verified");
+}
+
+std::vector<LineRegionSearch::Judgement> LineRegionSearch::judge_all(const std::vector<Candidate>& candidates) const {
+  if (candidates.size() == 1) return {judge(candidates.front(), context_)};
+  RunContext alone = context_;
+  alone.threads = 1;
+  alone.on_progress = {};
+  std::vector<Judgement> result(candidates.size());
+  parallel_for(context_, candidates.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = judge(candidates[i], alone);
+  });
+  return result;
+}
+
+bool LineRegionSearch::accept(Judgement judgement) {
+  if (options_.explanation != nullptr) {
+    std::ranges::move(judgement.notes, std::back_inserter(options_.explanation->notes));
+  }
+  if (!judgement.region) return false;
+  said_.push_back(said_of(*judgement.region));
+  found_.push_back(std::move(*judgement.region));
+  return true;
 }
 
 // Whether a rough fit keeps so little of the patch that a better one will not do. Most candidates end here.
-bool LineRegionSearch::hopeless(const SurfacePatch& patch, const GroupPlacement& start) const {
+bool LineRegionSearch::hopeless(const SurfacePatch& patch, const GroupPlacement& start,
+                                const RunContext& context) const {
   constexpr int kLooks = 300;
   constexpr double kLineSlack = 0.04;  // of the share: two standard deviations, and what the fit may gain
   RefinementOptions rough;
   rough.samples = 150;
   rough.iterations = 6;
-  const GroupPlacement placement = refine(patch, start, context_, rough);
+  const GroupPlacement placement = refine(patch, start, context, rough);
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
   const double tolerance = placement.group.continuous() ? continuous_tolerance(patch) : patch.tolerance;
-  return verify(patch, motions, tolerance, kLooks, kNearly - kLineSlack, context_).joint < kNearly - kLineSlack;
+  return verify(patch, motions, tolerance, kLooks, kNearly - kLineSlack, context).joint < kNearly - kLineSlack;
 }
 
 // Whether the faces lie in a few planes only: any two plates are mirror images, and so are two walls with floor and
@@ -168,14 +201,6 @@ bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
 bool LineRegionSearch::says_nothing_new(const FoundRegion& region) const {
   return says_nothing_new_beside(surface_.prepared, known_, region, surface_.tolerance, kNothingNew) ||
          says_nothing_new_beside(surface_.prepared, found_, region, surface_.tolerance, kNothingNew);
-}
-
-void LineRegionSearch::note(std::string_view stage, const FoundRegion& region, bool kept,
-                            std::string_view reason) const {
-  if (options_.explanation == nullptr) return;
-  options_.explanation->notes.push_back(
-      {std::string(stage), region.placement.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces",
-       kept, std::string(reason)});
 }
 
 }  // namespace orbifit

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "orbifit/detection/axis_regions.h"
+#include "orbifit/detection/explanation.h"
 
 namespace orbifit {
 
@@ -22,13 +26,53 @@ class LineRegionSearch {
   /// By sample: whether a region found before says that the group keeps it, or a turning axis that this is no news.
   std::vector<char> explained(const GroupPlacement& placement) const;
 
+  /// A group that may keep some of the surface.
+  struct Candidate {
+    std::string_view stage;  ///< outlives the search
+    GroupPlacement start;
+    bool enlarge = false;  ///< whether to look for a larger group there
+  };
+
   /// Refines the group on the surface it keeps, and adds the region if it holds and says something new.
-  /// \param enlarge whether to look for a larger group there
-  void settle(std::string_view stage, const GroupPlacement& start, bool enlarge);
+  void settle(const Candidate& candidate) { accept(judge(candidate, context_)); }
+
+  /// Settles one candidate after the other. Most fail, and leave the search as it was: several are judged at once, and
+  /// those after one that is added once more.
+  /// \param at    where the candidates begin
+  /// \param next  gives the candidate at `at` and moves on, as far as what was found tells which; nothing at the end
+  template <typename State>
+  void settle_all(State at, const std::function<std::optional<Candidate>(State& at)>& next) {
+    const std::size_t most = context_.threads > 1 ? 2 * static_cast<std::size_t>(context_.threads) : 1;
+    while (!(options_.late && options_.late())) {
+      std::vector<Candidate> candidates;
+      std::vector<State> after;
+      State ahead = at;
+      while (candidates.size() < most) {
+        std::optional<Candidate> candidate = next(ahead);
+        if (!candidate) break;
+        candidates.push_back(std::move(*candidate));
+        after.push_back(ahead);
+      }
+      if (candidates.empty()) return;
+      std::vector<Judgement> judgements = judge_all(candidates);
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        at = after[i];
+        if (accept(std::move(judgements[i]))) break;
+      }
+    }
+  }
 
   std::vector<FoundRegion> take() { return std::move(found_); }
 
  private:
+  struct Judgement {
+    std::optional<FoundRegion> region;  // where it is to be added
+    std::vector<Explanation::Note> notes;
+  };
+  Judgement judge(const Candidate& candidate, const RunContext& context) const;
+  std::vector<Judgement> judge_all(const std::vector<Candidate>& candidates) const;
+  bool accept(Judgement judgement);  // whether a region was added
+
   // What a region says of the samples.
   struct Said {
     SurfaceMoments moments;
@@ -36,10 +80,9 @@ class LineRegionSearch {
   };
   Said said_of(const FoundRegion& region) const;
   bool leaves(const GroupPlacement& placement, const Line& axis) const;
-  bool hopeless(const SurfacePatch& patch, const GroupPlacement& start) const;
+  bool hopeless(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context) const;
   bool mere_plates(const std::vector<int>& faces) const;
   bool says_nothing_new(const FoundRegion& region) const;
-  void note(std::string_view stage, const FoundRegion& region, bool kept, std::string_view reason) const;
 
   const ScreenedSurface& surface_;
   const SurfaceIndex& whole_;

@@ -102,7 +102,7 @@ class Erosion {
         const auto out = [&](int image) { return image >= 0 && in_[static_cast<std::size_t>(image)] == 0; };
         if (std::ranges::any_of(images_[static_cast<std::size_t>(face)], out)) doubtful.push_back(face);
       }
-      if (!doubtful.empty()) judge(SurfaceIndex(prepared_.mesh, faces_), doubtful, kMostAstray);
+      if (!doubtful.empty()) judge(prepared_.index->part(faces_), doubtful, kMostAstray);
     }
     return faces_;
   }

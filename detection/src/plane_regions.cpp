@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "line_region_search.h"
 
@@ -165,10 +166,8 @@ std::vector<FoundRegion> find_plane_regions(const ScreenedSurface& surface, cons
   for (const Line& axis : turning) search.add_turning_axis(axis);
   const Mirrored mirrored(surface);
   const Eigen::Index count = surface.samples.points.rows();
-  for (std::size_t k = 0; k < planes.size() && !(options.late && options.late()); ++k) {
-    context.progress("planes", static_cast<double>(k) / static_cast<double>(planes.size()));
-    const Line& plane = planes[k].line;
-    const GroupPlacement mirror{{Family::Cs, 1}, frame_about(plane.direction), plane.point};
+  // Whether enough of the surface speaks for the mirror that no region found says yet.
+  const auto worth_a_look = [&](const Line& plane, const GroupPlacement& mirror) {
     const std::vector<char> explained = search.explained(mirror);
     Eigen::Index evidence = 0;
     Eigen::Index speaking = 0;
@@ -181,10 +180,20 @@ std::vector<FoundRegion> find_plane_regions(const ScreenedSurface& surface, cons
       ++speaking;
       if (explained[static_cast<std::size_t>(i)] == 0) ++evidence;
     }
-    if (static_cast<double>(evidence) < options.least_share * static_cast<double>(count)) continue;
-    if (static_cast<double>(speaking) < kLeastSpeaking * static_cast<double>(kept)) continue;
-    search.settle("planes", mirror, true);
-  }
+    return static_cast<double>(evidence) >= options.least_share * static_cast<double>(count) &&
+           static_cast<double>(speaking) >= kLeastSpeaking * static_cast<double>(kept);
+  };
+  search.settle_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
+    for (; k < planes.size(); ++k) {
+      context.progress("planes", static_cast<double>(k) / static_cast<double>(planes.size()));
+      const Line& plane = planes[k].line;
+      const GroupPlacement mirror{{Family::Cs, 1}, frame_about(plane.direction), plane.point};
+      if (!worth_a_look(plane, mirror)) continue;
+      ++k;
+      return LineRegionSearch::Candidate{"planes", mirror, true};
+    }
+    return std::nullopt;
+  });
   return search.take();
 }
 

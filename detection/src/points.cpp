@@ -59,13 +59,14 @@ class PointDetector {
         surface_(prepare_points(scan, kMostKept, context)),
         tolerance_(std::min(0.1, std::max({options.tolerance, 2 * surface_.noise, 0.5 * surface_.spacing}))),
         prepared_(prepare(surfels(surface_, kSampled * surface_.spacing))),
-        covering_(surfels(surface_, kCovering * surface_.spacing)),
         crease_(creases(surface_)),
         screen_(hemisphere_directions(kScreenDirections)) {
     const Similarity normalise = inverse(prepared_.input_of_normalised);
-    for (Eigen::Index v = 0; v < covering_.vertices.rows(); ++v) {
-      covering_.vertices.row(v) = normalise(Vector3d(covering_.vertices.row(v)));
+    Mesh covering = surfels(surface_, kCovering * surface_.spacing);
+    for (Eigen::Index v = 0; v < covering.vertices.rows(); ++v) {
+      covering.vertices.row(v) = normalise(Vector3d(covering.vertices.row(v)));
     }
+    covering_ = std::make_shared<const SurfaceIndex>(covering);
     annotation_.mesh_vertices = static_cast<int>(scan.points.rows());
     annotation_.mesh_faces = annotation_.mesh_vertices;
     annotation_.mesh_diagonal = diagonal(scan.points);
@@ -115,7 +116,7 @@ class PointDetector {
   void find_in(const std::vector<int>& points, const std::string& name, double share, int most) {
     if (known(points)) return;
     SurfacePatch patch = make_patch(prepared_, points, options_.samples, tolerance_, context_, name);
-    patch.index = std::make_shared<const SurfaceIndex>(covering_, points);
+    patch.index = std::make_shared<const SurfaceIndex>(covering_->part(points));
     for (std::size_t s = 0; s < patch.at_crease.size(); ++s) {
       patch.at_crease[s] = crease_[static_cast<std::size_t>(patch.samples.faces[s])];
     }
@@ -185,8 +186,8 @@ class PointDetector {
   std::chrono::steady_clock::time_point start_;
   PointSurface surface_;
   double tolerance_;
-  PreparedMesh prepared_;  // small surfels, which carry samples
-  Mesh covering_;          // large ones, which leave no holes: what the samples' images are compared with
+  PreparedMesh prepared_;                         // small surfels, which carry samples
+  std::shared_ptr<const SurfaceIndex> covering_;  // of large ones, which leave no holes: what images are compared with
   std::vector<char> crease_;
   DirectionSet screen_;
   SymmetryAnnotation annotation_;

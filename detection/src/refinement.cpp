@@ -93,14 +93,16 @@ struct Pairs {
   const GroupPlacement& placement;
   double width;
   double scale;
-  Eigen::Index count;  // of the samples that are looked at
+  Eigen::Index count;        // of the samples that are looked at
+  std::vector<int>& likely;  // by pair: the place of the face that was nearest in the step before, -1 for none
 
-  void add(const Motion& motion, Eigen::Index i, NormalEquations& equations) const {
+  void add(const Motion& motion, Eigen::Index i, int& place, NormalEquations& equations) const {
     const Eigen::Index s = i * patch.samples.points.rows() / count;
     const Vector3d point = patch.samples.points.row(s);
     const Vector3d image = motion(point);
     const Vector3d normal = motion.linear * patch.samples.normals.row(s).transpose();
-    const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNearNormals, width, true);
+    const SurfaceIndex::Nearest near = patch.index->nearest_facing(image, normal, kNearNormals, width, true, place);
+    place = near.place;
     if (near.face < 0) return;
     const Vector3d facing = patch.prepared->normals.row(near.face);
     const double residual = facing.dot(image - near.point);
@@ -117,12 +119,13 @@ struct Pairs {
     constexpr Eigen::Index kBlock = 256;
     constexpr std::size_t kLeastShare = 2;  // blocks
     const auto pairs = static_cast<Eigen::Index>(motions.size()) * count;
+    likely.resize(static_cast<std::size_t>(pairs), -1);
     std::vector<NormalEquations> blocks(static_cast<std::size_t>((pairs + kBlock - 1) / kBlock));
     const auto body = [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const Eigen::Index first = static_cast<Eigen::Index>(b) * kBlock;
         for (Eigen::Index i = first; i < std::min(pairs, first + kBlock); ++i) {
-          add(motions[static_cast<std::size_t>(i / count)], i % count, blocks[b]);
+          add(motions[static_cast<std::size_t>(i / count)], i % count, likely[static_cast<std::size_t>(i)], blocks[b]);
         }
       }
     };
@@ -144,11 +147,12 @@ GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, co
   GroupPlacement placement = start;
   const double scale = std::max(patch.moments.radius, 1e-9);
   const Eigen::Index count = std::min<Eigen::Index>(patch.samples.points.rows(), options.samples);
+  std::vector<int> likely;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const double progress = std::min(1.0, iteration / std::max(1.0, 0.6 * options.iterations));
     const double width = patch.tolerance * std::exp((1 - progress) * std::log(options.first_width) +
                                                     progress * std::log(options.last_width));
-    const Pairs pairs{patch, placement, width, scale, count};
+    const Pairs pairs{patch, placement, width, scale, count, likely};
     const NormalEquations equations = pairs.sum(fitted_motions(placement), context);
     if (equations.weight < 20) break;
     const double moved = apply(equations, scale, placement);

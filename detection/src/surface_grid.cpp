@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "orbifit/model/cover_triangle.h"
+
 namespace orbifit {
 
 namespace {
@@ -13,29 +15,6 @@ using Eigen::Vector3d;
 constexpr double kLeastReach = 1.0 / 400;  // smaller cells take too much memory
 constexpr double kCellsInReach = 2;
 constexpr double kSpacing = 1.6;  // of the points that stand for a face, cells
-
-// Calls `add` on points of the triangle no farther apart than `spacing`.
-template <typename Add>
-void cover_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, double spacing, const Add& add) {
-  // Along the longest edge, in rows towards the third corner.
-  Vector3d corners[3] = {a, b, c};
-  const double lengths[3] = {(b - a).norm(), (c - b).norm(), (a - c).norm()};
-  const auto first = std::max_element(lengths, lengths + 3) - lengths;
-  const Vector3d start = corners[first];
-  const Vector3d end = corners[(first + 1) % 3];
-  const Vector3d apex = corners[(first + 2) % 3];
-  const double height = (apex - start).cross(end - start).norm() / std::max(lengths[first], 1e-300);
-  const int rows = static_cast<int>(std::ceil(height / spacing));
-  for (int r = 0; r <= rows; ++r) {
-    const double up = rows == 0 ? 0 : static_cast<double>(r) / rows;
-    const Vector3d left = start + up * (apex - start);
-    const Vector3d right = end + up * (apex - end);
-    const int columns = static_cast<int>(std::ceil((right - left).norm() / spacing));
-    for (int k = 0; k <= columns; ++k) {
-      add(columns == 0 ? left : Vector3d(left + static_cast<double>(k) / columns * (right - left)));
-    }
-  }
-}
 
 }  // namespace
 

@@ -104,6 +104,7 @@ PreparedMesh prepare(const Mesh& mesh) {
       result.faces_of_vertex[static_cast<std::size_t>(group)].push_back(f);
     }
   }
+  result.index = std::make_shared<const SurfaceIndex>(result.mesh);
   return result;
 }
 
@@ -180,7 +181,7 @@ SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, in
                         const RunContext& context, std::string_view stream) {
   SurfacePatch patch = sample_patch(prepared, std::move(faces), samples, tolerance, context, stream);
   const std::vector<int> visible = visible_faces(prepared, patch.faces);
-  patch.index = std::make_shared<const SurfaceIndex>(prepared.mesh, visible);
+  patch.index = std::make_shared<const SurfaceIndex>(prepared.index->part(visible));
   const double reach = 3 * patch.tolerance;
   patch.at_crease = at_creases(prepared, patch.samples, reach, context);
   Random random(context.seed, std::string(stream) + " parts");

@@ -175,14 +175,19 @@ std::vector<FoundRegion> find_wider_subgroups(const ScreenedSurface& surface, co
                                               const RunContext& context) {
   LineRegionSearch search(surface, whole, known, options, context);
   for (const Line& axis : turning) search.add_turning_axis(axis);
+  std::vector<GroupPlacement> wider;
   for (std::size_t r = 0; r < regions.size() && !(options.late && options.late()); ++r) {
     context.check();
     const PointGroup& group = regions[r].placement.group;
     if (group.continuous() || group.order() < 4 || group.order() > static_cast<int>(kMostElements)) continue;
-    for (const GroupPlacement& wider : Lattice(surface, regions[r].placement, context).wider()) {
-      search.settle("subgroups", wider, false);
+    for (GroupPlacement& placement : Lattice(surface, regions[r].placement, context).wider()) {
+      wider.push_back(std::move(placement));
     }
   }
+  search.settle_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
+    if (k == wider.size()) return std::nullopt;
+    return LineRegionSearch::Candidate{"subgroups", wider[k++], false};
+  });
   return search.take();
 }
 

@@ -40,7 +40,7 @@ std::vector<Correspondence> find_correspondences(const MatchSurface& surface, co
       const auto nearest = surface.index.nearest_facing(
           scan_points.row(row).transpose(), scan_normals.row(row).transpose(), options.min_normal_cosine,
           options.max_distance, !options.signed_normals, likely != nullptr ? (*likely)[i] : -1);
-      if (likely != nullptr) (*likely)[i] = nearest.face;
+      if (likely != nullptr) (*likely)[i] = nearest.place;
       if (nearest.face < 0) continue;
       Correspondence& pair = all[i];
       pair.scan_point = static_cast<int>(i);

@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 
+#include "orbifit/model/space_order.h"
+
 #include "vertex_grid.h"
 #include "vertex_places.h"
 
@@ -11,28 +13,11 @@ namespace orbifit {
 
 namespace {
 
-// Position along a curve that fills the box (Morton 1966): neighbours in space come to lie next to one another.
-std::uint64_t curve_position(const Eigen::Vector3d& unit) {
-  std::uint64_t result = 0;
-  for (int k = 0; k < 3; ++k) {
-    auto bits = static_cast<std::uint64_t>(std::clamp(unit[k], 0.0, 1.0) * ((1 << 16) - 1));
-    for (int b = 0; b < 16; ++b) result |= (bits >> static_cast<unsigned>(b) & 1U) << static_cast<unsigned>(3 * b + k);
-  }
-  return result;
-}
-
 // Representatives next to one another share samples, which makes the lift's lists short.
 VertexOrbits in_space_order(VertexOrbits orbits) {
   const auto count = static_cast<std::size_t>(orbits.representatives());
   if (count == 0) return orbits;
-  const Eigen::RowVector3d low = orbits.positions.colwise().minCoeff();
-  const double size = std::max(1e-300, (orbits.positions.colwise().maxCoeff() - low).maxCoeff());
-  std::vector<std::pair<std::uint64_t, int>> order(count);
-  for (std::size_t r = 0; r < count; ++r) {
-    const Eigen::Vector3d unit = (orbits.positions.row(static_cast<Eigen::Index>(r)) - low).transpose() / size;
-    order[r] = {curve_position(unit), static_cast<int>(r)};
-  }
-  std::ranges::sort(order);
+  const std::vector<int> order = space_order(orbits.positions);
   VertexOrbits result;
   result.tolerance = orbits.tolerance;
   result.turns = std::move(orbits.turns);
@@ -43,9 +28,9 @@ VertexOrbits in_space_order(VertexOrbits orbits) {
   result.point_sets.reserve(orbits.point_sets.size());
   std::vector<int> place(count);
   for (std::size_t r = 0; r < count; ++r) {
-    const auto from = static_cast<std::size_t>(order[r].second);
+    const auto from = static_cast<std::size_t>(order[r]);
     place[from] = static_cast<int>(r);
-    result.positions.row(static_cast<Eigen::Index>(r)) = orbits.positions.row(order[r].second);
+    result.positions.row(static_cast<Eigen::Index>(r)) = orbits.positions.row(order[r]);
     result.bound.push_back(orbits.bound[from]);
     result.first_point.push_back(static_cast<std::int64_t>(result.point_words.size()));
     for (auto k = orbits.first_point[from]; k < orbits.first_point[from + 1]; ++k) {

@@ -1,17 +1,22 @@
 #include "orbifit/model/surface_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <embree3/rtcore.h>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/model/space_order.h"
+
+#include "face_cells.h"
 
 namespace orbifit {
 
@@ -60,13 +65,15 @@ struct Corners {
   Eigen::Vector3d at(const Eigen::Vector3d& weights) const { return from(Eigen::Vector3d::Zero(), weights); }
 };
 
-// What a query asks of a triangle before it measures, in one place of the memory.
-struct Facet {
-  Eigen::Vector3d normal;      // unit, zero for a degenerate face
-  Eigen::Vector3d a, b;        // corners
-  Eigen::Vector3d ab, bc, ca;  // outward normals of the edges within the plane; unit, or zero
-  double longest = 0;          // the edge from a to b by its coordinates
-  bool needle = false;         // the normal is too uncertain to cull with
+// How far single precision may be off for what lies within the box, in units of it; several times the worst case.
+constexpr float kFacetMargin = 2e-6F;
+
+// What a query asks of a triangle before it measures, in one line of the cache.
+struct alignas(64) Facet {
+  // Times (p, 1), p in Embree's frame: the height over the triangle's plane, and how far p is outside each edge within
+  // that plane. Times (n, 0): first the cosine of the angle between n and the normal. Not numbers, which no comparison
+  // holds for, where the normal is uncertain.
+  Eigen::Matrix4f planes;
 };
 
 // Parameter in [0, 1] of the point of segment a + t ab nearest to a + ap.
@@ -162,6 +169,29 @@ Eigen::Vector3d unit_normal(const Corners& face) {
   return length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
 }
 
+// \param face  in Embree's frame
+Facet facet_of(const Corners& face) {
+  Facet facet;
+  const Eigen::Vector3d ab = face.b - face.a;
+  const Eigen::Vector3d ac = face.c - face.a;
+  const Eigen::Vector3d vector = ab.cross(ac);
+  const double length = vector.stableNorm();
+  if (!(length > 1e-6 * ab.norm() * ac.norm())) {
+    facet.planes.setConstant(std::numeric_limits<float>::quiet_NaN());
+    return facet;
+  }
+  const Eigen::Vector3d normal = vector / length;
+  int row = 0;
+  const auto add = [&](const Eigen::Vector3d& direction, const Eigen::Vector3d& point) {
+    facet.planes.row(row++) << direction.cast<float>().transpose(), static_cast<float>(-direction.dot(point));
+  };
+  add(normal, face.a);
+  add(ab.cross(normal).normalized(), face.a);
+  add((face.c - face.b).cross(normal).normalized(), face.b);
+  add((face.a - face.c).cross(normal).normalized(), face.a);
+  return facet;
+}
+
 // The power of two that brings `length` near 1: multiplying by it does not round.
 double unit_scale(double length) {
   return length > 0 && std::isfinite(length) ? std::ldexp(1.0, -std::clamp(std::ilogb(length), -1000, 1000)) : 1.0;
@@ -186,7 +216,9 @@ struct SurfaceIndex::Implementation {
   std::vector<Corners> corners;                      // scaled units
   double slack = 0;                                  // how far a corner may be from where Embree has it, scaled units
   std::vector<Facet> facets;      // empty for what moves: most faces are never asked about before they move on
+  FaceCells cells;                // likewise
   std::vector<int> face_numbers;  // in the mesh
+  std::vector<int> places;        // by face of the mesh, -1 for those that are not in; empty for what moves
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
@@ -196,11 +228,12 @@ struct SurfaceIndex::Implementation {
     if (scene != nullptr) rtcReleaseScene(scene);
   }
 
+  void take(const Mesh& mesh);  // the corners of the faces numbered; those near one another come to lie near in memory
   void choose_frame(const Eigen::Vector3d& least, const Eigen::Vector3d& most);  // of a box, not scaled
   void build(bool moving);
   void place(std::size_t begin, std::size_t end);  // Embree's positions from the corners
   Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
-                  bool unsigned_normal, bool any = false, int likely = -1) const;
+                  bool unsigned_normal, const std::vector<bool>* only, bool any = false, int likely = -1) const;
 
   // A ray in Embree's frame, with the way by which its origin was moved towards the mesh.
   struct LocalRay {
@@ -219,11 +252,16 @@ struct Search {
   const Corners* corners = nullptr;
   const Facet* facets = nullptr;
   const int* face_numbers = nullptr;
-  Eigen::Vector3d point;  // scaled units
+  const std::vector<bool>* only = nullptr;  // by place: whether the face may be found; null: all may
+  Eigen::Vector3d point;                    // scaled units
   double max_distance = 0;
   double margin = 0;
 
+  Eigen::Vector4f place;  // (p, 1) in Embree's frame
+  float facet_margin = 0;
+
   const Eigen::Vector3d* facing = nullptr;
+  Eigen::Vector4f way = Eigen::Vector4f::Zero();  // (facing, 0)
   double min_cosine = 0;
   bool unsigned_normal = false;
   bool any = false;  // the first face found will do
@@ -236,38 +274,56 @@ struct Search {
   // The radius in single precision that still reaches every face at most this far.
   float reach(double distance) const { return static_cast<float>(distance * (1 + kCullMargin) + margin); }
 
-  Eigen::Vector3d normal_of(unsigned triangle) const {
-    if (facets != nullptr) return facets[triangle].normal;
-    return unit_normal(corners[triangle]);
-  }
-
   bool faces_the_right_way(unsigned triangle) const {
     if (facing == nullptr) return true;
-    const double cosine = normal_of(triangle).dot(*facing);
+    const double cosine = unit_normal(corners[triangle]).dot(*facing);
     return (unsigned_normal ? std::abs(cosine) : cosine) >= min_cosine;
   }
 };
 
-// Whether the triangle is farther away than the best face so far, by its plane and by the lines of its edges within
-// that plane. Its normals are known to 1e-9 unless it is a needle, so nothing nearer is lost; this spares most
-// measurements, far from the surface by the plane, near fans of long triangles by the edges.
-bool plainly_beyond(const Search& search, unsigned triangle) {
-  if (search.facets == nullptr) return false;
-  const Facet& facet = search.facets[triangle];
-  if (facet.needle) return false;
+enum class Look { kNo, kYes, kUnsure };
+
+// Whether the triangle faces the right way, as far as its facet tells.
+Look look_at_way(const Search& search, const Facet& facet) {
+  if (search.facing == nullptr) return Look::kYes;
+  const float cosine = (facet.planes * search.way)[0];
+  const double known = search.unsigned_normal ? std::abs(cosine) : cosine;
+  if (known < search.min_cosine - kFacetMargin) return Look::kNo;
+  return known >= search.min_cosine + kFacetMargin ? Look::kYes : Look::kUnsure;
+}
+
+// Whether the triangle is nearer than the best face so far, by its plane and by the lines of its edges within that
+// plane: sure that not, or that its inside is. This spares most measurements, far from the surface by the plane, near
+// fans of long triangles by the edges.
+Look look_at_place(const Search& search, const Facet& facet) {
   const double limit = search.face < 0 ? search.max_distance * search.max_distance : search.squared_distance;
-  const Eigen::Vector3d from_a = search.point - facet.a;
-  const double slack = 1e-8 * (from_a.lpNorm<1>() + facet.longest);
-  const double height = std::max(0.0, std::abs(facet.normal.dot(from_a)) - slack);
-  const double outside = std::max({facet.ab.dot(from_a), facet.ca.dot(from_a), facet.bc.dot(search.point - facet.b)});
-  const double beside = std::max(0.0, outside - slack);
-  return height * height + beside * beside > limit;
+  const Eigen::Vector4f off = facet.planes * search.place;
+  const float outside = std::max({off[1], off[2], off[3]});
+  const double height = std::max(0.0F, std::abs(off[0]) - search.facet_margin);
+  const double beside = std::max(0.0F, outside - search.facet_margin);
+  if (height * height + beside * beside > limit) return Look::kNo;
+  const double most = std::abs(off[0]) + search.facet_margin;
+  return outside <= -search.facet_margin && most * most <= limit ? Look::kYes : Look::kUnsure;
 }
 
 // Whether the triangle is the nearest so far; then it is kept.
 bool is_nearest(Search& search, unsigned triangle) {
   if (search.any && search.face >= 0) return false;
-  if (!search.faces_the_right_way(triangle) || plainly_beyond(search, triangle)) return false;
+  if (search.only != nullptr && !(*search.only)[triangle]) return false;
+  Look way = Look::kUnsure;
+  if (search.facets != nullptr) {
+    const Facet& facet = search.facets[triangle];
+    way = look_at_way(search, facet);
+    if (way == Look::kNo) return false;
+    const Look place = look_at_place(search, facet);
+    if (place == Look::kNo) return false;
+    if (search.any && place == Look::kYes && way == Look::kYes) {
+      search.face = search.face_numbers[triangle];
+      search.position = triangle;
+      return true;
+    }
+  }
+  if (way == Look::kUnsure && !search.faces_the_right_way(triangle)) return false;
   const Corners& corners = search.corners[triangle];
   const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
   const double squared = corners.from(search.point, barycentric).squaredNorm();
@@ -291,6 +347,26 @@ bool measure(RTCPointQueryFunctionArguments* arguments) {
   if (!(reach < arguments->query->radius)) return false;
   arguments->query->radius = reach;
   return true;
+}
+
+// Finds the nearest through the tree, which has the faces about `centre` and up to `slack` elsewhere.
+void walk(RTCScene scene, const Eigen::Vector3d& centre, double slack, Search& search) {
+  const Eigen::Vector3d local = search.point - centre;
+  const double offset = local.cwiseAbs().maxCoeff();
+  RTCPointQuery query{};
+  if (offset < kFarAway) {
+    query.x = static_cast<float>(local.x());
+    query.y = static_cast<float>(local.y());
+    query.z = static_cast<float>(local.z());
+    search.margin = kCullMargin * (1 + offset) + slack;
+  } else {
+    search.margin = std::numeric_limits<double>::infinity();
+  }
+  const double radius = search.face < 0 ? search.max_distance : std::sqrt(search.squared_distance);
+  query.radius = radius < 2 * kFarAway ? search.reach(radius) : std::numeric_limits<float>::infinity();
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, measure, &search);
 }
 
 }  // namespace
@@ -319,17 +395,12 @@ void SurfaceIndex::Implementation::build(bool moving) {
   for (Corners& face : corners) {
     face = {scale * face.a, scale * face.b, scale * face.c};
     if (moving) continue;
-    const Eigen::Vector3d vector = 0.5 * (face.b - face.a).cross(face.c - face.a);
-    const double length = vector.stableNorm();
-    Facet& facet = facets.emplace_back();
-    facet.needle = !(length > 1e-6 * (face.b - face.a).norm() * (face.c - face.a).norm());
-    facet.normal = length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
-    facet.a = face.a;
-    facet.b = face.b;
-    facet.ab = (face.b - face.a).cross(facet.normal).normalized();
-    facet.bc = (face.c - face.b).cross(facet.normal).normalized();
-    facet.ca = (face.a - face.c).cross(facet.normal).normalized();
-    facet.longest = (face.b - face.a).lpNorm<1>();
+    facets.push_back(facet_of({face.a - centre, face.b - centre, face.c - centre}));
+  }
+  if (!moving) {
+    cells = FaceCells(corners.size(), [&](std::size_t i) {
+      return std::array{corners[i].a, corners[i].b, corners[i].c};
+    });
   }
 
   device = shared_device();
@@ -352,7 +423,8 @@ void SurfaceIndex::Implementation::build(bool moving) {
 
 SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3d& point, double max_distance,
                                                             const Eigen::Vector3d* normal, double min_cosine,
-                                                            bool unsigned_normal, bool any, int likely) const {
+                                                            bool unsigned_normal, const std::vector<bool>* only,
+                                                            bool any, int likely) const {
   Nearest result;
   if (corners.empty() || !(max_distance >= 0)) return result;
   Search search;
@@ -361,34 +433,30 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   search.face_numbers = face_numbers.data();
   search.point = scale * point;
   search.max_distance = scale * max_distance;
+  search.only = only;
   search.facing = normal;
   search.min_cosine = min_cosine;
   search.unsigned_normal = unsigned_normal;
   search.any = any;
-  const bool all_faces = face_numbers.back() + 1 == static_cast<int>(face_numbers.size());
-  if (likely >= 0 && likely < static_cast<int>(face_numbers.size()) && all_faces) {
-    is_nearest(search, static_cast<unsigned>(likely));
-  }
-
+  if (normal != nullptr) search.way << normal->cast<float>(), 0;
   const Eigen::Vector3d local = search.point - centre;
-  const double offset = local.cwiseAbs().maxCoeff();
-  RTCPointQuery query{};
-  if (offset < kFarAway) {
-    query.x = static_cast<float>(local.x());
-    query.y = static_cast<float>(local.y());
-    query.z = static_cast<float>(local.z());
-    search.margin = kCullMargin * (1 + offset) + slack;
-  } else {
-    search.margin = std::numeric_limits<double>::infinity();
+  search.place << local.cast<float>(), 1;
+  search.facet_margin = kFacetMargin * (1 + static_cast<float>(local.cwiseAbs().maxCoeff()));
+  if (likely >= 0 && likely < static_cast<int>(face_numbers.size())) is_nearest(search, static_cast<unsigned>(likely));
+
+  if (any) {
+    if (const FaceCells::Faces* near = cells.at(search.point)) {
+      for (std::size_t k = 0; k < near->size() && (*near)[k] >= 0 && search.face < 0; ++k) {
+        is_nearest(search, static_cast<unsigned>((*near)[k]));
+      }
+    }
   }
-  const double radius = search.face < 0 ? search.max_distance : std::sqrt(search.squared_distance);
-  query.radius = radius < 2 * kFarAway ? search.reach(radius) : std::numeric_limits<float>::infinity();
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(scene, &query, &context, measure, &search);
+  if (!any || search.face < 0) walk(scene, centre, slack, search);
   if (search.face < 0) return result;
-  result.distance = std::sqrt(search.squared_distance) / scale;
   result.face = search.face;
+  if (any) return result;
+  result.distance = std::sqrt(search.squared_distance) / scale;
+  result.place = static_cast<int>(search.position);
   result.barycentric = search.barycentric;
   result.point = corners[search.position].at(search.barycentric) / scale;
   return result;
@@ -435,18 +503,53 @@ Corners corners_of(const Mesh& mesh, int face) {
 
 }  // namespace
 
+void SurfaceIndex::Implementation::take(const Mesh& mesh) {
+  Points middles(static_cast<Eigen::Index>(face_numbers.size()), 3);
+  for (std::size_t i = 0; i < face_numbers.size(); ++i) {
+    const Corners face = corners_of(mesh, face_numbers[i]);
+    middles.row(static_cast<Eigen::Index>(i)) = face.a / 3 + face.b / 3 + face.c / 3;
+  }
+  std::vector<int> ordered;
+  ordered.reserve(face_numbers.size());
+  for (const int i : space_order(middles)) ordered.push_back(face_numbers[static_cast<std::size_t>(i)]);
+  face_numbers = std::move(ordered);
+  corners.reserve(face_numbers.size());
+  for (const int face : face_numbers) corners.push_back(corners_of(mesh, face));
+}
+
 SurfaceIndex::SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces)
-    : implementation_(std::make_unique<Implementation>()) {
+    : implementation_(std::make_shared<Implementation>()) {
   Implementation& data = *implementation_;
   data.face_numbers = faces;
   if (faces.empty()) {
     data.face_numbers.resize(static_cast<std::size_t>(mesh.faces.rows()));
     std::iota(data.face_numbers.begin(), data.face_numbers.end(), 0);
   }
-  if (data.face_numbers.empty()) return;
-  data.corners.reserve(data.face_numbers.size());
-  for (const int face : data.face_numbers) data.corners.push_back(corners_of(mesh, face));
-  data.build(false);
+  data.take(mesh);
+  data.places.assign(static_cast<std::size_t>(mesh.faces.rows()), -1);
+  for (std::size_t i = 0; i < data.face_numbers.size(); ++i) {
+    data.places[static_cast<std::size_t>(data.face_numbers[i])] = static_cast<int>(i);
+  }
+  if (!data.corners.empty()) data.build(false);
+}
+
+SurfaceIndex::SurfaceIndex(std::shared_ptr<Implementation> implementation,
+                           std::shared_ptr<const std::vector<bool>> only)
+    : implementation_(std::move(implementation)), only_(std::move(only)) {}
+
+SurfaceIndex SurfaceIndex::part(const std::vector<int>& faces) const {
+  const Implementation& data = *implementation_;
+  auto only = std::make_shared<std::vector<bool>>(data.face_numbers.size(), false);
+  std::size_t count = 0;
+  for (const int face : faces) {
+    const int place = data.places[static_cast<std::size_t>(face)];
+    if (place < 0 || (*only)[static_cast<std::size_t>(place)] || (only_ && !(*only_)[static_cast<std::size_t>(place)]))
+      continue;
+    (*only)[static_cast<std::size_t>(place)] = true;
+    ++count;
+  }
+  if (count == data.face_numbers.size()) only.reset();
+  return {implementation_, std::move(only)};
 }
 
 SurfaceIndex SurfaceIndex::of_moving(const Mesh& mesh) {
@@ -455,10 +558,9 @@ SurfaceIndex SurfaceIndex::of_moving(const Mesh& mesh) {
   none.faces.resize(0, 3);
   SurfaceIndex result(none);
   Implementation& data = *result.implementation_;
-  for (int face = 0; face < static_cast<int>(mesh.faces.rows()); ++face) {
-    data.face_numbers.push_back(face);
-    data.corners.push_back(corners_of(mesh, face));
-  }
+  data.face_numbers.resize(static_cast<std::size_t>(mesh.faces.rows()));
+  std::iota(data.face_numbers.begin(), data.face_numbers.end(), 0);
+  data.take(mesh);
   if (!data.corners.empty()) data.build(true);
   return result;
 }
@@ -474,7 +576,7 @@ void SurfaceIndex::move(const Mesh& mesh, double slack, const RunContext& contex
   parallel_for(context, off.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       for (std::size_t i = block * kLeastShare; i < std::min(count, (block + 1) * kLeastShare); ++i) {
-        const Corners now = corners_of(mesh, static_cast<int>(i));
+        const Corners now = corners_of(mesh, data.face_numbers[i]);
         data.corners[i] = {data.scale * now.a, data.scale * now.b, data.scale * now.c};
         const float* had = data.positions + 9 * i;
         for (const Eigen::Vector3d* corner : {&data.corners[i].a, &data.corners[i].b, &data.corners[i].c}) {
@@ -504,22 +606,23 @@ SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
 SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 
 SurfaceIndex::Nearest SurfaceIndex::nearest(const Eigen::Vector3d& point, double max_distance) const {
-  return implementation_->nearest(point, max_distance, nullptr, 0, false);
+  return implementation_->nearest(point, max_distance, nullptr, 0, false, only_.get());
 }
 
 SurfaceIndex::Nearest SurfaceIndex::nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                                    double min_cosine, double max_distance, bool unsigned_normal,
                                                    int likely) const {
-  return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal, false, likely);
+  return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal, only_.get(), false,
+                                  likely);
 }
 
 bool SurfaceIndex::within(const Eigen::Vector3d& point, double max_distance) const {
-  return implementation_->nearest(point, max_distance, nullptr, 0, false, true).face >= 0;
+  return implementation_->nearest(point, max_distance, nullptr, 0, false, only_.get(), true).face >= 0;
 }
 
 bool SurfaceIndex::within_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
                                  double max_distance) const {
-  return implementation_->nearest(point, max_distance, &normal, min_cosine, true, true).face >= 0;
+  return implementation_->nearest(point, max_distance, &normal, min_cosine, true, only_.get(), true).face >= 0;
 }
 
 std::optional<SurfaceIndex::Hit> SurfaceIndex::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <ostream>
 #include <string>
 #include <thread>
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/random.h"
+#include "orbifit/model/space_order.h"
 
 namespace orbifit {
 namespace {
@@ -322,6 +324,88 @@ TEST(SurfaceIndex, AnswersTheSameFromSeveralThreads) {
     }
   }
   for (const auto& answers : together) EXPECT_EQ(answers, alone);
+}
+
+TEST(PartOfASurface, AnswersAsAnIndexOfItsFaces) {
+  Random random(22);
+  const Mesh mesh = random_soup(random, 400);
+  const SurfaceIndex whole(mesh);
+  for (const std::size_t size : {1U, 40U, 399U, 400U}) {
+    std::vector<int> faces(400);
+    std::iota(faces.begin(), faces.end(), 0);
+    for (std::size_t i = 0; i < size; ++i) std::swap(faces[i], faces[i + random.below(400 - i)]);
+    faces.resize(size);
+    const SurfaceIndex part = whole.part(faces);
+    const std::vector<int> half(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>((size + 1) / 2));
+    const SurfaceIndex fresh(mesh, faces);
+    const SurfaceIndex fresh_half(mesh, half);
+    const SurfaceIndex part_of_part = part.part(half);
+    const SurfaceIndex no_more = part_of_part.part(faces);  // what a part does not find, its parts do not either
+    for (int k = 0; k < 300; ++k) {
+      const Eigen::Vector3d point = 2 * random.direction() * random.uniform();
+      const Eigen::Vector3d normal = random.direction();
+      const double reach = 0.5 * random.uniform();
+      const SurfaceIndex::Nearest expected = fresh.nearest(point);
+      EXPECT_EQ(part.nearest(point).face, expected.face);
+      EXPECT_EQ(part.nearest(point).distance, expected.distance);
+      EXPECT_EQ(part.within(point, reach), expected.distance <= reach);
+      EXPECT_EQ(part.nearest_facing(point, normal, 0.5).face, fresh.nearest_facing(point, normal, 0.5).face);
+      EXPECT_EQ(part.within_facing(point, normal, 0.5, reach), fresh.within_facing(point, normal, 0.5, reach));
+      EXPECT_EQ(part_of_part.nearest(point).face, fresh_half.nearest(point).face);
+      EXPECT_EQ(no_more.nearest(point).face, fresh_half.nearest(point).face);
+    }
+  }
+}
+
+TEST(PartOfASurface, NoFacesAreNowhere) {
+  Random random(23);
+  const SurfaceIndex none = SurfaceIndex(random_soup(random, 10)).part({});
+  EXPECT_EQ(none.nearest(Eigen::Vector3d::Zero()).face, -1);
+  EXPECT_FALSE(none.within(Eigen::Vector3d::Zero(), 10));
+}
+
+TEST(SurfaceIndex, WithinIsTrueAtTheDistanceOfTheNearest) {
+  Random random(24);
+  const Mesh mesh = random_soup(random, 2000);
+  const SurfaceIndex index(mesh);
+  for (int k = 0; k < 3000; ++k) {
+    const auto face = static_cast<Eigen::Index>(random.below(2000));
+    Eigen::Vector3d weights(random.uniform(), random.uniform(), random.uniform());
+    weights /= weights.sum();
+    Eigen::Vector3d point = std::pow(10, -5 * random.uniform()) * random.direction();
+    for (int c = 0; c < 3; ++c) point += weights[c] * mesh.vertices.row(mesh.faces(face, c)).transpose();
+    const double distance = index.nearest(point).distance;
+    EXPECT_TRUE(index.within(point, distance));
+    EXPECT_FALSE(index.within(point, std::nextafter(distance, 0)));
+    const Eigen::Vector3d normal = random.direction();
+    const double facing = index.nearest_facing(point, normal, 0.8, 10, true).distance;
+    if (!std::isfinite(facing)) continue;
+    EXPECT_TRUE(index.within_facing(point, normal, 0.8, facing));
+    EXPECT_FALSE(index.within_facing(point, normal, 0.8, std::nextafter(facing, 0)));
+  }
+}
+
+TEST(SpaceOrder, IsAPermutationThatKeepsNeighboursTogether) {
+  Random random(25);
+  Points points(2000, 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    points.row(i) << 3 * random.uniform(), 10 + random.uniform(), -7 * random.uniform();
+  }
+  const std::vector<int> order = space_order(points);
+  std::vector<int> sorted = order;
+  std::ranges::sort(sorted);
+  double way = 0;
+  double given = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
+    if (i == 0) continue;
+    const auto k = static_cast<std::size_t>(i);
+    way += (points.row(order[k]) - points.row(order[k - 1])).norm();
+    given += (points.row(i) - points.row(i - 1)).norm();
+  }
+  EXPECT_LT(way, 0.2 * given);
+  EXPECT_TRUE(space_order(Points(0, 3)).empty());
+  EXPECT_EQ(space_order(Points::Zero(3, 3)), (std::vector{0, 1, 2}));
 }
 
 TEST(MovingSurface, AnswersAsANewIndexDoes) {

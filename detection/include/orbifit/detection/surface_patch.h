@@ -25,6 +25,7 @@ struct PreparedMesh {
   Eigen::VectorXd areas;                          ///< #F; 0 for faces that repeat an earlier one (two-sided sheets)
   std::vector<std::vector<int>> faces_of_vertex;  ///< by group of the weld: the faces at it
   double area = 0;
+  std::shared_ptr<const SurfaceIndex> index;  ///< of all faces
 };
 
 /// \throw InputError when the mesh has no area or a coordinate is not finite

@@ -59,8 +59,9 @@ class MatchSurface {
 
 /// Scan -> surface, never the other way: what the scan does not see must not pull. Both in the template's frame.
 /// O(P log F).
-/// \param likely  for each scan point a face that may well be the nearest, such as the one of the iteration before, -1
-///   for none: the answer does not depend on it, but comes sooner. Replaced by the faces found. May be null
+/// \param likely  for each scan point the place in the index of a face that may well be the nearest, such as the one of
+///   the iteration before, -1 for none: the answer does not depend on it, but comes sooner. Replaced by the places of
+///   the faces found. May be null
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
                                                  const RunContext& context, std::vector<int>* likely = nullptr);

@@ -20,6 +20,12 @@ class SurfaceIndex {
   /// An index of all faces that move() can bring up to date.
   static SurfaceIndex of_moving(const Mesh& mesh);
 
+  /// Of some of the faces: all that this index holds is shared, so that it costs next to nothing, O(#faces + F / 64).
+  /// Where many others lie nearer than they, queries take longer. Rays still meet all faces.
+  /// \param faces  numbers in the mesh; those that this index does not find are left out
+  /// \pre not made by of_moving()
+  SurfaceIndex part(const std::vector<int>& faces) const;
+
   /// The same faces with their vertices elsewhere, O(F): a tenth of a new index while no vertex is farther than `slack`
   /// from where it was when the tree was made. Distances stay exact; rays may meet a face that much away.
   /// \param slack  mesh units, >= 0: less than the distances asked for, so that they cost little more
@@ -33,6 +39,7 @@ class SurfaceIndex {
   struct Nearest {
     double distance = std::numeric_limits<double>::infinity();
     int face = -1;                                          ///< number in the mesh; -1: none within reach
+    int place = -1;                                         ///< of the face in the index
     Eigen::Vector3d point = Eigen::Vector3d::Zero();        ///< on the face
     Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< of that point, sums to 1
   };
@@ -41,7 +48,8 @@ class SurfaceIndex {
   Nearest nearest(const Eigen::Vector3d& point, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
-  /// \param likely  a face that may well be the nearest: the answer is the same but comes sooner; -1: none
+  /// \param likely  the place of a face that may well be the nearest, of an answer of this index before: the answer is
+  ///                the same but comes sooner; -1: none
   Nearest nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
                          double max_distance = std::numeric_limits<double>::infinity(), bool unsigned_normal = false,
                          int likely = -1) const;
@@ -70,7 +78,10 @@ class SurfaceIndex {
 
  private:
   struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  SurfaceIndex(std::shared_ptr<Implementation> implementation, std::shared_ptr<const std::vector<bool>> only);
+
+  std::shared_ptr<Implementation> implementation_;  // of those that move: of one index alone
+  std::shared_ptr<const std::vector<bool>> only_;   // by place: whether the face may be found; null: all may
 };
 
 /// Barycentric coordinates of the point of triangle (a, b, c) nearest to p (Ericson 2005, section 5.1.5); a degenerate
