@@ -49,6 +49,29 @@ std::vector<std::size_t> kinds_of_a_row(const std::vector<int>& parts, const std
   return result;
 }
 
+bool some_of_a_grid(const PointGroup& group, const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds,
+                    const std::vector<SurfaceMoments>& moments) {
+  constexpr std::size_t kGrid = 8;    // members of a kind
+  constexpr std::size_t kFew = 6;     // of them in the region
+  constexpr double kNearlyAll = 0.8;  // of them
+  constexpr double kMost = 0.7;       // of the region's area
+  if (group.continuous() || !group.has_axis() || group.n > 2 || group.order() > 8) return false;
+  const auto area_of = [&](int part) { return moments[static_cast<std::size_t>(part)].area; };
+  double all = 0;
+  for (const int part : parts) all += area_of(part);
+  double scattered = 0;
+  for (const CongruenceClass& kind : kinds) {
+    if (kind.members.size() < kGrid) continue;
+    std::vector<int> common;
+    std::ranges::set_intersection(parts, kind.members, std::back_inserter(common));
+    if (common.size() < kFew ||
+        static_cast<double>(common.size()) >= kNearlyAll * static_cast<double>(kind.members.size()))
+      continue;
+    for (const int part : common) scattered += area_of(part);
+  }
+  return scattered > kMost * all;
+}
+
 std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {
   constexpr double kAngle = 0.1;  // radians
   return fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);

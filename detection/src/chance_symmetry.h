@@ -28,6 +28,11 @@ bool mere_pair(const std::vector<int>& parts, const std::vector<CongruenceClass>
 std::vector<std::size_t> kinds_of_a_row(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds,
                                         const std::vector<SurfaceMoments>& moments);
 
+/// Whether the parts are mostly some, six at least, of kinds of eight members and more, and the group has no rotation
+/// but half-turns: of many equal parts in a grid any mirror or half-turn of the grid keeps some, wherever it is.
+bool some_of_a_grid(const PointGroup& group, const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds,
+                    const std::vector<SurfaceMoments>& moments);
+
 /// The fit of an axis of revolution to the patch's samples.
 std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch);
 

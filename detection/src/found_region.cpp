@@ -78,6 +78,21 @@ bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& o
   return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
 }
 
+bool same_faces(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {
+  return covers(prepared, a, b) && covers(prepared, b, a);
+}
+
+// Whether regions of the same group are the same but for a little. Two mirrors of nearly the same parts make a larger
+// group of them, which is named, or one of them is there by chance.
+bool nearly_the_same(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {
+  constexpr double kLittle = 0.03;
+  if (a.placement.group != b.placement.group || std::abs(a.area - b.area) > kLittle * std::max(a.area, b.area)) {
+    return false;
+  }
+  return area_outside(prepared, a.faces, b.faces) <= kLittle * a.area &&
+         area_outside(prepared, b.faces, a.faces) <= kLittle * b.area;
+}
+
 void note_drop(Explanation* explanation, const std::string& stage, const FoundRegion& region,
                const std::string& reason) {
   if (explanation == nullptr) return;
@@ -169,9 +184,13 @@ void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vec
     for (std::size_t j = i + 1; j < regions.size() && dropped[i] == 0; ++j) {
       FoundRegion& a = regions[i];
       FoundRegion& b = regions[j];
-      if (dropped[j] != 0 || !covers(prepared, a, b) || !covers(prepared, b, a)) continue;
+      if (dropped[j] != 0) continue;
+      const bool same = same_faces(prepared, a, b);
+      if (!same && !nearly_the_same(prepared, a, b)) continue;
       const int most = elements_of(a) - elements_of(b);
-      const bool first = most != 0 ? most > 0 : misfit(prepared, tolerance, a) <= misfit(prepared, tolerance, b);
+      bool first = most > 0;
+      if (most == 0 && same) first = misfit(prepared, tolerance, a) <= misfit(prepared, tolerance, b);
+      if (most == 0 && !same) first = a.area >= b.area;
       dropped[first ? j : i] = 1;
       const FoundRegion& stays = first ? a : b;
       note_drop(explanation, "same faces", first ? b : a, stays.placement.group.symbol() + " is more of a group there");

@@ -174,6 +174,10 @@ class PartSearch {
         if (each.parts.size() == 1) drop_siblings(region.components, each.parts.front(), classes());
         const double area = area_of(region.components);
         if (area < kMaterial * each.area || already_known(region.placement, region.components)) continue;
+        if (some_of_a_grid(region.placement.group, region.components, classes(), survey().moments)) {
+          note("subgroups", region.placement, region.components, false, "some of many of a kind");
+          continue;
+        }
         const bool holds = verified(region.placement, region.components);
         note("subgroups", region.placement, region.components, holds, holds ? "verified" : "not verified");
         if (holds) {
@@ -243,6 +247,9 @@ class PartSearch {
     if (grown.size() > seed.size() && !verified(placement, grown)) grown = seed;
     const double area = area_of(grown);
     if (area < least_area()) return note(stage, placement, grown, false, "too small");
+    if (some_of_a_grid(placement.group, grown, classes(), survey().moments)) {
+      return note(stage, placement, grown, false, "some of many of a kind");
+    }
     if (some_of_a_row(placement, grown)) return note(stage, placement, grown, false, "some of a row that has it");
     if (mere_border(placement, grown))
       return note(stage, placement, grown, false, "only its border gives it the group");

@@ -42,6 +42,40 @@ INSTANTIATE_TEST_SUITE_P(Parts, KindsOfARow,
                                          Some{"PostsAreTooFew", {6, 7}, {}}),
                          [](const auto& each) { return std::string(each.param.name); });
 
+// Kinds: twelve studs (0 to 11) and four posts (12 to 15), each of area 1, and a plate (16) of area 4.
+struct OfAGrid {
+  const char* name;
+  const char* group;
+  std::vector<int> parts;
+  bool expected;
+
+  friend void PrintTo(const OfAGrid& some, std::ostream* out) { *out << some.name; }
+};
+
+class SomeOfAGrid : public testing::TestWithParam<OfAGrid> {};
+
+TEST_P(SomeOfAGrid, HasMirrorsAndHalfTurnsByChance) {
+  const std::vector<CongruenceClass> kinds{
+      {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {}}, {{12, 13, 14, 15}, {}}, {{16}, {}}};
+  std::vector<SurfaceMoments> moments(17);
+  for (SurfaceMoments& each : moments) each.area = 1;
+  moments[16].area = 4;
+  EXPECT_EQ(some_of_a_grid(*PointGroup::parse(GetParam().group), GetParam().parts, kinds, moments),
+            GetParam().expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, SomeOfAGrid,
+                         testing::Values(OfAGrid{"Mirror", "Cs", {0, 1, 2, 5, 6, 7}, true},
+                                         OfAGrid{"HalfTurn", "C2", {0, 1, 2, 5, 6, 7}, true},
+                                         OfAGrid{"BothAndAPost", "D2h", {0, 1, 2, 3, 4, 5, 6, 7, 12}, true},
+                                         OfAGrid{"RingOfSix", "C6v", {0, 1, 2, 5, 6, 7}, false},
+                                         OfAGrid{"Continuous", "Cinfv", {0, 1, 2, 5, 6, 7}, false},
+                                         OfAGrid{"FourAreFew", "C2v", {0, 1, 2, 3}, false},
+                                         OfAGrid{"TenAreNearlyAll", "C2v", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, false},
+                                         OfAGrid{"ThePlateIsMore", "Cs", {0, 1, 2, 5, 6, 7, 16}, false},
+                                         OfAGrid{"PostsAreNoGrid", "C2v", {12, 13, 14, 15}, false}),
+                         [](const auto& each) { return std::string(each.param.name); });
+
 // What a mirror keeps of hills that are odd in x by waves of some height: all where there are none, else up to where
 // they differ by the tolerance.
 class MirroredHills : public testing::TestWithParam<double> {

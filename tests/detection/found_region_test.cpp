@@ -4,6 +4,7 @@
 #include <numbers>
 #include <ostream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -266,6 +267,25 @@ TEST_F(Regions, OfEqualGroupsOnTheSameFacesTheOneThatFitsStays) {
     drop_lesser_groups(prepared_, test::kTolerance, regions);
     ASSERT_EQ(regions.size(), 1U);
     EXPECT_EQ(regions[0].placement.frame, fits.placement.frame);
+  }
+}
+
+TEST(OneGroup, StaysOfTheSameOnNearlyTheSameFaces) {
+  constexpr int kColumns = 40;
+  const PreparedMesh prepared = flat_sheet(kColumns);
+  for (const auto& [symbol, fewer, stay] :
+       {std::tuple{"C2v", 39, 1U}, {"C2v", 38, 2U}, {"C4v", 39, 2U}, {"Cs", 39, 2U}}) {
+    FoundRegion a = columns(prepared, kColumns, kColumns);
+    FoundRegion b = columns(prepared, kColumns, fewer);
+    a.placement.group = *PointGroup::parse("C2v");
+    b.placement.group = *PointGroup::parse(symbol);
+    for (std::vector<FoundRegion> regions : {std::vector{a, b}, {b, a}}) {
+      drop_lesser_groups(prepared, test::kTolerance, regions);
+      ASSERT_EQ(regions.size(), stay) << symbol << " on " << fewer;
+      if (stay == 1) {
+        EXPECT_EQ(regions[0].faces, a.faces) << "the larger";
+      }
+    }
   }
 }
 

@@ -51,7 +51,8 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
                   Explanation* explanation = nullptr);
 
 /// Faces have one maximal group. Where several that do not hold one another were found on the same faces, a larger one
-/// narrowly failed: the one of most elements stays, of equal ones the one that fits best.
+/// narrowly failed: the one of most elements stays, of equal ones the one that fits best. Of two of the
+/// same group on faces that differ by a thirtieth of their area the larger stays.
 /// \param tolerance of the detector, a fraction of the diagonal
 void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                         Explanation* explanation = nullptr);
