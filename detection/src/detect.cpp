@@ -1,8 +1,10 @@
 #include "orbifit/detection/detect.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -34,6 +36,8 @@
 #include "orbifit/detection/wider_subgroups.h"
 #include "orbifit/model/errors.h"
 
+#include "looser_groups.h"
+
 namespace orbifit {
 
 namespace {
@@ -50,6 +54,12 @@ constexpr double kLongest = 1e8;     // seconds, which a clock can add
 constexpr double kLeastSeconds = 1;  // for the whole
 constexpr int kDetectSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
 
 /// One run of the detector on a prepared mesh.
 class Detector {
@@ -74,6 +84,7 @@ class Detector {
     limit(start_, options_.max_seconds);
     in_time("parts", [this] { find_in_components(); });
     in_time("pieces", [this] { find_in_segments(); });
+    in_time("looser", [this] { tell_of_looser_groups(); });
     if (!late(1)) {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
@@ -136,6 +147,35 @@ class Detector {
     for (const FoundRegion& region : parts.regions) regions_.push_back(region);
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     add_patterns(prepared_, parts, false);
+  }
+
+  // The largest group found for all faces, or all but specks.
+  std::optional<PointGroup> group_of_whole() const {
+    constexpr double kAll = 0.999;  // of the area
+    std::optional<PointGroup> result;
+    for (const FoundRegion& region : regions_) {
+      const PointGroup& group = region.placement.group;
+      if (region.area < kAll * prepared_.area || (result && result->continuous())) continue;
+      if (!result || group.continuous() || group.order() > result->order()) result = group;
+    }
+    return result;
+  }
+
+  // Who looks at a dented box will miss its group: a message says at which tolerance it is found.
+  void tell_of_looser_groups() {
+    constexpr int kFew = 4;  // elements: of more there is little to miss
+    const std::optional<PointGroup> has = group_of_whole();
+    if (late() || (has && (has->continuous() || has->order() > kFew))) return;
+    limited_.progress("looser", 0);
+    const std::vector<LooserGroup> looser = looser_groups(prepared_, has, options_.tolerance, screen_, limited_);
+    if (looser.empty()) return;
+    std::string text = "the whole has " + (has ? "only " + has->symbol() : "no symmetry") + " at tolerance " +
+                       number(options_.tolerance) + ", but ";
+    for (const LooserGroup& each : looser) {
+      if (&each != &looser.front()) text += " and ";
+      text += each.group.symbol() + " at " + number(each.tolerance);
+    }
+    context_.message(text);
   }
 
   PartRegionOptions part_options(bool pieces) const {
