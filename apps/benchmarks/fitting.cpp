@@ -107,7 +107,8 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
       chosen.place = method == "ours" || method == "free";
       pose = Similarity{};
       if (!chosen.place) {
-        const auto placements = find_placements(each.model.mesh, each.scan, chosen.placement, context, pose);
+        const auto placements =
+            find_placements(each.model.mesh, annotation, each.scan, chosen.placement, context, pose);
         if (!placements.empty()) pose = placements.front().pose;
         row.placing = seconds_now() - start;
       }

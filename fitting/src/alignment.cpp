@@ -135,16 +135,18 @@ Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const
   const double size = diagonal(mesh.vertices);
   const Eigen::Vector3d pivot = bounding_box_centre(mesh.vertices);
   Similarity pose = start;
+  std::vector<int> likely(points.size(), -1);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const double progress = double(iteration) / std::max(1, options.iterations - 1);
     const double robust = size * options.first_robust * std::pow(options.last_robust / options.first_robust, progress);
     const Similarity back = inverse(pose);
     PoseSystem system(size, pivot);
     bool any = false;
-    for (const int point : points) {
-      const Eigen::Vector3d s = back(scan.points.row(point));
-      const Eigen::Vector3d facing = back.linear * scan.normals.row(point).transpose();
-      const auto near = surface.index.nearest_facing(s, facing, kNormalCosine, kReach * robust, true);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d s = back(scan.points.row(points[i]));
+      const Eigen::Vector3d facing = back.linear * scan.normals.row(points[i]).transpose();
+      const auto near = surface.index.nearest_facing(s, facing, kNormalCosine, kReach * robust, true, likely[i]);
+      likely[i] = near.face;
       if (near.face < 0) continue;
       const Eigen::Vector3d n = surface.normal(near.face);
       system.add(s, n, n.dot(near.point - s), robust_weight(near.distance, robust));

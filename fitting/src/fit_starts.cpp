@@ -12,7 +12,8 @@ namespace {
 FitStarts found_starts(const FitInput& input, const FitOptions& options, const ScanPreparationOptions& preparation,
                        const RunContext& context) {
   FitStarts result;
-  std::vector<Placement> found = find_placements(input.mesh, input.scan, options.placement, context, input.pose);
+  std::vector<Placement> found =
+      find_placements(input.mesh, input.annotation, input.scan, options.placement, context, input.pose);
   for (const Placement& each : found) {
     if (static_cast<int>(result.places.size()) == options.most_tied) break;
     if (each.score() < options.tie * found.front().score()) break;

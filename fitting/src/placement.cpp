@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <string>
 
@@ -16,7 +17,9 @@
 #include "orbifit/model/sampling.h"
 
 #include "pose_hypotheses.h"
+#include "scan_symmetry.h"
 #include "seen_surface.h"
+#include "symmetry_hypotheses.h"
 #include "template_field.h"
 
 namespace orbifit {
@@ -34,9 +37,10 @@ constexpr std::size_t kMostReturned = 10;
 /// A template and a scan, with what it takes to judge poses fast.
 class Search {
  public:
-  Search(const Mesh& mesh, const PointCloud& cloud, PreparedScan scan, const PlacementOptions& options,
-         const RunContext& context)
+  Search(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& cloud, PreparedScan scan,
+         const PlacementOptions& options, const RunContext& context)
       : mesh_(mesh),
+        annotation_(annotation),
         scan_(std::move(scan)),
         options_(options),
         context_(context),
@@ -131,36 +135,94 @@ class Search {
     return sum / static_cast<double>(count);
   }
 
-  std::vector<Proposal> propose() {
-    const PoseHypotheses hypotheses(samples_);
-    const double extent = extent_;
+  /// The best proposals so far.
+  struct Pool {
     std::vector<Proposal> kept;
     double bar = 0.2;  // what a proposal must explain to be kept; rises as better ones come
-    const auto count = order_.size();
-    for (int k = 0; k < options_.pairs; ++k) {
-      if (k % 64 == 0) context_.progress("placement", 0.7 * k / options_.pairs);
-      const auto p = static_cast<Eigen::Index>(random_.below(count));
-      const auto q = static_cast<Eigen::Index>(random_.below(count));
-      const double apart = (scan_.points.row(p) - scan_.points.row(q)).norm();
-      if (apart < 0.1 * extent || apart > extent) continue;
-      const auto judge = [&](const Similarity& pose) {
-        const double relative = pose.scale * size_ / extent;
-        if (relative < options_.least_scale || relative > options_.largest_scale) return;
-        const Similarity back = inverse(pose);
-        const double reach = reach_of(pose) / pose.scale;
-        if (share(back, 24, reach, 0.7 * bar) <= 0 || share(back, 80, reach, 0.9 * bar) <= 0) return;
-        const double all = share(back, 300, reach, bar);
-        if (all < bar) return;
-        kept.push_back({pose, all});
-        if (kept.size() < 2 * kMostKept) return;
-        std::ranges::nth_element(kept, kept.begin() + kMostKept, std::greater<>(), &Proposal::share);
-        kept.resize(kMostKept);
-        bar = std::ranges::min_element(kept, {}, &Proposal::share)->share;
-      };
-      hypotheses.propose(scan_.points.row(p), scan_.normals.row(p), scan_.points.row(q), scan_.normals.row(q),
-                         options_.proposals, random_, judge);
+
+    void add(const std::vector<Proposal>& more) {
+      kept.insert(kept.end(), more.begin(), more.end());
+      if (kept.size() < 2 * kMostKept) return;
+      std::ranges::stable_sort(kept, std::greater<>(), &Proposal::share);
+      kept.resize(kMostKept);
+      bar = std::max(bar, kept.back().share);
     }
-    return kept;
+  };
+
+  using Take = std::function<void(const Similarity&)>;
+
+  // Runs `tasks` tasks that propose poses, and keeps the best. A task's random numbers are its own, and the bar rises
+  // after a number of tasks that does not depend on the number of threads.
+  void gather(const std::string& source, std::size_t tasks,
+              const std::function<void(std::size_t task, Random& random, const Take& take)>& run, Pool& pool) const {
+    constexpr std::size_t kAtOnce = 8;
+    for (std::size_t first = 0; first < tasks; first += kAtOnce) {
+      std::vector<std::vector<Proposal>> found(std::min(kAtOnce, tasks - first));
+      parallel_for(context_, found.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          Random random(context_.seed, source + std::to_string(first + i));
+          run(first + i, random, [&](const Similarity& pose) {
+            const double all = judged(pose, pool.bar);
+            if (all > 0) found[i].push_back({pose, all});
+          });
+        }
+      });
+      for (const auto& each : found) pool.add(each);
+    }
+  }
+
+  // The share of the points that a pose explains; 0 below the bar, and for scales that are not allowed.
+  double judged(const Similarity& pose, double bar) const {
+    const double relative = pose.scale * size_ / extent_;
+    if (relative < options_.least_scale || relative > options_.largest_scale) return 0;
+    const Similarity back = inverse(pose);
+    const double reach = reach_of(pose) / pose.scale;
+    if (share(back, 24, reach, 0.7 * bar) <= 0 || share(back, 80, reach, 0.9 * bar) <= 0) return 0;
+    return share(back, 300, reach, bar);
+  }
+
+  std::vector<Proposal> propose() const {
+    Pool pool;
+    propose_by_symmetry(pool);
+    propose_by_pairs(pool);
+    return pool.kept;
+  }
+
+  // The template's planes and axes onto those that the scan shows.
+  void propose_by_symmetry(Pool& pool) const {
+    constexpr std::size_t kPoints = 400;  // of the scan, for each of its planes and axes
+    constexpr std::size_t kInTask = 50;
+    constexpr int kMost = 12;  // poses for each of them and of the template's planes or axes
+    const SymmetryHypotheses hypotheses(samples_, template_symmetries(mesh_, annotation_));
+    if (hypotheses.empty()) return;
+    const std::vector<SymmetryElement> elements = scan_symmetries(scan_, order_, seen_, extent_, context_);
+    constexpr std::size_t kTasks = kPoints / kInTask;
+    const auto run = [&](std::size_t task, Random& random, const Take& take) {
+      const SymmetryElement& element = elements[task / kTasks];
+      for (std::size_t k = 0; k < kInTask; ++k) {
+        const auto p = static_cast<Eigen::Index>(random.below(order_.size()));
+        hypotheses.propose(element, scan_.points.row(p), scan_.normals.row(p), kMost, random, take);
+      }
+    };
+    gather("placement by symmetry ", kTasks * elements.size(), run, pool);
+  }
+
+  void propose_by_pairs(Pool& pool) const {
+    constexpr int kInTask = 64;
+    const PoseHypotheses hypotheses(samples_);
+    const auto run = [&](std::size_t task, Random& random, const Take& take) {
+      const int begin = static_cast<int>(task) * kInTask;
+      context_.progress("placement", 0.7 * begin / options_.pairs);
+      for (int k = begin; k < std::min(begin + kInTask, options_.pairs); ++k) {
+        const auto p = static_cast<Eigen::Index>(random.below(order_.size()));
+        const auto q = static_cast<Eigen::Index>(random.below(order_.size()));
+        const double apart = (scan_.points.row(p) - scan_.points.row(q)).norm();
+        if (apart < 0.1 * extent_ || apart > extent_) continue;
+        hypotheses.propose(scan_.points.row(p), scan_.normals.row(p), scan_.points.row(q), scan_.normals.row(q),
+                           options_.proposals, random, take);
+      }
+    };
+    gather("placement by pairs ", static_cast<std::size_t>((options_.pairs + kInTask - 1) / kInTask), run, pool);
   }
 
   // The diagonal of the box that holds nearly all points along each axis.
@@ -231,6 +293,7 @@ class Search {
   }
 
   const Mesh& mesh_;
+  const SymmetryAnnotation& annotation_;
   PreparedScan scan_;
   const PlacementOptions& options_;
   const RunContext& context_;
@@ -256,13 +319,14 @@ void PlacementOptions::validate() const {
   require(largest_scale > least_scale, "PlacementOptions.largest_scale", largest_scale, "more than least_scale");
 }
 
-std::vector<Placement> find_placements(const Mesh& mesh, const PointCloud& scan, const PlacementOptions& options,
-                                       const RunContext& context, const std::optional<Similarity>& given) {
+std::vector<Placement> find_placements(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& scan,
+                                       const PlacementOptions& options, const RunContext& context,
+                                       const std::optional<Similarity>& given) {
   options.validate();
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
   preparation.evenly = false;  // a floor of few points is not to outweigh the shape that stands on it
-  return Search(mesh, scan, prepare_scan(scan, preparation, context), options, context).run(given);
+  return Search(mesh, annotation, scan, prepare_scan(scan, preparation, context), options, context).run(given);
 }
 
 }  // namespace orbifit

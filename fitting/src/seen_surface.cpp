@@ -91,6 +91,10 @@ SeenSurface::Sight SeenSurface::look(const View& view, const Vector3d& point, do
   return depth - reach > view.nearest[at] ? Sight::hidden : Sight::through;
 }
 
+bool SeenSurface::through(const Vector3d& point, double reach) const {
+  return std::ranges::any_of(views_, [&](const View& view) { return look(view, point, reach) == Sight::through; });
+}
+
 // What viewpoints saw that have the point before them, and yet did not see it: the most certain. The template itself
 // may stand in between.
 SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const SurfaceIndex& surface,

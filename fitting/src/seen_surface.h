@@ -43,6 +43,10 @@ class SeenSurface {
   double covered(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
                  double reach) const;
 
+  /// Whether a viewpoint saw something behind a point, or no farther in front of it than `reach`, scan units: nothing
+  /// that hides can be there.
+  bool through(const Eigen::Vector3d& point, double reach) const;
+
   bool knows_viewpoints() const { return !views_.empty(); }
 
  private:

@@ -1,6 +1,7 @@
 #include "template_field.h"
 
 #include <cmath>
+#include <limits>
 
 namespace orbifit {
 
@@ -16,10 +17,16 @@ TemplateField::TemplateField(const Mesh& mesh, const SurfaceIndex& surface, int 
   values_.resize(static_cast<std::size_t>(count_.prod()));
   const auto plane = static_cast<std::size_t>(count_[1] * count_[2]);
   parallel_for(context, static_cast<std::size_t>(count_[0]), [&](std::size_t begin, std::size_t end) {
+    int likely = -1;  // the one before lies beside
     for (std::size_t i = begin * plane; i < end * plane; ++i) {
       const auto rest = static_cast<int>(i % plane);
       const Eigen::Array3d at(static_cast<double>(i / plane), rest / count_[2], rest % count_[2]);
-      const auto nearest = surface.nearest(corner_ + (cell * (at + 0.5)).matrix());
+      constexpr double kAnyNormal = -2;
+      constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+      const Eigen::Vector3d centre = corner_ + (cell * (at + 0.5)).matrix();
+      const auto nearest =
+          surface.nearest_facing(centre, Eigen::Vector3d::UnitZ(), kAnyNormal, kAnywhere, false, likely);
+      likely = nearest.face;
       values_[i] = {static_cast<float>(nearest.distance), normals.row(nearest.face).transpose().cast<float>()};
     }
   });

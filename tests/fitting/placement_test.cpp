@@ -68,7 +68,7 @@ class Placed : public testing::TestWithParam<Sight> {
 };
 
 TEST_P(Placed, IsWhereItWasPut) {
-  const std::vector<Placement> found = find_placements(model_.mesh, scan_, {}, context_);
+  const std::vector<Placement> found = find_placements(model_.mesh, model_.truth, scan_, {}, context_);
   ASSERT_FALSE(found.empty());
   EXPECT_TRUE(std::ranges::is_sorted(found, std::greater<>(), &Placement::score));
   EXPECT_LT(std::abs(std::log(found.front().pose.scale / pose_.scale)), 0.05);
@@ -80,8 +80,8 @@ TEST_P(Placed, IsTheSameWithThreeThreads) {
   few.pairs = 300;
   RunContext three;
   three.threads = 3;
-  const std::vector<Placement> a = find_placements(model_.mesh, scan_, few, context_);
-  const std::vector<Placement> b = find_placements(model_.mesh, scan_, few, three);
+  const std::vector<Placement> a = find_placements(model_.mesh, model_.truth, scan_, few, context_);
+  const std::vector<Placement> b = find_placements(model_.mesh, model_.truth, scan_, few, three);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].pose.linear, b[i].pose.linear);
@@ -102,7 +102,7 @@ TEST(Placement, SymmetricPosesAreOneAnswer) {
   ScanOptions options;
   options.views = 3;
   const std::vector<Placement> found =
-      find_placements(table.mesh, virtual_scan(table.mesh, options, context), {}, context);
+      find_placements(table.mesh, table.truth, virtual_scan(table.mesh, options, context), {}, context);
   ASSERT_FALSE(found.empty());
   for (std::size_t i = 1; i < found.size(); ++i) {
     EXPECT_GT(surface_apart(table.mesh, found[i].pose, found.front().pose), 0.002)
@@ -116,10 +116,34 @@ TEST(Placement, AGivenPoseIsTriedAsWell) {
   const PointCloud scan = virtual_scan(chair.mesh, {}, context);
   PlacementOptions none;
   none.pairs = 1;
-  const std::vector<Placement> found = find_placements(chair.mesh, scan, none, context, Similarity{});
+  const std::vector<Placement> found = find_placements(chair.mesh, chair.truth, scan, none, context, Similarity{});
   ASSERT_FALSE(found.empty());
   EXPECT_LT(surface_apart(chair.mesh, found.front().pose, Similarity{}), 0.01);
 }
+
+class PlacedBySymmetry : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlacedBySymmetry, WhereNoFeatureIsLookedAt) {
+  RunContext context;
+  const GeneratedModel model = generate(GetParam());
+  ScanOptions options;
+  options.azimuth = 80;
+  options.elevation = 30;
+  PointCloud scan = virtual_scan(model.mesh, options, context);
+  Random random(9, GetParam());
+  const Similarity pose{0.2, random.rotation(), 3 * random.direction()};
+  move(scan, pose);
+  PlacementOptions none;
+  none.pairs = none.proposals = 1;
+  const auto found_with = [&](const SymmetryAnnotation& annotation) {
+    const std::vector<Placement> found = find_placements(model.mesh, annotation, scan, none, context);
+    return !found.empty() && surface_apart(model.mesh, found.front().pose, pose) < 0.015;
+  };
+  EXPECT_TRUE(found_with(model.truth));
+  EXPECT_FALSE(found_with(empty_annotation(model.mesh, 0.005)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, PlacedBySymmetry, testing::Values("chair", "armchair", "fan"));
 
 TEST(PlacementOptions, RefuseWhatMakesNoSense) {
   const auto refused = [](auto spoil) {

@@ -35,9 +35,10 @@ struct CompareArguments {
 };
 
 // All methods start from the same pose, and see the same part of the scan.
-void place(const Mesh& mesh, const FitOptions& options, const RunContext& context, PointCloud& scan, Similarity& pose) {
+void place(const Mesh& mesh, const SymmetryAnnotation& annotation, const FitOptions& options, const RunContext& context,
+           PointCloud& scan, Similarity& pose) {
   constexpr double kNear = 0.12;  // of the diagonal, as in fit()
-  const auto found = find_placements(mesh, scan, options.placement, context, pose);
+  const auto found = find_placements(mesh, annotation, scan, options.placement, context, pose);
   if (found.empty()) throw NoResultError("the template was not found in the scan: give it aligned (--aligned)");
   pose = found.front().pose;
   scan = points_near(SurfaceIndex(mesh), diagonal(mesh.vertices), scan, pose, kNear, context);
@@ -93,7 +94,7 @@ CommandBody compare(CLI::App& app) {
     const fs::path folder = arguments->folder;
     make_folder(folder);
     Similarity pose;
-    if (!arguments->aligned && handles.empty()) place(mesh, options.fit, context.run, scan, pose);
+    if (!arguments->aligned && handles.empty()) place(mesh, annotation, options.fit, context.run, scan, pose);
     const FitInput input{mesh, annotation, scan, pose, {}, handles};
     if (arguments->brief) {
       options.weights.clear();
