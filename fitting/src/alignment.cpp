@@ -146,7 +146,7 @@ Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const
       const Eigen::Vector3d s = back(scan.points.row(points[i]));
       const Eigen::Vector3d facing = back.linear * scan.normals.row(points[i]).transpose();
       const auto near = surface.index.nearest_facing(s, facing, kNormalCosine, kReach * robust, true, likely[i]);
-      likely[i] = near.face;
+      likely[i] = near.place;
       if (near.face < 0) continue;
       const Eigen::Vector3d n = surface.normal(near.face);
       system.add(s, n, n.dot(near.point - s), robust_weight(near.distance, robust));

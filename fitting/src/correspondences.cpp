@@ -32,18 +32,21 @@ double robust_weight(double distance, double scale) {
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
                                                  const RunContext& context, std::vector<int>* likely) {
-  std::vector<Correspondence> all(static_cast<std::size_t>(scan_points.rows()));
-  if (likely != nullptr) likely->resize(all.size(), -1);
+  const auto every = static_cast<std::size_t>(options.every);
+  const auto count = static_cast<std::size_t>(scan_points.rows());
+  std::vector<Correspondence> all((count + every - 1) / every);
+  if (likely != nullptr) likely->resize(count, -1);
   parallel_for(context, all.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
+      const std::size_t point = i * every;
+      const auto row = static_cast<Eigen::Index>(point);
       const auto nearest = surface.index.nearest_facing(
           scan_points.row(row).transpose(), scan_normals.row(row).transpose(), options.min_normal_cosine,
-          options.max_distance, !options.signed_normals, likely != nullptr ? (*likely)[i] : -1);
-      if (likely != nullptr) (*likely)[i] = nearest.place;
+          options.max_distance, !options.signed_normals, likely != nullptr ? (*likely)[point] : -1);
+      if (likely != nullptr) (*likely)[point] = nearest.place;
       if (nearest.face < 0) continue;
       Correspondence& pair = all[i];
-      pair.scan_point = static_cast<int>(i);
+      pair.scan_point = static_cast<int>(point);
       pair.face = nearest.face;
       pair.barycentric = nearest.barycentric;
       pair.normal = distance_direction(scan_points.row(row).transpose() - nearest.point, surface.normal(nearest.face),

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
 #include "orbifit/model/surface_index.h"
 
 #include "pulls.h"
-#include "seen_surface.h"
 
 namespace orbifit {
 
@@ -23,8 +21,8 @@ double pulls_rms(const FitInput& input, const FitResult& result) {
   return std::sqrt(squares / static_cast<double>(pulls.size())) / diagonal(result.fitted.vertices);
 }
 
-void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOptions& options, const RunContext& context,
-                FitResult& result) {
+void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
+                const RunContext& context, FitResult& result) {
   const double size = diagonal(result.fitted.vertices);
   const SurfaceIndex surface(result.fitted);
   double squares = 0;
@@ -38,22 +36,20 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const FitOption
   result.inlier_fraction = double(inliers) / static_cast<double>(scan.points.rows());
   result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
 
-  const SeenSurface views(input.scan, scan.points);
-  if (views.knows_viewpoints()) {
+  if (seen.knows_viewpoints()) {
     constexpr int kSamples = 1500;
     Random random(context.seed, "coverage of a fit");
     const double reach = std::max(2 * options.inlier_distance * size, 2 * scan.spacing);
-    result.covered = views.covered(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
+    result.covered = seen.covered(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
   }
   const double whole = result.used_fraction / (result.used_fraction + result.torn_off);
   result.confidence = result.inlier_fraction * result.covered * whole;
 
-  const PointIndex points(scan.points);
   const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
   result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));
   for (std::size_t v = 0; v < result.seen.size(); ++v) {
     const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
-    result.seen[v] = points.nearest(vertex, 1).front().distance <= near ? 1 : 0;
+    result.seen[v] = seen.points().nearest(vertex, 1).front().distance <= near ? 1 : 0;
   }
   const Eigen::VectorXd areas = face_areas(result.fitted);
   double hidden = 0;

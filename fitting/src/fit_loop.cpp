@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/model/surface_index.h"
+
+#include "stage_clock.h"
 
 namespace orbifit {
 
@@ -33,15 +34,8 @@ constexpr double kLastGain = 0.002;      // in the end
 constexpr int kStalled = 3;
 constexpr double kDamping = 1e-3;  // the least, of one sample's share of the data
 constexpr double kDampingStep = 4;
+constexpr int kScheduledPoints = 1300;  // of the scan that are looked at, at least, while the stiffness falls
 constexpr const char* kUsedUp = "the iterations allowed are used up";
-
-class Clock {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 
@@ -61,6 +55,7 @@ FitLoop::Stage FitLoop::stage(int iteration) const {
   Stage now;
   const int level = iteration / options_.iterations;
   now.progress = std::min(1.0, static_cast<double>(level) / std::max(1, options_.levels - 1));
+  now.every = std::max(1, static_cast<int>(scan_.points.rows()) / kScheduledPoints);
   const double falling = options_.first_stiffness * std::pow(last_stiffness_ / options_.first_stiffness, now.progress);
   now.stiffness = std::max(falling, least_stiffness_);
   now.robust = kFirstRobust * std::pow(kSoftRobust / kFirstRobust, now.progress) * size_;
@@ -82,6 +77,7 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   options.never_trim = 0.005 * size_;
   options.direction_noise = kDirectionNoise * size_;
   options.robust_scale = now.robust;
+  options.every = now.every;
   Matches result;
   result.points = to_template(state.pose, scan_.points);
   result.pairs = find_correspondences(surface_, result.points, normals_to_template(state.pose, scan_.normals), options,
@@ -89,8 +85,14 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.of_scan = static_cast<int>(result.pairs.size());
   result.rms = weighted_rms(result.pairs) / size_;
   result.spread = typical_distance(result.pairs) / size_;
-  result.energy = static_cast<double>(scan_.points.rows() - result.of_scan) * now.robust * now.robust;
-  for (const Correspondence& pair : result.pairs) result.energy += robust_error(pair.distance, now.robust);
+  // Each point looked at stands for those that are not.
+  const auto looked_at = (scan_.points.rows() + now.every - 1) / now.every;
+  result.energy = static_cast<double>(looked_at - result.of_scan) * now.robust * now.robust;
+  for (Correspondence& pair : result.pairs) {
+    result.energy += robust_error(pair.distance, now.robust);
+    pair.weight *= now.every;
+  }
+  result.energy *= now.every;
   if (now.progress >= kSilhouetteFrom && views_.silhouette.knows_viewpoints()) {
     if (!cut_off_) cut_off_ = views_.silhouette.cut_off(deformed_, surface_, state.pose, context_);
     if (*cut_off_) return result;
@@ -101,8 +103,9 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
 }
 
 // All pairs together weigh as many as there are samples.
-double FitLoop::share_of(const Matches& matches) const {
-  return static_cast<double>(system_.samples()) / static_cast<double>(std::max<std::size_t>(1, matches.pairs.size()));
+double FitLoop::share_of(const Matches& matches, int every) const {
+  const double silhouettes = static_cast<double>(matches.pairs.size()) - matches.of_scan;
+  return static_cast<double>(system_.samples()) / std::max(1.0, every * matches.of_scan + silhouettes);
 }
 
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
@@ -158,9 +161,9 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
   std::string reason = kUsedUp;
   while (static_cast<int>(iterations.size()) < options_.most_iterations) {
     context_.progress("fit", double(iterations.size()) / options_.most_iterations);
-    const Clock clock;
+    const Stopwatch clock;
     Matches matches = match(state, now);
-    if (!best) share = share_of(matches);  // the same from then on: energies are compared
+    if (!best) share = share_of(matches, now.every);  // the same from then on: energies are compared
     const double energy_now = energy(state, matches, share, now);
     iterations.push_back(record_of(matches, now, energy_now));
     stalled = !best || energy_now < (1 - gain) * best->energy ? 0 : stalled + 1;
@@ -198,19 +201,20 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
   Stage now = stage(0);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.most_iterations);
-    const Clock clock;
+    const Stopwatch clock;
     now = stage(i);
     const Matches matches = match(state, now);
     if (matches.pairs.empty() && input_.landmarks.empty() && input_.handles.empty()) {
       return "no point of the scan lies near the template";
     }
-    const double share = share_of(matches);
+    const double share = share_of(matches, now.every);
     iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
     least_stiffness_ = stiffness_for(matches.spread);
     step(state, matches, now, share, 0, iterations.back());
     iterations.back().seconds = clock.seconds();
   }
   std::string reason = kUsedUp;
+  now.every = 1;
   for (const double robust : kSettling) {
     now.robust = robust * size_;
     reason = settle(state, now, robust == kSettling.back() ? kLastGain : kGain, iterations);

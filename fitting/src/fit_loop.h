@@ -39,6 +39,7 @@ class FitLoop {
     double progress = 1;  // of the schedule, in [0, 1]
     double stiffness = 0;
     double robust = 0;  // Geman-McClure's scale, template units
+    int every = 1;      // each so manieth point of the scan is looked at
   };
   struct Matches {
     std::vector<Correspondence> pairs;  // those of silhouettes after those of the scan
@@ -52,7 +53,7 @@ class FitLoop {
   // The least that offsets of this size from the surface, fractions of the diagonal, warrant.
   double stiffness_for(double noise) const;
   Matches match(const FitState& state, const Stage& now);
-  double share_of(const Matches& matches) const;
+  double share_of(const Matches& matches, int every) const;
   double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
   FitIteration record_of(const Matches& matches, const Stage& now, double energy) const;
   // One solve from there. \param share of each pair; what the record says of the step is filled in

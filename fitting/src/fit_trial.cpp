@@ -57,7 +57,7 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   deformed.vertices = from_template(result.pose, deformed.vertices);
   result.fitted = std::move(deformed);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
-  assess_fit(input, start.scan, options, context, result);
+  assess_fit(input, start.scan, start.views->silhouette.seen(), options, context, result);
   return result;
 }
 

@@ -24,6 +24,21 @@ constexpr double kHoldTurns = 1e-4;  // of a turn, relative to moving the sample
 constexpr double kConflict = 1e-9;   // of the diagonal
 constexpr Index kEntries = 9;        // of a turn
 
+LiftWeights rows_of(const LiftWeights& weights, const std::vector<int>& rows) {
+  LiftWeights result(static_cast<Index>(rows.size()), weights.cols());
+  Eigen::VectorXi sizes(result.rows());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    sizes[static_cast<Index>(i)] = static_cast<int>(weights.row(rows[i]).nonZeros());
+  }
+  result.reserve(sizes);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (LiftWeights::InnerIterator it(weights, rows[i]); it; ++it) {
+      result.insert(static_cast<Index>(i), it.col()) = it.value();
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
@@ -55,11 +70,16 @@ CarriedRegions::Turns MovingSystem::turns_of(const VectorXd& q) const {
 }
 
 std::shared_ptr<const CarriedBasis> MovingSystem::basis_at(const CarriedRegions::Turns& turns) const {
-  if (!last_basis_ || turns != last_turns_) {
-    last_basis_ = std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(turns)));
-    last_turns_ = turns;
+  constexpr std::size_t kKept = 2;  // where a step begins and where it ends: one of them is gone back to
+  const auto at = std::ranges::find(known_, turns, &KnownBasis::turns);
+  if (at != known_.end()) {
+    std::rotate(at, at + 1, known_.end());
+  } else {
+    if (known_.size() == kKept) known_.erase(known_.begin());
+    known_.push_back(
+        {turns, std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(turns)))});
   }
-  return last_basis_;
+  return known_.back().basis;
 }
 
 SubspaceState MovingSystem::state_of(const VectorXd& q) const {
@@ -106,29 +126,32 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   deformed.vertices = mesh_.vertices + vertex_displacements(subspace_, now, context);
   deformed.faces = mesh_.faces;
 
-  // Increments of the coordinates, and small turns.
-  MatrixXd columns(3 * samples(), dof + ways);
-  columns.leftCols(dof) = MatrixXd(now.basis->columns);
-  columns.rightCols(ways) = regions_.columns(turns, rest + moved, carried_centres(subspace_, now));
-  const Points missing = deformed.vertices - spread_ * (rest + moved);
-  const MatrixXd turning = applied(spread_, columns.rightCols(ways)) + regions_.arms(turns, spread_, missing);
-  VertexRows rows(subspace_, *now.basis);
+  // How the samples move by increments of the coordinates, and by small turns.
+  const Eigen::SparseMatrix<double>& columns = now.basis->columns;
+  const MatrixXd turn_columns = regions_.columns(turns, rest + moved, carried_centres(subspace_, now));
   const std::vector<int> touched = touched_vertices(mesh_, pairs, pulls);
+  const LiftWeights spread = rows_of(spread_, touched);
+  const Points missing = deformed.vertices(touched, Eigen::all) - Points(spread * (rest + moved));
+  const MatrixXd turning = applied(spread, turn_columns) + regions_.arms(turns, spread, missing);
+  VertexRows rows(subspace_, *now.basis);
   rows.prepare(touched, context);
-  for (const int vertex : touched) {
-    rows.extend(vertex, static_cast<int>(dof), turning.middleRows<3>(3 * Index{vertex}));
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    rows.extend(touched[i], static_cast<int>(dof), turning.middleRows<3>(3 * static_cast<Index>(i)));
   }
 
   DataNormal normal = data_normal(rows, dof + ways, deformed, step_, pairs, share, scan_points, pulls, context);
   const Points pull = energy_.pull() - Points(stiffness_ * moved);
-  normal.matrix.topLeftCorner(dof + ways, dof + ways) +=
-      hold.stiffness * (columns.transpose() * applied(LiftWeights(stiffness_), columns));
-  normal.side.head(dof + ways) += hold.stiffness * (columns.transpose() * stacked(pull));
+  const MatrixXd bent = hold.stiffness * applied(LiftWeights(stiffness_), turn_columns);
+  normal.matrix.topLeftCorner(dof, dof) += hold.stiffness * restricted(columns, stiffness_);
+  normal.matrix.block(dof, 0, ways, dof) += bent.transpose() * columns;
+  normal.matrix.block(dof, dof, ways, ways) += turn_columns.transpose() * bent;
+  normal.side.head(dof) += hold.stiffness * (columns.transpose() * stacked(pull));
+  normal.side.segment(dof, ways) += hold.stiffness * (turn_columns.transpose() * stacked(pull));
   const double prefer = kPreferPose * all_samples;
   normal.matrix.diagonal().head(dof).array() += prefer + hold.damping;
   normal.side.head(dof) -= prefer * now.q;
   normal.matrix.diagonal().segment(dof, ways) +=
-      (kHoldTurns + hold.damping) * columns.rightCols(ways).colwise().squaredNorm().transpose();
+      (kHoldTurns + hold.damping) * turn_columns.colwise().squaredNorm().transpose();
   normal.matrix.diagonal().tail<6>().array() += kHoldPose * all_samples + hold.damping;
 
   matrix_ = std::move(normal.matrix);
@@ -142,7 +165,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   const double largest = ways > 0 ? angles.cwiseAbs().maxCoeff() : 0;
   if (largest > kMostTurn) angles *= kMostTurn / largest;
   change.tail(ways) = angles;
-  const VectorXd there = stacked(moved) + columns * change;
+  const VectorXd there = stacked(moved) + columns * change.head(dof) + turn_columns * change.tail(ways);
   Solution solution;
   solution.q = turned(hold.around, angles, Eigen::Map<const Points>(there.data(), samples(), 3));
   if (solution.q.size() == 0) {  // the groups stay as they stand

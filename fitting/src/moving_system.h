@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -53,9 +54,12 @@ class MovingSystem final : public DeformationSystem {
   Eigen::SparseMatrix<double> stiffness_;  // K, of the samples
   LiftWeights spread_;                     // samples -> vertices
   ScanStep step_;
-  mutable CarriedRegions::Turns last_turns_;  // of the last basis that was asked for
-  mutable std::shared_ptr<const CarriedBasis> last_basis_;
-  Eigen::MatrixXd matrix_;  // of the last system, lower half
+  struct KnownBasis {
+    CarriedRegions::Turns turns;
+    std::shared_ptr<const CarriedBasis> basis;
+  };
+  mutable std::vector<KnownBasis> known_;  // of those that were asked for last, the last one last
+  Eigen::MatrixXd matrix_;                 // of the last system, lower half
   Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
 };
 

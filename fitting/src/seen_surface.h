@@ -47,6 +47,8 @@ class SeenSurface {
   /// that hides can be there.
   bool through(const Eigen::Vector3d& point, double reach) const;
 
+  const PointIndex& points() const { return index_; }  ///< those to which distances are measured
+
   bool knows_viewpoints() const { return !views_.empty(); }
 
  private:

@@ -19,6 +19,8 @@ class SilhouettePulls {
   /// \param cloud  all of the scan, with its viewpoints \param scan  the points that are matched
   SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan, const RunContext& context);
 
+  const SeenSurface& seen() const { return seen_; }
+
   bool knows_viewpoints() const { return seen_.knows_viewpoints(); }
 
   /// Whether viewpoints have nothing where much of the template should be: then points have been cut off the scan, with

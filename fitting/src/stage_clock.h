@@ -8,6 +8,16 @@
 
 namespace orbifit {
 
+/// Seconds since it was made, or since it was last set back.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  void set_back() { start_ = std::chrono::steady_clock::now(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 /// Notes how long one stage after the other took.
 class StageClock {
  public:
@@ -16,14 +26,13 @@ class StageClock {
 
   /// The stage that began when the one before it was finished.
   void finished(const std::string& stage) {
-    const auto now = std::chrono::steady_clock::now();
-    times_.push_back({stage, std::chrono::duration<double>(now - last_).count()});
-    last_ = now;
+    times_.push_back({stage, since_.seconds()});
+    since_.set_back();
   }
 
  private:
   std::vector<StageTime>& times_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  Stopwatch since_;
 };
 
 }  // namespace orbifit

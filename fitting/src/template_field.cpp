@@ -26,7 +26,7 @@ TemplateField::TemplateField(const Mesh& mesh, const SurfaceIndex& surface, int 
       const Eigen::Vector3d centre = corner_ + (cell * (at + 0.5)).matrix();
       const auto nearest =
           surface.nearest_facing(centre, Eigen::Vector3d::UnitZ(), kAnyNormal, kAnywhere, false, likely);
-      likely = nearest.face;
+      likely = nearest.place;
       values_[i] = {static_cast<float>(nearest.distance), normals.row(nearest.face).transpose().cast<float>()};
     }
   });

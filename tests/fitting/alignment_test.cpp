@@ -93,6 +93,17 @@ TEST(Correspondences, OfPointsBesideAFlatFaceAreTheirFeet) {
   EXPECT_EQ(pairs[1].scan_point, 1);
   options.trim = 0.5;
   EXPECT_EQ(find_correspondences(MatchSurface(mesh), points, normals, options, RunContext{}).size(), 1U);
+  options.trim = 1;
+  options.every = 2;
+  const auto even = find_correspondences(MatchSurface(mesh), points, normals, options, RunContext{});
+  ASSERT_EQ(even.size(), 1U);
+  EXPECT_EQ(even[0].scan_point, 0);
+  options.every = 3;  // the first and the fourth
+  points.row(3) << 0.2, 0.2, 0.3;
+  const auto third = find_correspondences(MatchSurface(mesh), points, normals, options, RunContext{});
+  ASSERT_EQ(third.size(), 2U);
+  EXPECT_EQ(third[1].scan_point, 3);
+  EXPECT_NEAR(third[1].distance, 0.3, 1e-15);
 }
 
 TEST(Correspondences, AcrossAnEdgePointAwayFromIt) {

@@ -63,7 +63,7 @@ void finish_baseline(const FitInput& input, const FitOptions& options, const Poi
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   if (start != nullptr) {
     result.used_fraction = start->used_fraction;
-    assess_fit(input, start->scan, options, context, result);
+    assess_fit(input, start->scan, start->views->silhouette.seen(), options, context, result);
     result.converged = result.inlier_fraction * result.used_fraction >= options.least_inliers;
     return;
   }

@@ -59,7 +59,7 @@ FitResult fit_kurz(const FitInput& input, const KurzOptions& options, const RunC
   }
   FitOptions assessment;
   assessment.inlier_distance = options.inlier_distance;
-  assess_fit(input, unit.scan, assessment, context, result);
+  assess_fit(input, unit.scan, SeenSurface(input.scan, unit.scan.points), assessment, context, result);
   result.converged = result.inlier_fraction >= assessment.least_inliers;
   return result;
 }

@@ -21,6 +21,7 @@ struct CorrespondenceOptions {
   double never_trim = 0;           ///< distances below this are always kept, template units
   double direction_noise = 0;      ///< offsets across an edge below this do not turn the normal, template units
   double robust_scale = 0;         ///< Geman-McClure's, template units, > 0
+  int every = 1;                   ///< only each so manieth scan point is looked at, >= 1
 };
 
 /// A scan point and the surface point nearest to it.
@@ -61,7 +62,7 @@ class MatchSurface {
 /// O(P log F).
 /// \param likely  for each scan point the place in the index of a face that may well be the nearest, such as the one of
 ///   the iteration before, -1 for none: the answer does not depend on it, but comes sooner. Replaced by the places of
-///   the faces found. May be null
+///   the faces found for the points looked at. May be null
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
                                                  const RunContext& context, std::vector<int>* likely = nullptr);
