@@ -217,6 +217,8 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
   now.every = 1;
   for (const double robust : kSettling) {
     now.robust = robust * size_;
+    // Settled once, the fit has reached what it had left unexplained for being on its way.
+    if (robust == kSettling[1]) now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
     reason = settle(state, now, robust == kSettling.back() ? kLastGain : kGain, iterations);
   }
   return reason;
