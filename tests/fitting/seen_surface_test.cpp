@@ -76,6 +76,15 @@ TEST_F(Wall, WhatLiesBehindItIsHidden) {
   EXPECT_TRUE(seen.look(samples_, SurfaceIndex(square_), at(-1), 0.1, context_).missed.empty());
 }
 
+TEST_F(Wall, APointIsSeenThroughBeforeItAlone) {
+  const SeenSurface seen(scan_, scan_.points);
+  const auto through = [&](double x, double height) { return seen.through({x, 0.1, height}, 0.1); };
+  EXPECT_TRUE(through(0.1, 1));
+  EXPECT_TRUE(through(0.1, 0));
+  EXPECT_FALSE(through(0.1, -0.5));
+  EXPECT_FALSE(through(5, 1)) << "out of the picture";
+}
+
 TEST_F(Wall, WithoutViewpointsNothingIsMissed) {
   scan_.viewpoints.resize(0, 3);
   const SeenSurface seen(scan_, scan_.points);
