@@ -129,6 +129,64 @@ void add_plane(const Points& points, const Region& region, const Eigen::Vector3d
   scene.surfaces.push_back(std::move(pane));
 }
 
+// The mesh, each face in the colour of its number, grey below 0, or as glass there.
+Scene shape_scene(const Mesh& mesh, const std::vector<int>& number, bool see_through) {
+  constexpr double kGlass = 0.1;
+  Scene scene;
+  if (!see_through) {
+    SurfaceLayer& shape = scene.surfaces.emplace_back();
+    shape.mesh = mesh;
+    for (const int each : number) shape.face_colours.push_back(region_colour(each));
+    return scene;
+  }
+  std::vector<int> solid;
+  std::vector<int> glass;
+  std::vector<Colour> colours;
+  for (std::size_t face = 0; face < number.size(); ++face) {
+    (number[face] < 0 ? glass : solid).push_back(static_cast<int>(face));
+    if (number[face] >= 0) colours.push_back(region_colour(number[face]));
+  }
+  scene.surfaces.push_back({submesh(mesh, glass), {kGrey}, {}, kGlass});
+  scene.surfaces.push_back({submesh(mesh, solid), colours, {}});
+  return scene;
+}
+
+std::vector<int> other_faces(const Mesh& mesh, const std::vector<int>& faces) {
+  std::vector<char> in(static_cast<std::size_t>(mesh.faces.rows()), 0);
+  for (const int face : faces) in[static_cast<std::size_t>(face)] = 1;
+  std::vector<int> result;
+  for (int face = 0; face < static_cast<int>(in.size()); ++face) {
+    if (in[static_cast<std::size_t>(face)] == 0) result.push_back(face);
+  }
+  return result;
+}
+
+// Of a small picture of the surfaces, the pixels that are red.
+int red_pixels(const Scene& scene, const Mesh& framed, ViewOptions view, const RunContext& context) {
+  constexpr int kWidth = 120;
+  view.height = std::max(1, kWidth * view.height / std::max(1, view.width));
+  view.width = kWidth;
+  view.samples = 1;
+  view.ground_shadow = false;
+  view.frame = framed.vertices;
+  const Image image = render(scene, view, context);
+  int count = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) count += image.rgb[i] > image.rgb[i + 1] + 40 ? 1 : 0;
+  return count;
+}
+
+bool hidden(const Mesh& mesh, const std::vector<int>& faces, const ViewOptions& view, const RunContext& context) {
+  constexpr double kSeen = 0.15;  // of what would be seen if it were alone
+  constexpr double kMost = 0.25;  // of the faces: of more, enough is seen
+  if (static_cast<double>(faces.size()) > kMost * static_cast<double>(mesh.faces.rows())) return false;
+  const Colour red(0.9F, 0.1F, 0.1F);
+  Scene alone;
+  alone.surfaces.push_back({submesh(mesh, faces), {red}, {}});
+  Scene all = alone;
+  all.surfaces.push_back({submesh(mesh, other_faces(mesh, faces)), {kGrey}, {}});
+  return red_pixels(all, mesh, view, context) <= kSeen * red_pixels(alone, mesh, view, context);
+}
+
 }  // namespace
 
 Colour region_colour(int number) {
@@ -161,14 +219,24 @@ Colour heat_colour(double value) {
   return (1 - share) * stops[stop] + share * stops[stop + 1];
 }
 
-Scene region_scene(const Mesh& mesh, const Region& region) {
-  Scene scene;
+Scene visible_region_scene(const Mesh& mesh, const Region& region, const ViewOptions& view, const RunContext& context) {
+  return region_scene(mesh, region, hidden(mesh, region.faces, view, context));
+}
+
+Scene visible_pattern_scene(const Mesh& mesh, const Pattern& pattern, const ViewOptions& view,
+                            const RunContext& context) {
+  std::vector<int> faces;
+  for (const PatternInstance& instance : pattern.instances) {
+    faces.insert(faces.end(), instance.faces.begin(), instance.faces.end());
+  }
+  return pattern_scene(mesh, pattern, hidden(mesh, faces, view, context));
+}
+
+Scene region_scene(const Mesh& mesh, const Region& region, bool see_through) {
   const Colour colour = region_colour(region.id);
-  SurfaceLayer shape;
-  shape.mesh = mesh;
-  shape.face_colours.assign(static_cast<std::size_t>(mesh.faces.rows()), kGrey);
-  for (const int face : region.faces) shape.face_colours[static_cast<std::size_t>(face)] = colour;
-  scene.surfaces.push_back(std::move(shape));
+  std::vector<int> number(static_cast<std::size_t>(mesh.faces.rows()), -1);
+  for (const int face : region.faces) number[static_cast<std::size_t>(face)] = region.id;
+  Scene scene = shape_scene(mesh, number, see_through);
   const Points points = region.faces.empty() ? mesh.vertices : submesh(mesh, region.faces).vertices;
 
   Lines axes;
@@ -186,17 +254,12 @@ Scene region_scene(const Mesh& mesh, const Region& region) {
   return scene;
 }
 
-Scene pattern_scene(const Mesh& mesh, const Pattern& pattern) {
-  Scene scene;
-  SurfaceLayer shape;
-  shape.mesh = mesh;
-  shape.face_colours.assign(static_cast<std::size_t>(mesh.faces.rows()), kGrey);
+Scene pattern_scene(const Mesh& mesh, const Pattern& pattern, bool see_through) {
+  std::vector<int> number(static_cast<std::size_t>(mesh.faces.rows()), -1);
   for (std::size_t i = 0; i < pattern.instances.size(); ++i) {
-    const Colour colour = region_colour(static_cast<int>(i));
-    for (const int face : pattern.instances[i].faces) shape.face_colours[static_cast<std::size_t>(face)] = colour;
+    for (const int face : pattern.instances[i].faces) number[static_cast<std::size_t>(face)] = static_cast<int>(i);
   }
-  scene.surfaces.push_back(std::move(shape));
-  return scene;
+  return shape_scene(mesh, number, see_through);
 }
 
 }  // namespace orbifit

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -329,6 +330,31 @@ TEST(RegionScene, MarksFacesAxisAndPlanes) {
     const Eigen::Vector3d normal = face_normals(scene.surfaces[s].mesh).row(0);
     EXPECT_LT(std::abs(normal.z()), 1e-12);
   }
+}
+
+// A ball within a ball: what of the inner one is seen.
+TEST(VisibleRegionScene, SeesThroughWhatHidesTheRegion) {
+  Mesh mesh = sphere({0, 0, 0}, 1);
+  const Mesh inner = sphere({0, 0, 0}, 0.4);
+  const auto vertices = mesh.vertices.rows();
+  const auto faces = mesh.faces.rows();
+  mesh.vertices.conservativeResize(vertices + inner.vertices.rows(), 3);
+  mesh.vertices.bottomRows(inner.vertices.rows()) = inner.vertices;
+  mesh.faces.conservativeResize(2 * faces, 3);
+  mesh.faces.bottomRows(faces) = inner.faces.array() + static_cast<int>(vertices);
+  std::vector<int> hidden(8);
+  std::iota(hidden.begin(), hidden.end(), static_cast<int>(faces));
+  const PointGroup mirror{PointGroup::Family::Cs, 1};
+  const GroupFrame frame = GroupFrame::Identity();
+  const Region inside = make_region(mirror, Eigen::Vector3d::Zero(), frame, hidden, "inside");
+  const Region outside = make_region(mirror, Eigen::Vector3d::Zero(), frame, {0, 1, 2, 3, 4, 5, 6, 7}, "outside");
+  ViewOptions from_above = small_view();
+  from_above.elevation = 89;
+  EXPECT_LT(visible_region_scene(mesh, inside, from_above, {}).surfaces[0].opacity, 1);
+  EXPECT_EQ(visible_region_scene(mesh, outside, from_above, {}).surfaces[0].opacity, 1);
+  const Scene seen = region_scene(mesh, inside, true);
+  EXPECT_EQ(seen.surfaces[0].mesh.faces.rows() + seen.surfaces[1].mesh.faces.rows(), mesh.faces.rows());
+  EXPECT_EQ(seen.surfaces[1].mesh.faces.rows(), 8);
 }
 
 TEST(PatternScene, ColoursEveryInstance) {

@@ -118,10 +118,14 @@ void write_preview(const DetectArguments& arguments, const Mesh& mesh, const Sym
     captions.push_back(caption);
   };
   for (const Region& region : found.regions) {
-    add(region_scene(mesh, region), "region " + std::to_string(region.id) + ": " + region.group.symbol());
+    if (images.size() >= kMostPictures) break;
+    add(visible_region_scene(mesh, region, view, run),
+        "region " + std::to_string(region.id) + ": " + region.group.symbol());
   }
   for (const Pattern& pattern : found.patterns) {
-    add(pattern_scene(mesh, pattern), "pattern " + std::to_string(pattern.id) + ": " + to_string(pattern.kind));
+    if (images.size() >= kMostPictures) break;
+    add(visible_pattern_scene(mesh, pattern, view, run),
+        "pattern " + std::to_string(pattern.id) + ": " + to_string(pattern.kind));
   }
   if (images.empty()) {
     Scene plain;

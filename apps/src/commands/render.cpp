@@ -27,7 +27,7 @@ struct RenderArguments {
 
 // Every region on its own, or the one that was asked for.
 std::vector<Scene> annotated_scenes(const RenderArguments& arguments, const Mesh& mesh, bool one_region,
-                                    std::vector<std::string>& captions) {
+                                    const RunContext& run, std::vector<std::string>& captions) {
   const SymmetryAnnotation annotation = read_annotation(arguments.annotation, mesh);
   std::vector<Scene> scenes;
   const auto add = [&](Scene scene, const std::string& caption) {
@@ -36,14 +36,16 @@ std::vector<Scene> annotated_scenes(const RenderArguments& arguments, const Mesh
   };
   for (const Region& region : annotation.regions) {
     if (one_region && region.id != arguments.region) continue;
-    add(region_scene(mesh, region), std::to_string(region.id) + ": " + region.group.symbol() + " " + region.name);
+    add(visible_region_scene(mesh, region, arguments.view, run),
+        std::to_string(region.id) + ": " + region.group.symbol() + " " + region.name);
   }
   if (one_region && scenes.empty()) {
     throw UsageError("--region is " + std::to_string(arguments.region) + ": " + arguments.annotation +
                      " has no such region");
   }
   for (const Pattern& pattern : annotation.patterns) {
-    if (!one_region) add(pattern_scene(mesh, pattern), to_string(pattern.kind) + " " + pattern.name);
+    if (!one_region)
+      add(visible_pattern_scene(mesh, pattern, arguments.view, run), to_string(pattern.kind) + " " + pattern.name);
   }
   return scenes;
 }
@@ -89,7 +91,7 @@ CommandBody render(CLI::App& app) {
     const Mesh mesh = read_mesh(arguments->mesh);
     std::vector<std::string> captions;
     std::vector<Scene> scenes;
-    if (!arguments->annotation.empty()) scenes = annotated_scenes(*arguments, mesh, one_region, captions);
+    if (!arguments->annotation.empty()) scenes = annotated_scenes(*arguments, mesh, one_region, context.run, captions);
     if (scenes.empty()) {
       scenes.push_back(plain_scene(mesh));
       captions.push_back(arguments->mesh);

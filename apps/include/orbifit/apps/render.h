@@ -69,10 +69,16 @@ Colour region_colour(int number);
 Colour heat_colour(double value);
 
 /// The mesh in grey, with a region's faces in its colour and its axis (or mirror plane's outline) drawn.
-Scene region_scene(const Mesh& mesh, const Region& region);
+/// \param see_through  all but the region is glass
+Scene region_scene(const Mesh& mesh, const Region& region, bool see_through = false);
 
-/// The mesh with an instance of each colour.
-Scene pattern_scene(const Mesh& mesh, const Pattern& pattern);
+/// Likewise, seen through where the view hides most of the region behind or inside the rest.
+Scene visible_region_scene(const Mesh& mesh, const Region& region, const ViewOptions& view, const RunContext& context);
+
+/// The mesh with an instance of each colour. \param see_through  all else is glass
+Scene pattern_scene(const Mesh& mesh, const Pattern& pattern, bool see_through = false);
+Scene visible_pattern_scene(const Mesh& mesh, const Pattern& pattern, const ViewOptions& view,
+                            const RunContext& context);
 
 /// Small pictures side by side with a caption each, in rows. Captions are ASCII; long ones are cut.
 /// \throw UsageError for another number of captions than images, fewer than one column, or an ill-formed image
