@@ -36,6 +36,7 @@
 #include "orbifit/detection/wider_subgroups.h"
 #include "orbifit/model/errors.h"
 
+#include "chance_symmetry.h"
 #include "looser_groups.h"
 
 namespace orbifit {
@@ -340,15 +341,18 @@ void take_noise_out(PreparedMesh& prepared, double noise, Explanation* explanati
   }
 }
 
-// Regions that only the smoothing made symmetric go.
-void drop_made_by_smoothing(const NoiseCheck& check, Explanation* explanation, std::vector<FoundRegion>& regions) {
+// Regions that only the smoothing made symmetric go, and discs of plates, which creases that noise hides would tell.
+void drop_made_by_smoothing(const NoiseCheck& check, const PreparedMesh& prepared, Explanation* explanation,
+                            std::vector<FoundRegion>& regions) {
   std::erase_if(regions, [&](const FoundRegion& region) {
-    const bool holds = check.holds(region);
-    if (!holds && explanation != nullptr) {
-      explanation->notes.push_back({"noise", region.placement.group.symbol() + " on " + region.name, false,
-                                    "does not hold on the mesh before its noise was taken out"});
+    const bool disc = mere_discs(prepared, region);
+    const bool drop = disc || !check.holds(region);
+    if (drop && explanation != nullptr) {
+      explanation->notes.push_back(
+          {"noise", region.placement.group.symbol() + " on " + region.name, false,
+           disc ? "discs that end within planes" : "does not hold on the mesh before its noise was taken out"});
     }
-    return !holds;
+    return drop;
   });
 }
 
@@ -405,8 +409,8 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
     found = Detector(prepared, {}, options, start, context).run();
   }
   if (given) {
-    drop_made_by_smoothing(NoiseCheck(*given, prepared, noise, options.tolerance, context), options.explanation,
-                           found.regions);
+    drop_made_by_smoothing(NoiseCheck(*given, prepared, noise, options.tolerance, context), prepared,
+                           options.explanation, found.regions);
   }
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
