@@ -106,11 +106,10 @@ bool fades(const SurfacePatch& patch, const GroupPlacement& placement, const Run
   return verify(patch, motions, 0.5 * patch.tolerance, kSamples, 0, context).joint < kStays * full;
 }
 
-bool mere_discs(const PreparedMesh& prepared, const FoundRegion& region) {
+std::vector<int> without_cut_discs(const PreparedMesh& prepared, const FoundRegion& region) {
   constexpr double kMostCut = 0.5;  // of a disc's border
-  constexpr double kLeast = 0.3;    // of the region, besides discs
   const PointGroup& group = region.placement.group;
-  if (!group.continuous() || !group.has_axis()) return false;
+  if (!group.continuous() || !group.has_axis()) return region.faces;
   const Eigen::Vector3d axis = region.placement.frame.col(2);
   const auto across = [&](int face) { return std::abs(prepared.normals.row(face).dot(axis)) > kAlikeNormals; };
   std::vector<char> in(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0);
@@ -141,16 +140,13 @@ bool mere_discs(const PreparedMesh& prepared, const FoundRegion& region) {
       if (in[static_cast<std::size_t>(outside)] == 0 && across(outside)) cut += length;
     }
   }
-  double rest = 0;
-  for (const int face : region.faces) {
-    bool counts = in[static_cast<std::size_t>(face)] == 1;
-    if (!counts) {
-      const auto border = borders.find(discs.root(face));
-      counts = border == borders.end() || border->second.second <= kMostCut * border->second.first;
-    }
-    if (counts) rest += prepared.areas[face];
-  }
-  return rest < kLeast * region.area;
+  std::vector<int> rest;
+  std::ranges::copy_if(region.faces, std::back_inserter(rest), [&](int face) {
+    if (in[static_cast<std::size_t>(face)] == 1) return true;
+    const auto border = borders.find(discs.root(face));
+    return border == borders.end() || border->second.second <= kMostCut * border->second.first;
+  });
+  return rest;
 }
 
 void drop_siblings(std::vector<int>& parts, int part, const std::vector<CongruenceClass>& kinds) {

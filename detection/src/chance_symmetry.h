@@ -47,8 +47,9 @@ bool mere_border(const PreparedMesh& prepared, const std::vector<int>& faces, co
 /// where the shape does; of smooth surfaces any mirror keeps some, up to where they differ by the tolerance.
 bool fades(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context);
 
-/// Whether a turned region is little but discs that end within planes across its axis: any plane has such.
-bool mere_discs(const PreparedMesh& prepared, const FoundRegion& region);
+/// The faces of a turned region without discs that end within planes across its axis: any plane has such. All faces of
+/// a region of another group.
+std::vector<int> without_cut_discs(const PreparedMesh& prepared, const FoundRegion& region);
 
 /// Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of symmetry:
 /// takes all of the part's kind but itself out of `parts`.

@@ -83,14 +83,14 @@ struct Disc {
   int sides;
   double radius;  // the prism's is 1
   double height;
-  bool expected;
+  bool expected;  // that its discs are taken out
 
   friend void PrintTo(const Disc& disc, std::ostream* out) { *out << disc.name; }
 };
 
-class MereDiscs : public testing::TestWithParam<Disc> {};
+class CutDiscs : public testing::TestWithParam<Disc> {};
 
-TEST_P(MereDiscs, EndWithinPlanes) {
+TEST_P(CutDiscs, AreTakenOut) {
   const auto& [name, sides, radius, height, expected] = GetParam();
   const PreparedMesh prepared = prepare(test::subdivided(test::prism(sides, 1, height), 4));
   const Points middles = face_centroids(prepared.mesh);
@@ -101,12 +101,15 @@ TEST_P(MereDiscs, EndWithinPlanes) {
     if (middle.head<2>().norm() < radius) region.faces.push_back(f);
   }
   region.area = area_of(prepared, region.faces);
-  EXPECT_EQ(mere_discs(prepared, region), expected);
+  for (const int face : without_cut_discs(prepared, region)) {
+    EXPECT_FALSE(expected && std::abs(prepared.normals(face, 2)) > 0.9) << "a face of an end";
+  }
+  EXPECT_EQ(without_cut_discs(prepared, region) == region.faces, !expected);
   region.placement.group = *PointGroup::parse("C7v");
-  EXPECT_FALSE(mere_discs(prepared, region)) << "of a finite group there is more to see";
+  EXPECT_EQ(without_cut_discs(prepared, region), region.faces) << "of a finite group there is more to see";
 }
 
-INSTANTIATE_TEST_SUITE_P(Prisms, MereDiscs,
+INSTANTIATE_TEST_SUITE_P(Prisms, CutDiscs,
                          testing::Values(Disc{"OfAHeptagon", 7, 0.85, 0.5, true}, Disc{"OfACoin", 60, 2, 0.1, false},
                                          Disc{"WithinACoin", 60, 0.7, 0.1, true}, Disc{"OfARod", 60, 2, 3, false}),
                          [](const auto& each) { return std::string(each.param.name); });
