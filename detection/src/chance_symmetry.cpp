@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
-#include <utility>
 
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/dense.h"
-#include "orbifit/model/disjoint_sets.h"
-
-#include "thresholds.h"
 
 namespace orbifit {
 
@@ -104,49 +99,6 @@ bool fades(const SurfacePatch& patch, const GroupPlacement& placement, const Run
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
   const double full = verify(patch, motions, patch.tolerance, kSamples, 0, context).joint;
   return verify(patch, motions, 0.5 * patch.tolerance, kSamples, 0, context).joint < kStays * full;
-}
-
-std::vector<int> without_cut_discs(const PreparedMesh& prepared, const FoundRegion& region) {
-  constexpr double kMostCut = 0.5;  // of a disc's border
-  const PointGroup& group = region.placement.group;
-  if (!group.continuous() || !group.has_axis()) return region.faces;
-  const Eigen::Vector3d axis = region.placement.frame.col(2);
-  const auto across = [&](int face) { return std::abs(prepared.normals.row(face).dot(axis)) > kAlikeNormals; };
-  std::vector<char> in(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0);
-  for (const int face : region.faces) in[static_cast<std::size_t>(face)] = across(face) ? 2 : 1;
-  const auto point = [&](int group_of_weld) -> Eigen::Vector3d {
-    return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(group_of_weld)]);
-  };
-  DisjointSets discs(in.size());
-  const std::vector<Edge> edges = welded_edges(prepared.mesh, prepared.weld);
-  for (const Edge& edge : edges) {
-    for (const int face : edge.faces) {
-      const int first = edge.faces.front();
-      if (in[static_cast<std::size_t>(face)] == 2 && in[static_cast<std::size_t>(first)] == 2) {
-        discs.unite(face, first);
-      }
-    }
-  }
-  std::map<int, std::pair<double, double>> borders;  // by disc: all, and where its plane goes on
-  for (const Edge& edge : edges) {
-    if (edge.faces.size() != 2) continue;
-    for (std::size_t side = 0; side < 2; ++side) {
-      const int inside = edge.faces[side];
-      const int outside = edge.faces[1 - side];
-      if (in[static_cast<std::size_t>(inside)] != 2 || in[static_cast<std::size_t>(outside)] == 2) continue;
-      auto& [all, cut] = borders[discs.root(inside)];
-      const double length = (point(edge.vertices[0]) - point(edge.vertices[1])).norm();
-      all += length;
-      if (in[static_cast<std::size_t>(outside)] == 0 && across(outside)) cut += length;
-    }
-  }
-  std::vector<int> rest;
-  std::ranges::copy_if(region.faces, std::back_inserter(rest), [&](int face) {
-    if (in[static_cast<std::size_t>(face)] == 1) return true;
-    const auto border = borders.find(discs.root(face));
-    return border == borders.end() || border->second.second <= kMostCut * border->second.first;
-  });
-  return rest;
 }
 
 void drop_siblings(std::vector<int>& parts, int part, const std::vector<CongruenceClass>& kinds) {

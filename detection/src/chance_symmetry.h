@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "orbifit/detection/components.h"
-#include "orbifit/detection/found_region.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/revolution.h"
 #include "orbifit/detection/surface_patch.h"
@@ -46,10 +45,6 @@ bool mere_border(const PreparedMesh& prepared, const std::vector<int>& faces, co
 /// Whether what a finite group keeps of the patch fades as the tolerance shrinks to half of it. A symmetric part ends
 /// where the shape does; of smooth surfaces any mirror keeps some, up to where they differ by the tolerance.
 bool fades(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context);
-
-/// The faces of a turned region without discs that end within planes across its axis: any plane has such. All faces of
-/// a region of another group.
-std::vector<int> without_cut_discs(const PreparedMesh& prepared, const FoundRegion& region);
 
 /// Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of symmetry:
 /// takes all of the part's kind but itself out of `parts`.

@@ -36,7 +36,7 @@
 #include "orbifit/detection/wider_subgroups.h"
 #include "orbifit/model/errors.h"
 
-#include "chance_symmetry.h"
+#include "cut_discs.h"
 #include "looser_groups.h"
 
 namespace orbifit {
@@ -341,29 +341,6 @@ void take_noise_out(PreparedMesh& prepared, double noise, Explanation* explanati
   }
 }
 
-// Takes discs of plates out of turned regions; what is little else, or does not turn by itself, goes.
-void drop_discs(const PreparedMesh& prepared, const DetectOptions& options, const RunContext& context,
-                std::vector<FoundRegion>& regions) {
-  constexpr double kLeast = 0.3;      // of the region
-  constexpr double kLeastKept = 0.8;  // of the samples: what was verified with the discs is not to fail for its border
-  constexpr int kSamples = 1000;
-  Explanation* explanation = options.explanation;
-  std::erase_if(regions, [&](FoundRegion& region) {
-    std::vector<int> faces = without_cut_discs(prepared, region);
-    if (faces.size() == region.faces.size()) return false;
-    const double area = area_of(prepared, faces);
-    const SurfacePatch patch = make_patch(prepared, faces, kSamples, options.tolerance, context, "discs");
-    const bool drop = area < kLeast * region.area || verify_group(patch, region.placement, context).joint < kLeastKept;
-    if (explanation != nullptr) {
-      explanation->notes.push_back({"discs", region.placement.group.symbol() + " on " + region.name, !drop,
-                                    drop ? "little but discs that end within planes" : "without its discs in planes"});
-    }
-    region.faces = std::move(faces);
-    region.area = area;
-    return drop;
-  });
-}
-
 // Regions that only the smoothing made symmetric go.
 void drop_made_by_smoothing(const NoiseCheck& check, Explanation* explanation, std::vector<FoundRegion>& regions) {
   std::erase_if(regions, [&](const FoundRegion& region) {
@@ -432,7 +409,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
     drop_made_by_smoothing(NoiseCheck(*given, prepared, noise, options.tolerance, context), options.explanation,
                            found.regions);
   }
-  drop_discs(prepared, options, context, found.regions);
+  drop_cut_discs(prepared, options.tolerance, context, found.regions, options.explanation);
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);

@@ -77,7 +77,7 @@ TEST_P(FineModels, HaveTheRegionsTheyHaveWithoutAStandIn) {
   const SymmetryAnnotation direct = detected(mesh, kNever);
   const SymmetryAnnotation carried = detected(mesh, kAlways, 1, &explanation);
   EXPECT_EQ(explanation.notes.front().stage, "coarse mesh");
-  ASSERT_EQ(carried.regions.size(), direct.regions.size());
+  ASSERT_EQ(carried.regions.size(), direct.regions.size()) << summary_of(carried) << "not " << summary_of(direct);
   for (const Region& region : direct.regions) {
     const auto same = std::ranges::find_if(carried.regions, [&](const Region& other) {
       return other.group == region.group && overlap(other.faces, region.faces) > 0.95;

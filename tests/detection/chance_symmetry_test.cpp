@@ -9,7 +9,6 @@
 
 #include "orbifit/detection/verification.h"
 
-#include "placements.h"
 #include "shapes.h"
 
 namespace orbifit {
@@ -75,43 +74,6 @@ INSTANTIATE_TEST_SUITE_P(Parts, SomeOfAGrid,
                                          OfAGrid{"TenAreNearlyAll", "C2v", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, false},
                                          OfAGrid{"ThePlateIsMore", "Cs", {0, 1, 2, 5, 6, 7, 16}, false},
                                          OfAGrid{"PostsAreNoGrid", "C2v", {12, 13, 14, 15}, false}),
-                         [](const auto& each) { return std::string(each.param.name); });
-
-// Faces of a prism of n sides whose middles are within some radius, about its axis.
-struct Disc {
-  const char* name;
-  int sides;
-  double radius;  // the prism's is 1
-  double height;
-  bool expected;  // that its discs are taken out
-
-  friend void PrintTo(const Disc& disc, std::ostream* out) { *out << disc.name; }
-};
-
-class CutDiscs : public testing::TestWithParam<Disc> {};
-
-TEST_P(CutDiscs, AreTakenOut) {
-  const auto& [name, sides, radius, height, expected] = GetParam();
-  const PreparedMesh prepared = prepare(test::subdivided(test::prism(sides, 1, height), 4));
-  const Points middles = face_centroids(prepared.mesh);
-  FoundRegion region;
-  region.placement = test::normalised(prepared, {*PointGroup::parse("Dinfh"), GroupFrame::Identity(), {0, 0, 0}});
-  for (int f = 0; f < middles.rows(); ++f) {
-    const Eigen::Vector3d middle = prepared.input_of_normalised(Eigen::Vector3d(middles.row(f)));
-    if (middle.head<2>().norm() < radius) region.faces.push_back(f);
-  }
-  region.area = area_of(prepared, region.faces);
-  for (const int face : without_cut_discs(prepared, region)) {
-    EXPECT_FALSE(expected && std::abs(prepared.normals(face, 2)) > 0.9) << "a face of an end";
-  }
-  EXPECT_EQ(without_cut_discs(prepared, region) == region.faces, !expected);
-  region.placement.group = *PointGroup::parse("C7v");
-  EXPECT_EQ(without_cut_discs(prepared, region), region.faces) << "of a finite group there is more to see";
-}
-
-INSTANTIATE_TEST_SUITE_P(Prisms, CutDiscs,
-                         testing::Values(Disc{"OfAHeptagon", 7, 0.85, 0.5, true}, Disc{"OfACoin", 60, 2, 0.1, false},
-                                         Disc{"WithinACoin", 60, 0.7, 0.1, true}, Disc{"OfARod", 60, 2, 3, false}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 // What a mirror keeps of hills that are odd in x by waves of some height: all where there are none, else up to where
