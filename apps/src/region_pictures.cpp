@@ -168,7 +168,7 @@ int red_pixels(const Scene& scene, const Mesh& framed, ViewOptions view, const R
   view.width = kWidth;
   view.samples = 1;
   view.ground_shadow = false;
-  view.frame = framed.vertices;
+  if (view.frame.rows() == 0) view.frame = framed.vertices;
   const Image image = render(scene, view, context);
   int count = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3) count += image.rgb[i] > image.rgb[i + 1] + 40 ? 1 : 0;

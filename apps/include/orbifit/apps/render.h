@@ -77,6 +77,8 @@ Scene visible_region_scene(const Mesh& mesh, const Region& region, const ViewOpt
 
 /// The mesh with an instance of each colour. \param see_through  all else is glass
 Scene pattern_scene(const Mesh& mesh, const Pattern& pattern, bool see_through = false);
+
+/// Likewise, seen through where the view hides most of the instances behind or inside the rest.
 Scene visible_pattern_scene(const Mesh& mesh, const Pattern& pattern, const ViewOptions& view,
                             const RunContext& context);
 
