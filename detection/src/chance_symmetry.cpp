@@ -94,11 +94,18 @@ bool mere_border(const PreparedMesh& prepared, const std::vector<int>& faces, co
 
 bool fades(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context) {
   constexpr int kSamples = 600;
-  constexpr double kStays = 0.88;  // chance leaves 0.7 to 0.86 of what it kept, symmetry 0.9 to 1
+  constexpr double kStays = 0.88;        // chance leaves 0.7 to 0.86 of what it kept, symmetry 0.9 to 1
+  constexpr double kStaysSurely = 0.95;  // chance has left 0.94 at half and then 0.52 at an eighth
+  constexpr double kStaysInFine = 0.58;  // at an eighth: symmetry 0.64 to 1
   if (placement.group.continuous()) return false;
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-  const double full = verify(patch, motions, patch.tolerance, kSamples, 0, context).joint;
-  return verify(patch, motions, 0.5 * patch.tolerance, kSamples, 0, context).joint < kStays * full;
+  const double full = std::max(verify(patch, motions, patch.tolerance, kSamples, 0, context).joint, 1e-9);
+  const auto stays = [&](double share_of_tolerance) {
+    return verify(patch, motions, share_of_tolerance * patch.tolerance, kSamples, 0, context).joint / full;
+  };
+  const double at_half = stays(0.5);
+  if (at_half < kStays || at_half >= kStaysSurely || patch.prepared->noise > 0) return at_half < kStays;
+  return stays(0.125) < kStaysInFine;
 }
 
 void drop_siblings(std::vector<int>& parts, int part, const std::vector<CongruenceClass>& kinds) {

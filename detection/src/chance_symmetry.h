@@ -42,8 +42,9 @@ std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch);
 bool mere_border(const PreparedMesh& prepared, const std::vector<int>& faces, const SurfaceMoments& moments,
                  const GroupPlacement& placement, double tolerance, const RunContext& context);
 
-/// Whether what a finite group keeps of the patch fades as the tolerance shrinks to half of it. A symmetric part ends
-/// where the shape does; of smooth surfaces any mirror keeps some, up to where they differ by the tolerance.
+/// Whether what a finite group keeps of the patch fades as the tolerance shrinks to half of it, and where half is not
+/// sure and there was no noise, to an eighth. A symmetric part ends where the shape does; of smooth surfaces any mirror
+/// keeps some, up to where they differ by the tolerance.
 bool fades(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context);
 
 /// Copies of a part that happen to sit symmetrically about it are neighbours in a row, not of its own kind of symmetry:

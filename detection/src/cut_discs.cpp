@@ -14,8 +14,9 @@ namespace orbifit {
 
 namespace {
 
-bool turned_about_axis(const FoundRegion& region) {
-  return region.placement.group.continuous() && region.placement.group.has_axis();
+bool about_axis(const FoundRegion& region) {
+  const PointGroup& group = region.placement.group;
+  return group.has_axis() && (group.continuous() || group.order() > 2);
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ CutDiscs::CutDiscs(const PreparedMesh& prepared)
 
 std::vector<int> CutDiscs::without(const FoundRegion& region) {
   constexpr double kMostCut = 0.5;  // of a disc's border
-  if (!turned_about_axis(region)) return region.faces;
+  if (!about_axis(region)) return region.faces;
   const Eigen::Vector3d axis = region.placement.frame.col(2);
   const auto across = [&](int face) { return std::abs(prepared_.normals.row(face).dot(axis)) > kAlikeNormals; };
   const auto kind = [&](int face) -> Kind& { return kinds_[static_cast<std::size_t>(face)]; };
@@ -76,19 +77,25 @@ std::vector<int> CutDiscs::without(const FoundRegion& region) {
 
 void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunContext& context,
                     std::vector<FoundRegion>& regions, Explanation* explanation) {
-  constexpr double kLeast = 0.3;      // of the region
-  constexpr double kLeastKept = 0.8;  // of the samples: what was verified with the discs is not to fail for its border
+  constexpr double kLeast = 0.3;      // of a turned region
+  constexpr double kLeastKept = 0.8;  // of its samples: it was verified with the discs, and is not to fail for borders
+  constexpr double kMostOfFinite = 0.5;  // with less beside the discs, a region of a finite group is about the rest
   constexpr int kDiscSamples = 1000;
-  if (std::ranges::none_of(regions, turned_about_axis)) return;
+  if (std::ranges::none_of(regions, about_axis)) return;
   CutDiscs discs(prepared);
   std::erase_if(regions, [&](FoundRegion& region) {
     std::vector<int> faces = discs.without(region);
     if (faces.size() == region.faces.size()) return false;
+    const bool turned = region.placement.group.continuous();
     const double area = area_of(prepared, faces);
-    bool drop = area < kLeast * region.area;
+    const double share = area / region.area;
+    bool drop = turned && share < kLeast;
     if (!drop) {
+      if (!turned && (share > kMostOfFinite || faces.empty())) return false;
       const SurfacePatch patch = make_patch(prepared, faces, kDiscSamples, tolerance, context, "discs");
-      drop = verify_group(patch, region.placement, context).joint < kLeastKept;
+      const Verification rest = verify_group(patch, region.placement, context);
+      if (!turned && !passes(rest)) return false;
+      drop = rest.joint < kLeastKept;
     }
     if (explanation != nullptr) {
       explanation->notes.push_back({"discs", region.placement.group.symbol() + " on " + region.name, !drop,

@@ -10,14 +10,14 @@
 
 namespace orbifit {
 
-/// Discs of planes across the axis of a turned region, most of whose border meets faces that the region has not: any
-/// plane has such, about any axis across it. What turns ends where other turned faces begin, or the surface ends.
+/// Discs of planes across the axis of a region, most of whose border meets faces that the region has not: any plane has
+/// such, about any axis across it. What has a symmetry ends where other faces begin that have it, or the surface ends.
 class CutDiscs {
  public:
   /// O(F log F). \param prepared kept by reference
   explicit CutDiscs(const PreparedMesh& prepared);
 
-  /// The faces of a turned region without such discs, ascending; all faces of a region of another group. O(#faces)
+  /// The faces of a region without such discs, ascending; all faces where its group has no axis. O(#faces)
   std::vector<int> without(const FoundRegion& region);
 
  private:
@@ -32,7 +32,8 @@ class CutDiscs {
   std::vector<Kind> kinds_;                 // by face; all outside between calls
 };
 
-/// Takes cut discs out of turned regions; what is little else, or does not turn without them, goes.
+/// Takes cut discs out of regions. A turned one that is little else, or does not turn without them, goes; one of a
+/// finite group keeps them unless it is mostly discs and has its group without them: bolts stand on plates.
 /// \param tolerance of the detector, a fraction of the diagonal
 void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunContext& context,
                     std::vector<FoundRegion>& regions, Explanation* explanation = nullptr);

@@ -335,6 +335,7 @@ class Detector {
 void take_noise_out(PreparedMesh& prepared, double noise, Explanation* explanation, const RunContext& context) {
   context.progress("noise", 0);
   denoise(prepared, noise, context);
+  prepared.noise = noise;
   if (explanation != nullptr) {
     explanation->notes.push_back({"noise", std::to_string(100 * noise) + " % of the diagonal", false,
                                   "taken out of the vertices before anything else"});

@@ -145,10 +145,10 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<Fou
 }
 
 bool by_coincidence(double area, double misfit, double area_around, double misfit_around, double tolerance) {
-  constexpr double kFarLess = 20;
   constexpr double kMost = 0.5;      // of what is around: the larger part of a shape is no coincidence
   constexpr double kNothing = 0.01;  // tolerances
-  return area < kMost * area_around && misfit > kFarLess * std::max(misfit_around, kNothing * tolerance);
+  constexpr double kFarOff = 0.2;
+  return area < kMost * area_around && misfit_around < kNothing * tolerance && misfit > kFarOff * tolerance;
 }
 
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,

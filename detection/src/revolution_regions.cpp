@@ -23,7 +23,8 @@ namespace {
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kAngles = 12;
+constexpr int kFirstAngles = 12;
+constexpr int kAngles = 48;  // once the axis is known: what interrupts a circle may be thin
 constexpr int kPatchSamples = 700;
 constexpr double kFacesSlack = 1.2;  // of the tolerance, for faces that are collected
 constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
@@ -31,9 +32,9 @@ constexpr double kNothingNew = 0.1;  // of the region's area outside of one that
 /// The faces about one axis.
 class Turned {
  public:
-  Turned(const PreparedMesh& prepared, const SurfaceIndex& surface, const Line& axis, double tolerance)
+  Turned(const PreparedMesh& prepared, const SurfaceIndex& surface, const Line& axis, double tolerance, int angles)
       : prepared_(prepared), surface_(surface), axis_(axis), tolerance_(tolerance) {
-    for (int k = 1; k < kAngles; ++k) {
+    for (int k = 1; k < angles; ++k) {
       const double turns = k / std::numbers::phi;
       turns_.push_back(
           Motion::rotation(axis.direction, 2 * std::numbers::pi * (turns - std::floor(turns)), axis.point));
@@ -76,9 +77,11 @@ class RevolutionSearch {
   // Collects faces about the axis and fits it to them; where the surface is fine, again with the better axis, and then
   // within what was collected, until what is left turns.
   void look_at(const Line& axis) {
-    constexpr int kRounds = 4;
+    constexpr int kRounds = 6;
     GroupPlacement turn{{Family::Cinfv, 1}, frame_about(axis.direction), axis.point};
-    FoundRegion region{turn, faces_about(axis, whole_, kFacesSlack * options_.tolerance), 0, "turned about an axis"};
+    FoundRegion region{turn, faces_about(axis, whole_, kFacesSlack * options_.tolerance, kFirstAngles), 0,
+                       "turned about an axis"};
+    std::string reason = "does not turn into itself closely enough";
     for (int round = 0; round < kRounds; ++round) {
       region.area = area_of(prepared_, region.faces);
       if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
@@ -86,15 +89,17 @@ class RevolutionSearch {
           make_patch(prepared_, region.faces, kPatchSamples, options_.tolerance, context_, "turned");
       if (round == 0 && !continuous_about(patch, axis.direction, axis.point)) break;
       region.placement = refine(patch, region.placement, context_);
-      if (verified(patch, region.placement, context_)) return add(patch, std::move(region));
+      const Verification verification = verify_group(patch, region.placement, context_);
+      reason = objection(verification);
+      if (reason.empty()) return add(patch, std::move(region));
       if (!options_.fine) break;
       const Line better{region.placement.centre, region.placement.frame.col(2)};
       std::vector<int> fewer =
-          faces_about(better, round == 0 ? whole_ : *patch.index, kFacesSlack * continuous_tolerance(patch));
+          faces_about(better, round == 0 ? whole_ : *patch.index, kFacesSlack * continuous_tolerance(patch), kAngles);
       if (fewer == region.faces) break;
       region.faces = std::move(fewer);
     }
-    note(region, false, "does not turn into itself closely enough");
+    note(region, false, reason);
   }
 
   std::vector<FoundRegion> take() { return std::move(found_); }
@@ -124,9 +129,9 @@ class RevolutionSearch {
   }
 
   // Those whose circles lie on the surface to the tolerance.
-  std::vector<int> faces_about(const Line& axis, const SurfaceIndex& surface, double tolerance) const {
+  std::vector<int> faces_about(const Line& axis, const SurfaceIndex& surface, double tolerance, int angles) const {
     constexpr std::size_t kLeastShare = 300;  // faces worth a thread
-    const Turned turned(prepared_, surface, axis, tolerance);
+    const Turned turned(prepared_, surface, axis, tolerance, angles);
     std::vector<int> result;
     for (std::size_t s = 0; s < prepared_.components.faces.size(); ++s) {
       if (areas_[s] <= 0) continue;

@@ -43,8 +43,11 @@ TEST_P(DiscsOfAPrism, AreTakenOut) {
     EXPECT_FALSE(expected && std::abs(prepared.normals(face, 2)) > 0.9) << "a face of an end";
   }
   EXPECT_EQ(discs.without(region) == region.faces, !expected);
+  const std::vector<int> rest = discs.without(region);
   region.placement.group = *PointGroup::parse("C7v");
-  EXPECT_EQ(discs.without(region), region.faces) << "of a finite group there is more to see";
+  EXPECT_EQ(discs.without(region), rest);
+  region.placement.group = *PointGroup::parse("Ci");
+  EXPECT_EQ(discs.without(region), region.faces) << "without an axis nothing is across it";
 }
 
 INSTANTIATE_TEST_SUITE_P(Prisms, DiscsOfAPrism,
@@ -92,6 +95,45 @@ TEST_P(DropCutDiscs, KeepsWhatTurnsWithoutThem) {
     EXPECT_NEAR(regions[0].area, area_of(prepared, of_rod), 1e-12);
   }
 }
+
+// A plate with a bolt upon it, and the bolt's group on all within some radius.
+struct Bolt {
+  const char* name;
+  double radius;  // of the disc around the bolt, whose corners are at 0.3
+  double height;  // of the bolt
+  double wide;    // more than the radius: the plate is round and the disc all of it
+  bool stands_alone;
+
+  friend void PrintTo(const Bolt& bolt, std::ostream* out) { *out << bolt.name; }
+};
+
+class BoltOnAPlate : public testing::TestWithParam<Bolt> {};
+
+TEST_P(BoltOnAPlate, StandsAloneWhereTheDiscIsMostOfIt) {
+  const auto& [name, radius, height, wide, stands_alone] = GetParam();
+  const Mesh plate = wide > radius ? test::box(2 * wide, 2 * wide, 0.2) : test::prism(60, wide, 0.2);
+  const Mesh bolt = test::moved(test::prism(6, 0.3, height), test::shift(0, 0, 0.1 + 0.5 * height));
+  const PreparedMesh prepared = prepare(test::joined({test::subdivided(plate, 5), test::subdivided(bolt, 2)}));
+  const Points middles = face_centroids(prepared.mesh);
+  FoundRegion region;
+  region.placement = test::normalised(prepared, {*PointGroup::parse("C6v"), GroupFrame::Identity(), {0, 0, 0}});
+  std::vector<int> of_bolt;
+  for (int f = 0; f < middles.rows(); ++f) {
+    const Eigen::Vector3d middle = prepared.input_of_normalised(Eigen::Vector3d(middles.row(f)));
+    if (middle.head<2>().norm() < radius + 0.01 && middle.z() > 0) region.faces.push_back(f);
+    if (prepared.components.component_of_face[static_cast<std::size_t>(f)] == 1) of_bolt.push_back(f);
+  }
+  region.area = area_of(prepared, region.faces);
+  std::vector<FoundRegion> regions{region};
+  drop_cut_discs(prepared, test::kTolerance, RunContext{}, regions);
+  ASSERT_EQ(regions.size(), 1U);
+  EXPECT_EQ(regions[0].faces, stands_alone ? of_bolt : region.faces);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bolts, BoltOnAPlate,
+                         testing::Values(Bolt{"OnMuchPlate", 0.8, 0.4, 1, true}, Bolt{"Tall", 0.5, 2, 1, false},
+                                         Bolt{"OnAllOfThePlate", 0.8, 0.4, 0.8, false}),
+                         [](const auto& each) { return std::string(each.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(Boxes, DropCutDiscs,
                          testing::Values(Plates{"NothingElse", "Dinfh", 0, false}, Plates{"Rod", "Cinfv", 2, true},

@@ -213,6 +213,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, ByCoincidence,
                          testing::Values(Coincidence{"SmallAndFarOff", 0.1, 3e-3, 1, 1e-12, true},
                                          Coincidence{"SmallAndAsExact", 0.1, 2e-12, 1, 1e-12, false},
                                          Coincidence{"BothLoose", 0.1, 3e-3, 1, 1e-3, false},
+                                         Coincidence{"NoneIsExact", 0.1, 3e-3, 1, 1e-4, false},
                                          Coincidence{"TheLargerPart", 0.6, 3e-3, 1, 1e-12, false},
                                          Coincidence{"NextToNothing", 0.1, 0.1 * test::kTolerance, 1, 0, false}),
                          [](const auto& each) { return std::string(each.param.name); });

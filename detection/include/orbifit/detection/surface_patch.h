@@ -25,6 +25,7 @@ struct PreparedMesh {
   Eigen::VectorXd areas;                          ///< #F; 0 for faces that repeat an earlier one (two-sided sheets)
   std::vector<std::vector<int>> faces_of_vertex;  ///< by group of the weld: the faces at it
   double area = 0;
+  double noise = 0;                           ///< that was taken out, a fraction of the diagonal
   std::shared_ptr<const SurfaceIndex> index;  ///< of all faces
 };
 
