@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "orbifit/detection/own_group.h"
-#include "orbifit/model/topology.h"
 
+#include "chance_symmetry.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -22,27 +22,10 @@ bool about_axis(const FoundRegion& region) {
 }  // namespace
 
 CutDiscs::CutDiscs(const PreparedMesh& prepared)
-    : prepared_(prepared),
-      sides_(static_cast<std::size_t>(prepared.mesh.faces.rows())),
-      kinds_(sides_.size(), Kind::outside) {
-  const auto point = [&](int group) -> Eigen::Vector3d {
-    return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(group)]);
-  };
-  const auto add = [&](int face, int other, double length) {
-    auto& sides = sides_[static_cast<std::size_t>(face)];
-    const auto free = std::ranges::find(sides, -1, &Side::face);
-    if (free != sides.end()) *free = {other, length};
-  };
-  for (const Edge& edge : welded_edges(prepared.mesh, prepared.weld)) {
-    if (edge.faces.size() != 2) continue;
-    const double length = (point(edge.vertices[0]) - point(edge.vertices[1])).norm();
-    add(edge.faces[0], edge.faces[1], length);
-    add(edge.faces[1], edge.faces[0], length);
-  }
-}
+    : prepared_(prepared), sides_(face_sides(prepared)), kinds_(sides_.size(), Kind::outside) {}
 
 std::vector<int> CutDiscs::without(const FoundRegion& region) {
-  constexpr double kMostCut = 0.5;  // of a disc's border
+  constexpr double kMostCut = 0.5;  // of a plane's border
   if (!about_axis(region)) return region.faces;
   const Eigen::Vector3d axis = region.placement.frame.col(2);
   const auto across = [&](int face) { return std::abs(prepared_.normals.row(face).dot(axis)) > kAlikeNormals; };
@@ -50,29 +33,55 @@ std::vector<int> CutDiscs::without(const FoundRegion& region) {
   for (const int face : region.faces) kind(face) = across(face) ? Kind::across : Kind::inside;
   std::vector<int> rest;
   std::ranges::copy_if(region.faces, std::back_inserter(rest), [&](int face) { return kind(face) == Kind::inside; });
+  std::vector<int> seen;
   for (const int seed : region.faces) {
     if (kind(seed) != Kind::across) continue;
-    kind(seed) = Kind::inside;  // seen
-    std::vector<int> disc{seed};
+    // The whole plane, whether or not the region has it.
+    std::vector<int> disc;
+    std::vector<int> plane{seed};
     double border = 0;
     double cut = 0;
-    for (std::size_t i = 0; i < disc.size(); ++i) {
-      for (const auto& [other, length] : sides_[static_cast<std::size_t>(disc[i])]) {
-        if (other < 0) continue;
-        if (kind(other) == Kind::across) {
-          kind(other) = Kind::inside;
-          disc.push_back(other);
-        } else if (kind(other) == Kind::outside || !across(other)) {
-          border += length;
-          if (kind(other) == Kind::outside) cut += length;
+    const auto see = [&](int face) {
+      if (kind(face) == Kind::across) disc.push_back(face);
+      kind(face) = Kind::seen;
+      seen.push_back(face);
+    };
+    see(seed);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      for (const FaceSide& side : sides_[static_cast<std::size_t>(plane[i])]) {
+        const int other = side.face;
+        if (other < 0 || kind(other) == Kind::seen) continue;
+        if (kind(other) == Kind::across || (kind(other) == Kind::outside && across(other))) {
+          plane.push_back(other);
+          see(other);
+        } else {
+          border += side.length;
+          if (kind(other) == Kind::outside && !round(side, region.placement)) cut += side.length;
         }
       }
     }
     if (cut <= kMostCut * border) rest.insert(rest.end(), disc.begin(), disc.end());
   }
+  for (const int face : seen) kind(face) = Kind::outside;
   for (const int face : region.faces) kind(face) = Kind::outside;
   std::ranges::sort(rest);
   return rest;
+}
+
+// Whether the edge lies along a circle about the axis, as facets do.
+bool CutDiscs::round(const FaceSide& side, const GroupPlacement& placement) const {
+  constexpr double kOff = 0.1;  // of the edge's length: a chord of at most an eighth of a turn
+  const auto radius = [&](const Eigen::Vector3d& point) {
+    return (point - placement.centre).cross(placement.frame.col(2)).norm();
+  };
+  std::array<Eigen::Vector3d, 2> ends;
+  for (std::size_t k = 0; k < 2; ++k) {
+    ends[k] =
+        prepared_.mesh.vertices.row(prepared_.weld.representative[static_cast<std::size_t>(side.ends[k])]).transpose();
+  }
+  const double middle = radius(0.5 * (ends[0] + ends[1]));
+  return std::ranges::all_of(
+      ends, [&](const Eigen::Vector3d& end) { return std::abs(radius(end) - middle) < kOff * side.length; });
 }
 
 void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunContext& context,
@@ -95,7 +104,7 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
       const SurfacePatch patch = make_patch(prepared, faces, kDiscSamples, tolerance, context, "discs");
       const Verification rest = verify_group(patch, region.placement, context);
       if (!turned && !passes(rest)) return false;
-      drop = rest.joint < kLeastKept;
+      drop = rest.joint < kLeastKept || fades(patch, region.placement, context);
     }
     if (explanation != nullptr) {
       explanation->notes.push_back({"discs", region.placement.group.symbol() + " on " + region.name, !drop,

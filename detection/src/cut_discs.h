@@ -8,32 +8,35 @@
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/model/run_context.h"
 
+#include "face_sides.h"
+
 namespace orbifit {
 
-/// Discs of planes across the axis of a region, most of whose border meets faces that the region has not: any plane has
-/// such, about any axis across it. What has a symmetry ends where other faces begin that have it, or the surface ends.
+/// What a region has of planes across its axis, most of whose borders meet faces that the region has not: any plane has
+/// discs about any axis across it. A plane of the region's own ends where other faces of the region begin, in circles
+/// about the axis, or where the surface ends.
 class CutDiscs {
  public:
   /// O(F log F). \param prepared kept by reference
   explicit CutDiscs(const PreparedMesh& prepared);
 
-  /// The faces of a region without such discs, ascending; all faces where its group has no axis. O(#faces)
+  /// The faces of a region without such discs, ascending; all faces where its group has no axis. O(#faces of the region
+  /// and of those planes)
   std::vector<int> without(const FoundRegion& region);
 
  private:
-  struct Side {
-    int face = -1;  // beyond the edge; -1 where not just one other face is
-    double length = 0;
-  };
-  enum class Kind : char { outside, inside, across };
+  bool round(const FaceSide& side, const GroupPlacement& placement) const;
+
+  enum class Kind : char { outside, inside, across, seen };
 
   const PreparedMesh& prepared_;
-  std::vector<std::array<Side, 3>> sides_;  // by face
-  std::vector<Kind> kinds_;                 // by face; all outside between calls
+  std::vector<std::array<FaceSide, 3>> sides_;
+  std::vector<Kind> kinds_;  // by face; all outside between calls
 };
 
 /// Takes cut discs out of regions. A turned one that is little else, or does not turn without them, goes; one of a
-/// finite group keeps them unless it is mostly discs and has its group without them: bolts stand on plates.
+/// finite group keeps them unless it is mostly discs and has its group without them: bolts stand on plates. What then
+/// fades as the tolerance shrinks goes.
 /// \param tolerance of the detector, a fraction of the diagonal
 void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunContext& context,
                     std::vector<FoundRegion>& regions, Explanation* explanation = nullptr);

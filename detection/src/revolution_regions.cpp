@@ -1,9 +1,11 @@
 #include "orbifit/detection/revolution_regions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -14,6 +16,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "face_points.h"
+#include "face_sides.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -27,6 +30,7 @@ constexpr int kFirstAngles = 12;
 constexpr int kAngles = 48;  // once the axis is known: what interrupts a circle may be thin
 constexpr int kPatchSamples = 700;
 constexpr double kFacesSlack = 1.2;  // of the tolerance, for faces that are collected
+constexpr double kMostOfFlat = 0.8;  // of a flat piece's area
 constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
 
 /// The faces about one axis.
@@ -67,7 +71,12 @@ class RevolutionSearch {
  public:
   RevolutionSearch(const PreparedMesh& prepared, const SurfaceIndex& whole, const std::vector<FoundRegion>& known,
                    const RevolutionRegionOptions& options, const RunContext& context)
-      : prepared_(prepared), whole_(whole), known_(known), options_(options), context_(context) {
+      : prepared_(prepared),
+        whole_(whole),
+        known_(known),
+        options_(options),
+        context_(context),
+        sides_(face_sides(prepared)) {
     for (const std::vector<int>& faces : prepared.components.faces) {
       areas_.push_back(area_of(prepared, faces));
       flat_.push_back(flat_piece(prepared, faces) ? 1 : 0);
@@ -128,43 +137,77 @@ class RevolutionSearch {
          reason});
   }
 
-  // Those whose circles lie on the surface to the tolerance.
+  // Those whose circles lie on the surface to the tolerance. Of a flat piece only where it turns as a whole, or but for
+  // what stands on it: where most of its border is that of other pieces that turn.
   std::vector<int> faces_about(const Line& axis, const SurfaceIndex& surface, double tolerance, int angles) const {
-    constexpr std::size_t kLeastShare = 300;  // faces worth a thread
     const Turned turned(prepared_, surface, axis, tolerance, angles);
+    std::vector<char> in(static_cast<std::size_t>(prepared_.mesh.faces.rows()), 0);
     std::vector<int> result;
+    const auto take = [&](const std::vector<int>& faces) {
+      for (const int face : faces) in[static_cast<std::size_t>(face)] = 1;
+      result.insert(result.end(), faces.begin(), faces.end());
+    };
+    std::vector<std::pair<std::size_t, std::vector<int>>> rest;  // what turns of flat pieces
     for (std::size_t s = 0; s < prepared_.components.faces.size(); ++s) {
-      if (areas_[s] <= 0) continue;
-      const std::vector<int>& faces = prepared_.components.faces[s];
-      std::vector<int> candidates;
-      double area = 0;
-      for (const int f : faces) {
-        if (prepared_.areas[f] <= 0 || !turned.may_turn(f)) continue;
-        candidates.push_back(f);
-        area += prepared_.areas[f];
+      std::vector<int> kept = faces_of_piece(s, turned);
+      if (kept.empty()) continue;
+      if (flat_[s] == 0 || area_of(prepared_, kept) >= kMostOfFlat * areas_[s]) {
+        take(kept);
+      } else {
+        rest.emplace_back(s, std::move(kept));
       }
-      if (area < 0.05 * areas_[s] || (flat_[s] != 0 && area < 0.9 * areas_[s])) continue;
-      if (few_turn(turned, candidates)) continue;
-      std::vector<char> turns(candidates.size(), 0);
-      parallel_for(
-          context_, candidates.size(),
-          [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) turns[i] = turned.turns(candidates[i]) ? 1 : 0;
-          },
-          kLeastShare);
-      std::vector<int> kept;
-      double kept_area = 0;
-      for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (turns[i] == 0) continue;
-        kept.push_back(candidates[i]);
-        kept_area += prepared_.areas[candidates[i]];
-      }
-      if (flat_[s] != 0 && kept_area < 0.8 * areas_[s]) continue;
-      if (kept_area > 0.97 * areas_[s]) kept = faces;
-      result.insert(result.end(), kept.begin(), kept.end());
+    }
+    for (const auto& [s, kept] : rest) {
+      if (bounded(s, in)) take(kept);
     }
     std::ranges::sort(result);
     return result;
+  }
+
+  // The faces of a piece that turn; all if nearly all do.
+  std::vector<int> faces_of_piece(std::size_t s, const Turned& turned) const {
+    constexpr std::size_t kLeastShare = 300;  // faces worth a thread
+    constexpr double kNearlyAll = 0.97;
+    if (areas_[s] <= 0) return {};
+    const std::vector<int>& faces = prepared_.components.faces[s];
+    std::vector<int> candidates;
+    double area = 0;
+    for (const int f : faces) {
+      if (prepared_.areas[f] <= 0 || !turned.may_turn(f)) continue;
+      candidates.push_back(f);
+      area += prepared_.areas[f];
+    }
+    if (area < 0.05 * areas_[s] || (flat_[s] != 0 && area < 0.9 * areas_[s])) return {};
+    if (few_turn(turned, candidates)) return {};
+    std::vector<char> turns(candidates.size(), 0);
+    parallel_for(
+        context_, candidates.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) turns[i] = turned.turns(candidates[i]) ? 1 : 0;
+        },
+        kLeastShare);
+    std::vector<int> kept;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (turns[i] != 0) kept.push_back(candidates[i]);
+    }
+    return area_of(prepared_, kept) > kNearlyAll * areas_[s] ? faces : kept;
+  }
+
+  // Whether most of the border of a piece is that of faces that are in.
+  bool bounded(std::size_t s, const std::vector<char>& in) const {
+    constexpr double kMost = 0.6;
+    double border = 0;
+    double inside = 0;
+    for (const int face : prepared_.components.faces[s]) {
+      for (const FaceSide& side : sides_[static_cast<std::size_t>(face)]) {
+        if (side.face < 0) continue;
+        const auto other = static_cast<std::size_t>(side.face);
+        if (prepared_.components.component_of_face[other] == static_cast<int>(s)) continue;
+        border += side.length;
+        if (in[other] != 0) inside += side.length;
+      }
+    }
+    return inside > kMost * border;
   }
 
   static bool few_turn(const Turned& turned, const std::vector<int>& candidates) {
@@ -184,6 +227,7 @@ class RevolutionSearch {
   const RunContext& context_;
   std::vector<double> areas_;
   std::vector<char> flat_;
+  std::vector<std::array<FaceSide, 3>> sides_;
   std::vector<FoundRegion> found_;
 };
 

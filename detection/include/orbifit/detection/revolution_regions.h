@@ -22,10 +22,11 @@ struct RevolutionRegionOptions {
 
 /// Turned regions that end within a piece of surface, where other things are joined to it: for each axis the faces
 /// whose whole circles lie on the surface (the orbit test, method notes 4.1), then the largest group of what they make
-/// up. Of a plane all within its creases is taken or nothing: a disc on a larger plane is no part of anything. \param
-/// prepared with pieces of surface between creases for components \param whole index of the whole mesh \param axes
-/// where to look \param known regions found before; what they say is not repeated Costs O(F) cheap tests an axis, and
-/// 12 nearest-point queries a face of the region.
+/// up. Of a plane nearly all within its creases is taken, or what turns if the plane ends where the region goes on, or
+/// nothing: a disc on a larger plane is no part of anything. Costs O(F) cheap tests an axis, and 12 to 48 nearest-point
+/// queries a face of the region.
+/// \param prepared with pieces of surface between creases for components \param whole index of the whole mesh
+/// \param axes where to look \param known regions found before; what they say is not repeated
 std::vector<FoundRegion> find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
                                                  const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
                                                  const RevolutionRegionOptions& options, const RunContext& context);
