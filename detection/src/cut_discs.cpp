@@ -65,7 +65,7 @@ std::vector<int> CutDiscs::without(const FoundRegion& region) {
   for (const int face : seen) kind(face) = Kind::outside;
   for (const int face : region.faces) kind(face) = Kind::outside;
   std::ranges::sort(rest);
-  return rest;
+  return rest == region.faces ? rest : without_specks(prepared_, sides_, rest);
 }
 
 // Whether the edge lies along a circle about the axis, as facets do.

@@ -20,8 +20,8 @@ class CutDiscs {
   /// O(F log F). \param prepared kept by reference
   explicit CutDiscs(const PreparedMesh& prepared);
 
-  /// The faces of a region without such discs, ascending; all faces where its group has no axis. O(#faces of the region
-  /// and of those planes)
+  /// The faces of a region without such discs and the specks they leave, ascending; all faces where its group has no
+  /// axis. O(#faces of the region and of those planes)
   std::vector<int> without(const FoundRegion& region);
 
  private:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -38,6 +39,7 @@
 
 #include "cut_discs.h"
 #include "looser_groups.h"
+#include "region_patterns.h"
 
 namespace orbifit {
 
@@ -412,6 +414,15 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   drop_cut_discs(prepared, options.tolerance, context, found.regions, options.explanation);
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
+  const auto late = [&] {
+    const std::chrono::duration<double> spent = Detector::Clock::now() - start;
+    return options.max_seconds > 0 && spent.count() > options.max_seconds;
+  };
+  if (!late()) {
+    const PartRegionOptions parts{options.tolerance, kLeastShare, false, options.explanation, late};
+    std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),
+                      std::back_inserter(found.patterns));
+  }
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
   context.progress("regions", 1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -53,6 +54,34 @@ TEST_P(DiscsOfAPrism, AreTakenOut) {
 INSTANTIATE_TEST_SUITE_P(Prisms, DiscsOfAPrism,
                          testing::Values(Disc{"OfAHeptagon", 7, 0.85, 0.5, true}, Disc{"OfACoin", 60, 2, 0.1, false},
                                          Disc{"WithinACoin", 60, 0.7, 0.1, false}, Disc{"OfARod", 60, 2, 3, false}),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+// A grid of squares and some apart from it.
+struct Specks {
+  const char* name;
+  int count;
+  double size;  // of each, the grid's is 1
+  bool gone;
+
+  friend void PrintTo(const Specks& specks, std::ostream* out) { *out << specks.name; }
+};
+
+class WithoutSpecks : public testing::TestWithParam<Specks> {};
+
+TEST_P(WithoutSpecks, LeavesPartsThatCount) {
+  const auto& [name, count, size, gone] = GetParam();
+  std::vector<Mesh> parts{test::box(1, 1, 1)};
+  for (int i = 0; i < count; ++i) parts.push_back(test::moved(test::box(size, size, size), test::shift(2 + i, 0, 0)));
+  const PreparedMesh prepared = prepare(test::joined(parts));
+  std::vector<int> all(static_cast<std::size_t>(prepared.mesh.faces.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> kept = without_specks(prepared, face_sides(prepared), all);
+  EXPECT_EQ(kept, gone ? prepared.components.faces[0] : all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, WithoutSpecks,
+                         testing::Values(Specks{"Few", 2, 0.09, true}, Specks{"Many", 5, 0.09, false},
+                                         Specks{"Larger", 1, 0.15, false}, Specks{"None", 0, 1, true}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 // Two plates, one with a rod upon it, and a turned region that takes of them what is within 0.6 of the axis.
