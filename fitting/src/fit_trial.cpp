@@ -13,7 +13,7 @@ namespace orbifit {
 void run_fit(DeformationSystem& system, FitState state, int first_level, const FitInput& input, const PlacedScan& start,
              const FitOptions& options, const RunContext& context, FitResult& result) {
   FitLoop loop(input, start.scan, *start.views, system, options, context);
-  result.stopped_because = loop.run(state, first_level, result.iterations);
+  result.stopped_because = loop.run(state, first_level, start.scale_open, result.iterations);
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   if (options.condition && !result.iterations.empty()) result.condition = system.condition();
   result.pose = state.pose;

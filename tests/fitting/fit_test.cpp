@@ -144,6 +144,30 @@ TEST(Fit, OfAChairWithATallerBackFindsTheRightSlats) {
   EXPECT_LT(off.rowwise().norm().mean(), 0.005 * diagonal(truth.mesh.vertices));
 }
 
+// ICP with scale makes up for other lengths; what then is too thick or too thin tells the scale.
+TEST(Fit, OfOtherLengthsAnywhereFindsTheScaleOfTheParts) {
+  RunContext context;
+  const GeneratedModel model = generate("desk_fan");
+  const GeneratedModel truth = generate("desk_fan", {{"height", 0.4}, {"radius", 0.22}, {"depth", 0.075}});
+  ScanOptions scanner;
+  scanner.views = 3;
+  scanner.noise = 0.001;
+  PointCloud scan = virtual_scan(truth.mesh, scanner, context);
+  Random random(3, "pose of a desk fan");
+  const Similarity pose{40, random.rotation(), 300 * random.direction()};
+  for (Points* points : {&scan.points, &scan.viewpoints}) {
+    for (Eigen::Index i = 0; i < points->rows(); ++i) points->row(i) = pose(points->row(i).transpose()).transpose();
+  }
+  FitOptions options;
+  options.place = true;
+  const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, options, context);
+  EXPECT_TRUE(result.converged) << result.stopped_because;
+  const auto off = [&](const Similarity& found) { return std::abs(std::log(found.scale / pose.scale)); };
+  EXPECT_GT(off(result.placements.front().pose), 0.1);
+  EXPECT_LT(off(result.pose), 0.5 * off(result.placements.front().pose));
+  EXPECT_LT(result.field_residual, 1e-12);
+}
+
 // Floating groups carry no leg that stands at another slant: its axis has another direction.
 TEST(Fit, CarriesLegsThatSplayWhereGroupsMove) {
   RunContext context;
