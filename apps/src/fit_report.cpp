@@ -30,6 +30,7 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"of that explained (within 1 %)", percent(result.inlier_fraction)},
            {"their rms distance, of the diagonal", percent(result.rms)},
            {"of what the viewpoints should have seen, seen", percent(result.covered)},
+           {"where they have nothing, taken for cut off", percent(result.cut_off)},
            {"confidence", short_number(result.confidence, 2)},
            {"surface that the scan did not see", percent(result.hidden_fraction)},
            {"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)}}};
@@ -116,6 +117,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"torn_off", result.torn_off},
           {"inlier_fraction", result.inlier_fraction},
           {"covered", result.covered},
+          {"cut_off", result.cut_off},
           {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},

@@ -47,9 +47,9 @@ void FitOptions::validate() const {
 
 namespace {
 
-// What fits of one template are compared by.
+// What fits of one template are compared by: of two, the one that lies where the scan has nothing is the worse.
 double worth(const FitResult& result) {
-  return result.confidence * result.used_fraction;
+  return result.confidence * (1 - result.cut_off) * result.used_fraction;
 }
 
 // The best fit so far, and where it started.
@@ -88,7 +88,8 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
     if (!best || worth(found) > worth(best->result)) best = Best{std::move(found), std::move(start)};
   }
   best->result.iterations_in_all = iterations;
-  if (best->result.confidence < kWell && input.landmarks.empty() && input.handles.empty()) {
+  if (best->result.confidence * (1 - best->result.cut_off) < kWell && input.landmarks.empty() &&
+      input.handles.empty()) {
     try_other_scale(input, subspace, options, context, *best);
   }
   return std::move(*best);

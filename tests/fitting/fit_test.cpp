@@ -128,6 +128,28 @@ TEST(Fit, DoesNotFollowNoiseThatNeighboursShare) {
   EXPECT_LT(std::sqrt(off.rowwise().squaredNorm().mean()), kHeight / 2 * size);
 }
 
+// What stood before the table has been taken out of the scan: nothing is seen there, neither the table nor the floor.
+TEST(Fit, IsNoLessConfidentWhereTheScanWasCutOff) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  PointCloud scan = virtual_scan(model.mesh, {}, context);
+  const double size = diagonal(model.mesh.vertices);
+  const double middle = bounding_box_centre(model.mesh.vertices).x();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    if (scan.points(i, 0) < middle + 0.1 * size) kept.push_back(i);
+  }
+  const auto cut_off = [&] {
+    const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, {}, context);
+    EXPECT_GT(result.confidence, 0.95);
+    return result.cut_off;
+  };
+  EXPECT_EQ(cut_off(), 0);
+  scan.points = Points(scan.points(kept, Eigen::all));
+  scan.viewpoints = Points(scan.viewpoints(kept, Eigen::all));
+  EXPECT_GT(cut_off(), 0.1);
+}
+
 // The crest of the taller back is nearer to the slat below it than to the template's crest.
 TEST(Fit, OfAChairWithATallerBackFindsTheRightSlats) {
   RunContext context;
