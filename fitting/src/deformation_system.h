@@ -71,6 +71,7 @@ class DeformationSystem {
   using Rotations = CorotatedEnergy::Rotations;
   const Rotations& rotations() const { return energy_.rotations(); }
   void set_rotations(const Rotations& rotations) { energy_.set_rotations(rotations); }
+  void unturn() { set_rotations(Rotations(rotations().size(), Eigen::Matrix3d::Identity())); }
 
   Eigen::Index samples() const { return energy_.samples(); }
 

@@ -190,6 +190,34 @@ TEST(Fit, OfOtherLengthsAnywhereFindsTheScaleOfTheParts) {
   EXPECT_LT(result.field_residual, 1e-12);
 }
 
+// A table of which two views tell little fits at several turns and scales.
+TEST(Fit, ShortFitsChooseAmongPlacesThatTie) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  const GeneratedModel truth = generate("table", {{"width", 1.1}, {"height", 0.66}, {"apron_height", 0.12}});
+  ScanOptions scanner;
+  scanner.views = 2;
+  scanner.elevation = 30;
+  scanner.noise = 0.002;
+  const PointCloud scan = virtual_scan(truth.mesh, scanner, context);
+  FitOptions options;
+  options.place = true;
+  options.tie = 0.5;
+  options.most_tied = 1;
+  const auto found_of = [&](int most_tried) {
+    options.most_tried = most_tried;
+    return fit({model.mesh, model.truth, scan, {3, axis_rotation(Eigen::Vector3d::UnitX(), 1), {9, 9, 9}}}, options,
+               context);
+  };
+  const FitResult first = found_of(1);
+  const FitResult chosen = found_of(8);
+  ASSERT_GT(first.placements.size(), 1U);
+  EXPECT_EQ(first.iterations_in_all, static_cast<int>(first.iterations.size()));
+  EXPECT_GT(chosen.iterations_in_all, static_cast<int>(chosen.iterations.size()));
+  EXPECT_GE(chosen.confidence, first.confidence - 0.01);
+  EXPECT_TRUE(chosen.converged) << chosen.stopped_because;
+}
+
 // Floating groups carry no leg that stands at another slant: its axis has another direction.
 TEST(Fit, CarriesLegsThatSplayWhereGroupsMove) {
   RunContext context;
@@ -336,6 +364,9 @@ TEST(Fit, RefusesAnEmptyScanAndOptionsThatMakeNoSense) {
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
   options.last_stiffness = 20;
+  EXPECT_THROW(options.validate(), UsageError);
+  options = {};
+  options.most_tried = options.most_tied - 1;
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
   options.most_iterations = 5;

@@ -31,8 +31,9 @@ struct FitOptions {
   double least_inliers = 0.5;     ///< explained share of the whole scan below which a fit failed, in [0, 1]
   bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
   PlacementOptions placement;
-  double tie = 0.8;           ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
-  int most_tied = 3;          ///< placements fitted, >= 1
+  double tie = 0.8;    ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
+  int most_tried = 8;  ///< of those, by their score: where there are more than `most_tied` short fits choose among them
+  int most_tied = 3;   ///< placements fitted in full, >= 1, <= most_tried
   bool judge_groups = false;  ///< compare with a fit without groups: see group_agreement(); takes as long again
   /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
   bool relax = false;
