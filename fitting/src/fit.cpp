@@ -93,6 +93,7 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
   brief.most_iterations = brief.levels + kSettling;
   brief.condition = false;
   std::vector<std::pair<double, std::size_t>> promises;
+  promises.reserve(starts.size());
   int iterations = 0;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const FitResult found = fit_from(input, starts[i], system, brief, context);
@@ -102,6 +103,7 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
   std::ranges::sort(promises);
   promises.resize(static_cast<std::size_t>(options.most_tied));
   std::vector<PlacedScan> kept;
+  kept.reserve(promises.size());
   for (const auto& [promise, i] : promises) kept.push_back(std::move(starts[i]));
   starts = std::move(kept);
   return iterations;

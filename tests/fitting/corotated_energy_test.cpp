@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "orbifit/model/motion.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {
