@@ -36,6 +36,13 @@ Horizon horizon(const Eigen::Vector3d& up) {
   return result;
 }
 
+void look_from(const Eigen::Vector3d& direction, ViewOptions& view) {
+  if (!(direction.norm() > 0)) return;
+  const Horizon world = horizon(view.up);
+  view.azimuth = std::atan2(world.second.dot(direction), world.first.dot(direction)) / kRadians;
+  view.elevation = std::asin(std::clamp(world.up.dot(direction) / direction.norm(), -1.0, 1.0)) / kRadians;
+}
+
 Camera frame_points(const Points& points, const ViewOptions& view) {
   const Horizon world = horizon(view.up);
   const double azimuth = view.azimuth * kRadians;

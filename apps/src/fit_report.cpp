@@ -1,15 +1,13 @@
 #include "fit_report.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <nlohmann/json.hpp>
 
-#include "orbifit/apps/render.h"
 #include "orbifit/apps/report.h"
-#include "orbifit/model/point_index.h"
 
 #include "command.h"
+#include "fit_pictures.h"
 
 namespace orbifit {
 
@@ -32,6 +30,7 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"of that explained (within 1 %)", percent(result.inlier_fraction)},
            {"their rms distance, of the diagonal", percent(result.rms)},
            {"of what the viewpoints should have seen, seen", percent(result.covered)},
+           {"where they have nothing, taken for cut off", percent(result.cut_off)},
            {"confidence", short_number(result.confidence, 2)},
            {"surface that the scan did not see", percent(result.hidden_fraction)},
            {"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)}}};
@@ -118,6 +117,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"torn_off", result.torn_off},
           {"inlier_fraction", result.inlier_fraction},
           {"covered", result.covered},
+          {"cut_off", result.cut_off},
           {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},
@@ -132,43 +132,9 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
 
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
                         const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run) {
-  ViewOptions view;
-  view.up = up;
-  view.frame.resize(mesh.vertices.rows() + result.fitted.vertices.rows(), 3);
-  view.frame << mesh.vertices, result.fitted.vertices;
-  const auto picture = [&](const Scene& scene, const std::string& caption) {
-    return ReportPicture{encode_png(render(scene, view, run)), caption};
-  };
-  Scene rest;
-  rest.surfaces.emplace_back().mesh = mesh;
-  rest.points.emplace_back().points = scan.points;
-  Scene fitted;
-  fitted.surfaces.emplace_back().mesh = result.fitted;
-  fitted.points.emplace_back().points = scan.points;
-  Scene distances;
-  SurfaceLayer& heat = distances.surfaces.emplace_back();
-  heat.mesh = result.fitted;
-  Scene hidden;
-  SurfaceLayer& marked = hidden.surfaces.emplace_back();
-  marked.mesh = result.fitted;
-  const PointIndex points(scan.points);
-  const double scale = 0.02 * diagonal(result.fitted.vertices);
-  for (Eigen::Index v = 0; v < result.fitted.vertices.rows(); ++v) {
-    const bool seen = result.seen[static_cast<std::size_t>(v)] != 0;
-    const double distance = points.nearest(result.fitted.vertices.row(v).transpose(), 1).front().distance;
-    heat.vertex_colours.push_back(seen ? heat_colour(std::min(1.0, distance / scale)) : Colour{0.72F, 0.72F, 0.72F});
-    marked.vertex_colours.push_back(seen ? Colour{0.82F, 0.82F, 0.80F} : Colour{0.36F, 0.55F, 0.85F});
-  }
   Report report;
   report.title = "Template fitted to a scan";
-  report.sections.push_back(
-      {"Fit",
-       "",
-       {picture(rest, "template and scan, before"), picture(fitted, "fitted template and scan"),
-        picture(distances, "distance to the scan, white 0 to red 2 % of the diagonal; grey: not seen"),
-        picture(hidden, "blue: completed, not seen by the scan")},
-       {figures(result, symmetry)},
-       {}});
+  report.sections.push_back({"Fit", "", fit_pictures(mesh, scan, result, up, run), {figures(result, symmetry)}, {}});
   if (!result.groups.empty()) {
     report.sections.push_back({"What the scan says of the groups",
                                "Compared with a fit that keeps none: by how much it differs between places that the "

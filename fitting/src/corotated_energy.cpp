@@ -55,6 +55,16 @@ double CorotatedEnergy::value(const Points& displacements) const {
   return laplace_energy(corotation_, rotations_, displacements) + stretch_ * stretching;
 }
 
+double CorotatedEnergy::of_growth() const {
+  double stretching = 0;
+  for (std::size_t i = 0; i < rotations_.size(); ++i) {
+    for (const int j : corotation_.neighbours[i]) {
+      stretching += 0.5 * (corotation_.rest.row(static_cast<Eigen::Index>(i)) - corotation_.rest.row(j)).squaredNorm();
+    }
+  }
+  return corotation_.delta.squaredNorm() + stretch_ * stretching;
+}
+
 void CorotatedEnergy::rotate(const Points& displacements) {
   rotations_ = local_rotations(corotation_, corotation_.rest + displacements, rotations_);
 }

@@ -30,6 +30,9 @@ class CorotatedEnergy {
   /// Its value as turned now. \param displacements u, #S by 3
   double value(const Points& displacements) const;
 
+  /// Of all stretched alike: the value at u = g x, unturned, is this times g^2.
+  double of_growth() const;
+
   /// Turns the Laplace coordinates to the displacements.
   void rotate(const Points& displacements);
 

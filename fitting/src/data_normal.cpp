@@ -15,7 +15,8 @@ namespace {
 // Rows of a least-squares problem that have much the same columns: multiplied out together, on those columns alone.
 class Batch {
  public:
-  explicit Batch(Eigen::Index columns) : place_(static_cast<std::size_t>(columns), -1) {}
+  /// \param last  columns that all rows have, the last ones
+  Batch(Eigen::Index columns, int last) : last_(last), place_(static_cast<std::size_t>(columns), -1) {}
 
   // Which columns the rows will have. In ascending order the local lower half is one of the whole matrix's.
   void begin(Eigen::Index rows, const std::vector<const std::vector<VertexRows::Entry>*>& entries) {
@@ -29,7 +30,7 @@ class Batch {
       }
     }
     std::ranges::sort(columns_);
-    for (int k = 0; k < 6; ++k) columns_.push_back(static_cast<int>(place_.size()) - 6 + k);
+    for (int k = 0; k < last_; ++k) columns_.push_back(static_cast<int>(place_.size()) - last_ + k);
     for (std::size_t j = 0; j < columns_.size(); ++j) {
       place_[static_cast<std::size_t>(columns_[j])] = static_cast<int>(j);
     }
@@ -44,9 +45,9 @@ class Batch {
     }
   }
 
-  // The six unknowns of the pose, the right-hand side, and the weight of the row: its last step.
-  void finish(Eigen::Index row, const Eigen::Matrix<double, 6, 1>& pose, double right, double weight) {
-    local_.row(row).tail<6>() = pose;
+  // The unknowns of the pose, the right-hand side, and the weight of the row: its last step.
+  void finish(Eigen::Index row, const Eigen::Matrix<double, 7, 1>& pose, double right, double weight) {
+    local_.row(row).tail(last_) = pose.tail(last_);
     right_[row] = right;
     const double root = std::sqrt(weight);
     local_.row(row) *= root;
@@ -67,6 +68,7 @@ class Batch {
   }
 
  private:
+  int last_;
   std::vector<int> columns_, place_;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> local_;
   Eigen::MatrixXd gram_;
@@ -96,11 +98,13 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
                        const std::vector<Pull>& pulls, const RunContext& context) {
   constexpr std::size_t kBlocks = 8;  // summed in turn: rounding does not depend on the number of threads
   constexpr std::size_t kRows = 48;   // of a batch
-  const DataNormal zero{Eigen::MatrixXd::Zero(columns + 6, columns + 6), Eigen::VectorXd::Zero(columns + 6)};
+  const Eigen::Index all = columns + step.unknowns();
+  const DataNormal zero{Eigen::MatrixXd::Zero(all, all), Eigen::VectorXd::Zero(all)};
   std::vector<DataNormal> blocks(std::min(kBlocks, 1 + pairs.size() / kRows), zero);
-  const auto of_pose = [&](const Eigen::Vector3d& goal, const Eigen::Vector3d& direction) {
-    Eigen::Matrix<double, 6, 1> result;
-    result << -(goal - step.pivot).cross(direction) / step.length, -direction;
+  const auto of_pose = [&](const Eigen::Vector3d& rest, const Eigen::Vector3d& goal, const Eigen::Vector3d& direction) {
+    Eigen::Matrix<double, 7, 1> result;
+    result << (rest - step.pivot).dot(direction) / step.length, -(goal - step.pivot).cross(direction) / step.length,
+        -direction;
     return result;
   };
   // Neighbouring faces, mostly of neighbouring numbers, move with the same samples.
@@ -108,7 +112,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return pairs[i].face; });
   parallel_for(context, blocks.size(), [&](std::size_t begin, std::size_t end) {
-    Batch batch(columns + 6);
+    Batch batch(all, step.unknowns());
     std::vector<const std::vector<VertexRows::Entry>*> entries;
     for (std::size_t b = begin; b < end; ++b) {
       const std::size_t last = (b + 1) * pairs.size() / blocks.size();
@@ -129,7 +133,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
             if (pair.barycentric[k] == 0) continue;
             batch.add_vertex(row, *entries[3 * i + static_cast<std::size_t>(k)], pair.barycentric[k] * pair.normal);
           }
-          batch.finish(row, of_pose(goal, pair.normal), pair.normal.dot(goal - rest), share * pair.weight);
+          batch.finish(row, of_pose(rest, goal, pair.normal), pair.normal.dot(goal - rest), share * pair.weight);
         }
         batch.add_to(blocks[b]);
       }
@@ -140,7 +144,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
     total.matrix += block.matrix;
     total.side += block.side;
   }
-  Batch batch(columns + 6);
+  Batch batch(all, step.unknowns());
   for (const Pull& pull : pulls) {
     const std::vector<VertexRows::Entry>& entries = rows.of(pull.vertex);
     const Eigen::Vector3d rest = mesh.vertices.row(pull.vertex);
@@ -148,7 +152,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
     for (int c = 0; c < 3; ++c) {
       const Eigen::Vector3d direction = Eigen::Vector3d::Unit(c);
       batch.add_vertex(c, entries, direction);
-      batch.finish(c, of_pose(pull.target, direction), pull.target[c] - rest[c], pull.weight);
+      batch.finish(c, of_pose(rest, pull.target, direction), pull.target[c] - rest[c], pull.weight);
     }
     batch.add_to(total);
   }

@@ -15,12 +15,15 @@
 namespace orbifit {
 
 /// The linear system of one iteration of the fit, whatever its unknowns q are: coordinates in a subspace, displacements
-/// of the samples ... Besides q it has a small rotation and translation that move the scan in the template's frame.
+/// of the samples ... Besides q it has a small rotation and translation that move the scan in the template's frame, and
+/// where that is open, and the system knows of it, the template's scale.
 class DeformationSystem {
  public:
   struct Solution {
     Eigen::VectorXd q;
     Motion scan_step;  ///< to apply to the scan in the template's frame
+    /// Of the template about its centre, after that; q is in units of the grown template.
+    double growth = 1;
   };
 
   /// What holds the solution besides the data.
@@ -28,15 +31,17 @@ class DeformationSystem {
     double stiffness = 1;  ///< of the Laplace energy, > 0
     double damping = 0;    ///< of a step away from `around`, relative to one sample's share of the data, >= 0
     Eigen::VectorXd around;
+    bool scale_open = false;  ///< whether the template may grow, in systems that know of it
+    double grown = 0;         ///< logarithm of the growth so far
   };
 
   DeformationSystem(const DeformationSystem&) = delete;
   DeformationSystem& operator=(const DeformationSystem&) = delete;
   virtual ~DeformationSystem() = default;
 
-  /// Minimises stiffness regularity(q) + symmetry_energy(q)
-  ///           + sum of w <n, x + u - (s + omega x (s - c) + tau)>^2 + pulls
-  ///           + damping (|q - around|^2 + |(omega, tau)|^2)
+  /// Minimises stiffness (regularity(q) + growth_cost(grown + gamma)) + symmetry_energy(q)
+  ///           + sum of w <n, x + gamma (x - c) + u - (s + omega x (s - c) + tau)>^2 + pulls
+  ///           + damping (|q - around|^2 + |(gamma, omega, tau)|^2)
   ///           + a millionth of all samples' share of |q|^2, which prefers the pose to a deformation that does the
   ///           same.
   /// \param share of a pair: factor of its weight
@@ -57,12 +62,16 @@ class DeformationSystem {
   /// CorotatedEnergy::value() of the deformation q.
   double regularity(const Eigen::VectorXd& q) const { return energy_.value(samples_at(q)); }
 
+  /// What a growth of the template costs: as much as if it were stretched so. \param grown  its logarithm
+  double growth_cost(double grown) const { return energy_.of_growth() * grown * grown; }
+
   /// Turns the Laplace coordinates to the deformation q.
   void rotate(const Eigen::VectorXd& q) { energy_.rotate(samples_at(q)); }
 
   using Rotations = CorotatedEnergy::Rotations;
   const Rotations& rotations() const { return energy_.rotations(); }
   void set_rotations(const Rotations& rotations) { energy_.set_rotations(rotations); }
+  void unturn() { set_rotations(Rotations(rotations().size(), Eigen::Matrix3d::Identity())); }
 
   Eigen::Index samples() const { return energy_.samples(); }
 

@@ -1,5 +1,6 @@
 #include "orbifit/fitting/fit.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "fit_starts.h"
+#include "fit_system.h"
 #include "fit_trial.h"
 #include "other_scale.h"
 #include "relaxation.h"
@@ -38,6 +40,7 @@ void FitOptions::validate() const {
   require(stretch >= 0, "stretch", stretch, "0 or more");
   require(tie > 0 && tie <= 1, "tie", tie, "in (0, 1]");
   require(most_tied >= 1, "most_tied", most_tied, "at least 1");
+  require(most_tried >= most_tied, "most_tried", most_tried, "at least most_tied");
   require(trim > 0 && trim <= 1, "trim", trim, "in (0, 1]");
   require(scan_points >= 10, "scan_points", scan_points, "at least 10");
   require(landmark_weight > 0, "landmark_weight", landmark_weight, "positive");
@@ -47,9 +50,9 @@ void FitOptions::validate() const {
 
 namespace {
 
-// What fits of one template are compared by.
+// What fits of one template are compared by: of two, the one that lies where the scan has nothing is the worse.
 double worth(const FitResult& result) {
-  return result.confidence * result.used_fraction;
+  return result.confidence * (1 - result.cut_off) * result.used_fraction;
 }
 
 // The best fit so far, and where it started.
@@ -60,36 +63,66 @@ struct Best {
 
 // Fits from another scale, where that explains more. It ends at the scale of the start, so that what is not seen keeps
 // the template's thickness, unless that explains less by more than it had to explain more.
-void try_other_scale(const FitInput& input, const Subspace& subspace, const FitOptions& options,
-                     const RunContext& context, Best& best) {
+void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions& options, const RunContext& context,
+                     Best& best) {
   constexpr double kSofter = 0.75;  // of the levels
   const std::optional<PlacedScan> other = at_other_scale(input, best.start);
   if (!other) return;
-  FitResult grown = fit_from(input, *other, subspace, options, context);
+  FitResult grown = fit_from(input, *other, system, options, context);
   const int before = best.result.iterations_in_all;
   best.result.iterations_in_all += grown.iterations_in_all;
   if (worth(grown) <= worth(best.result) + kWorthwhile) return;
-  FitState back = with_scale(best.start.pose.scale, grown.pose, {grown.q, grown.basis}, subspace, input.mesh);
+  FitState back = with_scale(best.start.pose.scale, grown.pose, {grown.q, grown.basis}, system.subspace(), input.mesh);
   const int level = static_cast<int>(kSofter * options.levels);
-  FitResult shrunk = fit_from(std::move(back), level, input, *other, subspace, options, context);
+  FitResult shrunk = fit_from(std::move(back), level, input, *other, system, options, context);
   const int in_all = before + grown.iterations_in_all + shrunk.iterations_in_all;
   best.start = *other;
   best.result = worth(shrunk) > worth(grown) - kWorthwhile ? std::move(shrunk) : std::move(grown);
   best.result.iterations_in_all = in_all;
 }
 
+// Keeps the starts of which a short fit, which shows what deformation makes of them, promises most.
+// \return the iterations it took
+int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSystem& system, const FitOptions& options,
+                   const RunContext& context) {
+  constexpr int kSettling = 3;  // iterations
+  if (static_cast<int>(starts.size()) <= options.most_tied) return 0;
+  FitOptions brief = options;
+  brief.levels = std::min(options.levels, 5);
+  brief.iterations = 1;
+  brief.most_iterations = brief.levels + kSettling;
+  brief.condition = false;
+  std::vector<std::pair<double, std::size_t>> promises;
+  promises.reserve(starts.size());
+  int iterations = 0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const FitResult found = fit_from(input, starts[i], system, brief, context);
+    iterations += found.iterations_in_all;
+    promises.emplace_back(-worth(found), i);
+  }
+  std::ranges::sort(promises);
+  promises.resize(static_cast<std::size_t>(options.most_tied));
+  std::vector<PlacedScan> kept;
+  kept.reserve(promises.size());
+  for (const auto& [promise, i] : promises) kept.push_back(std::move(starts[i]));
+  starts = std::move(kept);
+  return iterations;
+}
+
 Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspace& subspace, const FitOptions& options,
              const RunContext& context) {
+  FitSystem system(subspace, input.mesh, options.stretch);
+  int iterations = keep_promising(starts, input, system, options, context);
   std::optional<Best> best;
-  int iterations = 0;
   for (PlacedScan& start : starts) {
-    FitResult found = fit_from(input, start, subspace, options, context);
+    FitResult found = fit_from(input, start, system, options, context);
     iterations += found.iterations_in_all;
     if (!best || worth(found) > worth(best->result)) best = Best{std::move(found), std::move(start)};
   }
   best->result.iterations_in_all = iterations;
-  if (best->result.confidence < kWell && input.landmarks.empty() && input.handles.empty()) {
-    try_other_scale(input, subspace, options, context, *best);
+  if (best->result.confidence * (1 - best->result.cut_off) < kWell && input.landmarks.empty() &&
+      input.handles.empty()) {
+    try_other_scale(input, system, options, context, *best);
   }
   return std::move(*best);
 }

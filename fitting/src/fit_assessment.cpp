@@ -40,7 +40,10 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
     constexpr int kSamples = 1500;
     Random random(context.seed, "coverage of a fit");
     const double reach = std::max(2 * options.inlier_distance * size, 2 * scan.spacing);
-    result.covered = seen.covered(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
+    const SeenSurface::Coverage coverage =
+        seen.coverage(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
+    result.cut_off = coverage.cut_off();
+    result.covered = coverage.without_cut_off().share();
   }
   const double whole = result.used_fraction / (result.used_fraction + result.torn_off);
   result.confidence = result.inlier_fraction * result.covered * whole;

@@ -12,9 +12,8 @@ namespace orbifit {
 double pulls_rms(const FitInput& input, const FitResult& result);
 
 /// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
-/// `inlier_fraction`, `rms`, `covered`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms` from `fitted` and
-/// `pose`, `used_fraction` and `torn_off`.
-/// \param seen  of the input's scan and the points of this one
+/// `inlier_fraction`, `rms`, `covered`, `cut_off`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms` from
+/// `fitted` and `pose`, `used_fraction` and `torn_off`. \param seen  of the input's scan and the points of this one
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result);
 

@@ -76,7 +76,8 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   options.trim = options_.trim + (1 - options_.trim) * now.progress;
   options.never_trim = 0.005 * size_;
   options.direction_noise = kDirectionNoise * size_;
-  options.robust_scale = now.robust;
+  const double robust = unit(state) * now.robust;
+  options.robust_scale = robust;
   options.every = now.every;
   Matches result;
   result.points = to_template(state.pose, scan_.points);
@@ -87,9 +88,9 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.spread = typical_distance(result.pairs) / size_;
   // Each point looked at stands for those that are not.
   const auto looked_at = (scan_.points.rows() + now.every - 1) / now.every;
-  result.energy = static_cast<double>(looked_at - result.of_scan) * now.robust * now.robust;
+  result.energy = static_cast<double>(looked_at - result.of_scan) * robust * robust;
   for (Correspondence& pair : result.pairs) {
-    result.energy += robust_error(pair.distance, now.robust);
+    result.energy += robust_error(pair.distance, robust);
     pair.weight *= now.every;
   }
   result.energy *= now.every;
@@ -97,7 +98,7 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
     if (!cut_off_) cut_off_ = views_.silhouette.cut_off(deformed_, surface_, state.pose, context_);
     if (*cut_off_) return result;
     result.energy +=
-        views_.silhouette.add(deformed_, surface_, result.points, state.pose, now.robust, result.pairs, context_);
+        views_.silhouette.add(deformed_, surface_, result.points, state.pose, robust, result.pairs, context_);
   }
   return result;
 }
@@ -109,12 +110,12 @@ double FitLoop::share_of(const Matches& matches, int every) const {
 }
 
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
-  double result =
-      share * matches.energy + now.stiffness * system_.regularity(state.q) + system_.symmetry_energy(state.q);
+  const double regularity = system_.regularity(state.q) + system_.growth_cost(std::log(unit(state)));
+  double result = share * matches.energy + now.stiffness * regularity + system_.symmetry_energy(state.q);
   for (const Pull& pull : pulls_towards(input_, state.pose, options_.landmark_weight)) {
     result += pull.weight * (deformed_.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm();
   }
-  return result;
+  return result / (unit(state) * unit(state));
 }
 
 void FitLoop::move_to(const FitState& state, double slack) {
@@ -126,13 +127,15 @@ void FitLoop::move_to(const FitState& state, double slack) {
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
                    FitIteration& record) {
   const auto pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
-  const DeformationSystem::Hold hold{now.stiffness, damping, state.q};
+  const DeformationSystem::Hold hold{now.stiffness, damping, state.q, now.scale_open, -std::log(unit(state))};
   const DeformationSystem::Solution solution =
       system_.solve(matches.pairs, share, matches.points, pulls, hold, context_);
   const Points before = system_.samples_at(state.q);
   state.q = solution.q;
   const Motion back = inverse(solution.scan_step);
-  state.pose = state.pose * Similarity{1, back.linear, back.translation};
+  const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
+  state.pose = state.pose * Similarity{1, back.linear, back.translation} *
+               Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
   move_to(state, kSlack * now.robust);
   record.damping = damping;
   record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;
@@ -195,7 +198,8 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
   return reason;
 }
 
-std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIteration>& iterations) {
+std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std::vector<FitIteration>& iterations) {
+  first_scale_ = state.pose.scale;
   move_to(state, 0);
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(0);
@@ -215,6 +219,7 @@ std::string FitLoop::run(FitState& state, int first_level, std::vector<FitIterat
   }
   std::string reason = kUsedUp;
   now.every = 1;
+  now.scale_open = scale_open;
   for (const double robust : kSettling) {
     now.robust = robust * size_;
     // Settled once, the fit has reached what it had left unexplained for being on its way.

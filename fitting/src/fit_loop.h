@@ -31,15 +31,17 @@ class FitLoop {
   FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
           const FitOptions& options, const RunContext& context);
 
-  /// Improves the state in place. \param first_level  of FitOptions::levels, where to begin \return why it stopped
-  std::string run(FitState& state, int first_level, std::vector<FitIteration>& iterations);
+  /// Improves the state in place. \param first_level  of FitOptions::levels, where to begin \param scale_open  whether
+  /// the template's scale is sought as well, once it is soft \return why it stopped
+  std::string run(FitState& state, int first_level, bool scale_open, std::vector<FitIteration>& iterations);
 
  private:
   struct Stage {
     double progress = 1;  // of the schedule, in [0, 1]
     double stiffness = 0;
-    double robust = 0;  // Geman-McClure's scale, template units
+    double robust = 0;  // Geman-McClure's scale, template units as the fit began
     int every = 1;      // each so manieth point of the scan is looked at
+    bool scale_open = false;
   };
   struct Matches {
     std::vector<Correspondence> pairs;  // those of silhouettes after those of the scan
@@ -47,7 +49,7 @@ class FitLoop {
     int of_scan = 0;
     double rms = 0;     // fraction of the diagonal
     double spread = 0;  // likewise, of the distances, whatever the outliers
-    double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared template units
+    double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared units of now
   };
   Stage stage(int iteration) const;
   // The least that offsets of this size from the surface, fractions of the diagonal, warrant.
@@ -62,6 +64,8 @@ class FitLoop {
   // Steps that lower the energy of one stage, until it stalls.
   std::string settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
   void move_to(const FitState& state, double slack);
+  // A length of the template's as the fit began, in its units now.
+  double unit(const FitState& state) const { return first_scale_ / state.pose.scale; }
 
   const FitInput& input_;
   const PreparedScan& scan_;
@@ -70,6 +74,7 @@ class FitLoop {
   const FitOptions& options_;
   const RunContext& context_;
   double size_;                 // the template's diagonal
+  double first_scale_ = 1;      // of the pose, where the fit began
   double last_stiffness_ = 0;   // as the scan's noise allows
   double least_stiffness_ = 0;  // as what is left unexplained allows
   Mesh deformed_;

@@ -15,7 +15,7 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
   std::vector<Placement> found =
       find_placements(input.mesh, input.annotation, input.scan, options.placement, context, input.pose);
   for (const Placement& each : found) {
-    if (static_cast<int>(result.places.size()) == options.most_tied) break;
+    if (static_cast<int>(result.places.size()) == options.most_tried) break;
     if (each.score() < options.tie * found.front().score()) break;
     auto placed = placed_scan(input.mesh, input.scan, each.pose, input.pose, options.placement, preparation, context);
     if (placed) result.places.push_back(std::move(*placed));

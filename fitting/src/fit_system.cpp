@@ -1,5 +1,6 @@
 #include "fit_system.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "orbifit/fitting/alignment.h"
@@ -10,6 +11,12 @@
 #include "data_normal.h"
 
 namespace orbifit {
+
+namespace {
+
+constexpr double kMostGrowth = 1.1;  // in one iteration
+
+}  // namespace
 
 FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
     : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
@@ -32,10 +39,16 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   const Eigen::Index dof = subspace_.degrees_of_freedom();
   const auto all_samples = static_cast<double>(samples());
   rows_.prepare(touched_vertices(mesh_, pairs, pulls), context);
+  step_.grows = hold.scale_open;
   DataNormal normal = data_normal(rows_, dof, mesh_, step_, pairs, share, scan_points, pulls, context);
   normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() += hold.stiffness * stiffness_matrix_;
   normal.matrix.diagonal().head(dof).array() += kPreferPose * all_samples + hold.damping;
-  normal.matrix.diagonal().tail<6>().array() += kHoldPose * all_samples + hold.damping;
+  normal.matrix.diagonal().tail(step_.unknowns()).array() += kHoldPose * all_samples + hold.damping;
+  if (step_.grows) {
+    const double cost = hold.stiffness * growth_cost(1) / (step_.length * step_.length);
+    normal.matrix(dof, dof) += cost;
+    normal.side[dof] -= cost * step_.length * hold.grown;
+  }
   normal.side.head(dof) += hold.stiffness * (subspace_.basis.columns.transpose() * stacked(energy_.pull()));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
 
@@ -46,7 +59,10 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
     throw NoResultError("the fit's linear system has no finite solution");
   }
   Solution solution;
-  solution.q = solved.head(dof);
+  if (step_.grows) {
+    solution.growth = std::clamp(1 + solved[dof] / step_.length, 1 / kMostGrowth, kMostGrowth);
+  }
+  solution.q = solved.head(dof) / solution.growth;
   solution.scan_step = step_.motion(solved.tail<6>());
   return solution;
 }

@@ -19,6 +19,7 @@ namespace orbifit {
 /// small rotation (times the template's diagonal) and translation that move the scan in the template's frame.
 class FitSystem final : public DeformationSystem {
  public:
+  /// References are kept. One system may serve one fit after another: what it knows of vertices stays.
   FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch);
 
   Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
@@ -27,6 +28,8 @@ class FitSystem final : public DeformationSystem {
   Points vertices_at(const Eigen::VectorXd& q, const RunContext& context) const override;
   Eigen::Index unknowns() const override { return subspace_.degrees_of_freedom(); }
   double condition() const override;
+
+  const Subspace& subspace() const { return subspace_; }
 
  private:
   const Subspace& subspace_;

@@ -5,7 +5,6 @@
 #include "orbifit/fitting/alignment.h"
 
 #include "fit_assessment.h"
-#include "fit_system.h"
 #include "moving_system.h"
 
 namespace orbifit {
@@ -13,7 +12,7 @@ namespace orbifit {
 void run_fit(DeformationSystem& system, FitState state, int first_level, const FitInput& input, const PlacedScan& start,
              const FitOptions& options, const RunContext& context, FitResult& result) {
   FitLoop loop(input, start.scan, *start.views, system, options, context);
-  result.stopped_because = loop.run(state, first_level, result.iterations);
+  result.stopped_because = loop.run(state, first_level, start.scale_open, result.iterations);
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   if (options.condition && !result.iterations.empty()) result.condition = system.condition();
   result.pose = state.pose;
@@ -38,10 +37,11 @@ void let_groups_turn(const FitInput& input, const PlacedScan& start, const Subsp
 
 }  // namespace
 
-FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
-                   const Subspace& subspace, const FitOptions& options, const RunContext& context) {
+FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start, FitSystem& system,
+                   const FitOptions& options, const RunContext& context) {
   FitResult result;
-  FitSystem system(subspace, input.mesh, options.stretch);
+  const Subspace& subspace = system.subspace();
+  system.unturn();
   run_fit(system, std::move(state), first_level, input, start, options, context, result);
   if (subspace.mode == GroupMode::moving) let_groups_turn(input, start, subspace, options, context, result);
   result.samples = static_cast<int>(subspace.sampling.points.rows());
@@ -61,10 +61,10 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   return result;
 }
 
-FitResult fit_from(const FitInput& input, const PlacedScan& start, const Subspace& subspace, const FitOptions& options,
+FitResult fit_from(const FitInput& input, const PlacedScan& start, FitSystem& system, const FitOptions& options,
                    const RunContext& context) {
-  const FitState rest{start.pose, Eigen::VectorXd::Zero(subspace.degrees_of_freedom())};
-  return fit_from(rest, 0, input, start, subspace, options, context);
+  const FitState rest{start.pose, Eigen::VectorXd::Zero(system.unknowns())};
+  return fit_from(rest, 0, input, start, system, options, context);
 }
 
 }  // namespace orbifit

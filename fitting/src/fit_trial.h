@@ -2,9 +2,9 @@
 
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/subspace.h"
 
 #include "fit_loop.h"
+#include "fit_system.h"
 #include "placed_scan.h"
 
 namespace orbifit {
@@ -17,11 +17,12 @@ void run_fit(DeformationSystem& system, FitState state, int first_level, const F
 
 /// Deforms the template within a subspace, from one start, and says how well that explains the scan: all of a result
 /// but `converged`, `field_residual` and what concerns the whole of a fit. State and level as in run_fit().
-FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start,
-                   const Subspace& subspace, const FitOptions& options, const RunContext& context);
+/// \param system  of the subspace and the input's mesh; whatever fit it has served before
+FitResult fit_from(FitState state, int first_level, const FitInput& input, const PlacedScan& start, FitSystem& system,
+                   const FitOptions& options, const RunContext& context);
 
 /// The same from the template's rest shape in the start's pose.
-FitResult fit_from(const FitInput& input, const PlacedScan& start, const Subspace& subspace, const FitOptions& options,
+FitResult fit_from(const FitInput& input, const PlacedScan& start, FitSystem& system, const FitOptions& options,
                    const RunContext& context);
 
 }  // namespace orbifit

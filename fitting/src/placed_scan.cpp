@@ -95,7 +95,8 @@ std::optional<PlacedScan> placed_scan(const Mesh& mesh, const PointCloud& cloud,
   const Shares shares = shares_of(cloud, result.scan, surface, pose, kNear * size * pose.scale, context);
   result.used_fraction = shares.used;
   result.torn_off = shares.torn_off;
-  result.pose = near_given(mesh, pose, given) ? align_rigidly(mesh, result.scan, given, context) : pose;
+  result.scale_open = !near_given(mesh, pose, given);
+  result.pose = result.scale_open ? pose : align_rigidly(mesh, result.scan, given, context);
   return result;
 }
 

@@ -19,6 +19,7 @@ struct PlacedScan {
   Similarity pose;           ///< template -> scan
   double used_fraction = 1;  ///< share of the scan's points near those that are left
   double torn_off = 0;       ///< share that is not, being far from the template, but hangs together with those
+  bool scale_open = false;   ///< nothing is known of the scale: the pose's is that of the template as it is
   std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
 };
 

@@ -286,7 +286,7 @@ class Search {
         const Similarity back = inverse(result[i].pose);
         const double reach = reach_of(result[i].pose);
         result[i].explained = closeness(back, reach / result[i].pose.scale, 1500);
-        result[i].covered = seen_.covered(samples_, surface_.index, result[i].pose, reach + 2 * scan_.spacing);
+        result[i].covered = seen_.coverage(samples_, surface_.index, result[i].pose, reach + 2 * scan_.spacing).share();
       }
     });
     return result;

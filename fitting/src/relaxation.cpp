@@ -8,6 +8,7 @@
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "fit_system.h"
 #include "fit_trial.h"
 
 namespace orbifit {
@@ -22,7 +23,9 @@ Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& 
   free.subspace = SubspaceOptions{};
   free.subspace.samples = kFewSamples;
   const FitInput without = input.with(none);
-  return fit_from(without, start, build_subspace(input.mesh, none, free.subspace, context), free, context).fitted;
+  const Subspace subspace = build_subspace(input.mesh, none, free.subspace, context);
+  FitSystem system(subspace, input.mesh, free.stretch);
+  return fit_from(without, start, system, free, context).fitted;
 }
 
 // The fit without these regions: what the whole of a fit has found, such as placements, stays.
@@ -34,7 +37,8 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   }
   const SymmetryAnnotation rest = closable(input.mesh, without_regions(input.annotation, result.relaxed), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
-  FitResult found = fit_from(input.with(rest), start, subspace, options, context);
+  FitSystem system(subspace, input.mesh, options.stretch);
+  FitResult found = fit_from(input.with(rest), start, system, options, context);
   found.field_residual = worst_field_residual(subspace, input.mesh, rest, {found.q, found.basis}, context);
   found.iterations_in_all += result.iterations_in_all;
   found.placements = std::move(result.placements);

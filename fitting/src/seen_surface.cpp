@@ -116,23 +116,39 @@ SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& no
   return result;
 }
 
-double SeenSurface::covered(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
-                            double reach) const {
-  int seen = 0;
-  int missed = 0;
-  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
-    const Vector3d own = samples.points.row(i);
-    if (index_.nearest(pose(own), 1).front().distance <= reach) {
-      ++seen;
-    } else if (views_.empty() || expected(own, samples.normals.row(i), surface, pose, reach) != Sight::hidden) {
-      ++missed;
-    }
-  }
+double SeenSurface::Coverage::share() const {
   if (seen == 0) return 0;
   // A corner of a template that is far too large may be all that is in the picture.
   constexpr double kFair = 0.2;
-  const double share = static_cast<double>(seen) / static_cast<double>(samples.points.rows());
-  return static_cast<double>(seen) / (seen + missed) * std::min(1.0, share / kFair);
+  return static_cast<double>(seen) / (seen + through + nothing) *
+         std::min(1.0, static_cast<double>(seen) / (kFair * samples));
+}
+
+double SeenSurface::Coverage::cut_off() const {
+  return nothing > kCutOff * seen && seen > 0 ? static_cast<double>(nothing) / (seen + through + nothing) : 0;
+}
+
+SeenSurface::Coverage SeenSurface::Coverage::without_cut_off() const {
+  Coverage result = *this;
+  if (cut_off() > 0) result.nothing = 0;
+  return result;
+}
+
+SeenSurface::Coverage SeenSurface::coverage(const SurfaceSamples& samples, const SurfaceIndex& surface,
+                                            const Similarity& pose, double reach) const {
+  Coverage result;
+  result.samples = static_cast<int>(samples.points.rows());
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    const Vector3d own = samples.points.row(i);
+    if (index_.nearest(pose(own), 1).front().distance <= reach) {
+      ++result.seen;
+      continue;
+    }
+    const Sight sight = views_.empty() ? Sight::nothing : expected(own, samples.normals.row(i), surface, pose, reach);
+    if (sight == Sight::through) ++result.through;
+    if (sight == Sight::nothing) ++result.nothing;
+  }
+  return result;
 }
 
 SeenSurface::Look SeenSurface::look(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,

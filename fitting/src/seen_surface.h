@@ -14,6 +14,10 @@ namespace orbifit {
 /// What a scan's viewpoints see, and so what of a posed template they should have seen.
 class SeenSurface {
  public:
+  /// Where the viewpoints have nothing at more than this share of the samples seen, points have been cut off the scan,
+  /// with other things or as noise, and that viewpoints do not see the template there says nothing of it.
+  static constexpr double kCutOff = 0.15;
+
   /// \param scan    all of it: what its viewpoints saw \param points  those to which distances are measured
   SeenSurface(const PointCloud& scan, const Points& points);
 
@@ -36,12 +40,25 @@ class SeenSurface {
   Look look(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose, double reach,
             const RunContext& context) const;
 
-  /// Of the template's surface that the viewpoints have before them, not behind the template itself nor behind
-  /// something else, the share at which the scan has points; of all of it where no viewpoint is known. Less where
-  /// little of the template is seen at all.
+  /// Samples of the template's surface that the viewpoints have before them, neither behind the template itself nor
+  /// behind something else: what the scan has there. Of all samples, which then are seen or nothing, where no viewpoint
+  /// is known.
+  struct Coverage {
+    int samples = 0;  ///< in all
+    int seen = 0;     ///< the scan has points
+    int through = 0;  ///< something farther away was seen
+    int nothing = 0;  ///< the scan has nothing, neither there nor behind
+
+    /// Share of those that are seen; less where little of the template is seen at all.
+    double share() const;
+    /// Share of those that must be taken for cut off; 0 where they are few, or the template lies elsewhere.
+    double cut_off() const;
+    /// The same samples without those that are cut off.
+    Coverage without_cut_off() const;
+  };
   /// \param samples, surface  the template's \param pose template -> scan \param reach scan units
-  double covered(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
-                 double reach) const;
+  Coverage coverage(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
+                    double reach) const;
 
   /// Whether a viewpoint saw something behind a point, or no farther in front of it than `reach`, scan units: nothing
   /// that hides can be there.

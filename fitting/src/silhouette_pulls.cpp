@@ -14,7 +14,6 @@ constexpr double kSeenReach = 0.012;       // of the diagonal: nearer to a point
 constexpr double kFarthest = 0.15;         // of the diagonal: what is pulled
 constexpr double kLeastSeenRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
 constexpr double kWeight = 2;              // there are fewer samples than points of the scan
-constexpr double kCutOff = 0.15;           // of the samples seen: if nothing was seen at more, points have been cut off
 
 }  // namespace
 
@@ -55,7 +54,7 @@ bool SilhouettePulls::cut_off(const Mesh& deformed, const MatchSurface& surface,
                               const RunContext& context) const {
   const SeenSurface::Look found = look(samples_on(deformed, surface), surface, pose, context);
   const auto nothing = std::ranges::count(found.missed, false, &SeenSurface::Missed::through);
-  return static_cast<double>(nothing) > kCutOff * found.seen;
+  return static_cast<double>(nothing) > SeenSurface::kCutOff * found.seen;
 }
 
 double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, const Points& points,

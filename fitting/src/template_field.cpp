@@ -21,11 +21,9 @@ TemplateField::TemplateField(const Mesh& mesh, const SurfaceIndex& surface, int 
     for (std::size_t i = begin * plane; i < end * plane; ++i) {
       const auto rest = static_cast<int>(i % plane);
       const Eigen::Array3d at(static_cast<double>(i / plane), rest / count_[2], rest % count_[2]);
-      constexpr double kAnyNormal = -2;
       constexpr double kAnywhere = std::numeric_limits<double>::infinity();
       const Eigen::Vector3d centre = corner_ + (cell * (at + 0.5)).matrix();
-      const auto nearest =
-          surface.nearest_facing(centre, Eigen::Vector3d::UnitZ(), kAnyNormal, kAnywhere, false, likely);
+      const auto nearest = surface.nearest(centre, kAnywhere, likely);
       likely = nearest.place;
       values_[i] = {static_cast<float>(nearest.distance), normals.row(nearest.face).transpose().cast<float>()};
     }

@@ -11,10 +11,10 @@ void VertexRows::prepare(const std::vector<int>& vertices, const RunContext& con
   }
   const Eigen::Index dof = basis_.degrees_of_freedom();
   parallel_for(context, fresh.size(), [&](std::size_t begin, std::size_t end) {
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> dense(3, dof);
+    Eigen::Matrix3Xd dense(3, dof);
     for (std::size_t i = begin; i < end; ++i) {
       dense.setZero();
-      for (int c = 0; c < 3; ++c) add_vertex_row(subspace_, basis_, fresh[i], Eigen::Vector3d::Unit(c), dense.row(c));
+      add_vertex_rows(subspace_, basis_, fresh[i], dense);
       std::vector<Entry>& row = rows_[static_cast<std::size_t>(fresh[i])];
       for (Eigen::Index j = 0; j < dof; ++j) {
         if (!dense.col(j).isZero(0)) row.push_back({static_cast<int>(j), dense.col(j)});

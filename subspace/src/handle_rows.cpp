@@ -44,10 +44,9 @@ HandleRows::HandleRows(const std::vector<Handle>& handles, const Subspace& subsp
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows =
         Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(points.size()), freedom);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      for (int c = 0; c < 3; ++c) {
-        add_vertex_row(subspace, subspace.basis, points[i], Eigen::Vector3d::Unit(c),
-                       rows.row(3 * static_cast<Eigen::Index>(i) + c));
-      }
+      Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, freedom);
+      add_vertex_rows(subspace, subspace.basis, points[i], own);
+      rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = own;
       vertices_.push_back(points[i]);
       weights_.push_back(part.weight);
       total_ += part.weight;

@@ -208,13 +208,13 @@ Points vertex_displacements(const Subspace& subspace, const Eigen::VectorXd& q) 
   return vertex_displacements(subspace, SubspaceState{q, nullptr});
 }
 
-void add_vertex_row(const Subspace& subspace, const CarriedBasis& basis, int vertex, const Vector3d& direction,
-                    Eigen::Ref<Eigen::RowVectorXd> row) {
+void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
+                     Eigen::Ref<Eigen::Matrix3Xd> rows) {
   const VertexOrbits::Follower& follower = subspace.orbits.followers[static_cast<std::size_t>(vertex)];
-  Vector3d along = direction;
+  Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
   const auto add_carried = [&](const Carried& carried) {
     for (const auto& [carrier, matrix] : carried) {
-      row += along.transpose() * matrix * basis.carried.middleRows<3>(3 * carrier);
+      rows.noalias() += Eigen::Matrix3d(along * matrix) * basis.carried.middleRows<3>(3 * carrier);
     }
   };
   if (follower.turn >= 0) {
@@ -224,21 +224,21 @@ void add_vertex_row(const Subspace& subspace, const CarriedBasis& basis, int ver
                                                    : step_transport(*subspace.regions, place, -1, motion, floating,
                                                                     basis.rotations[static_cast<std::size_t>(place)]);
     add_carried(step.carried);
-    along = step.frame.transpose() * along;
+    along = along * step.frame;
   }
   const Transport& word = basis.transports.words[static_cast<std::size_t>(follower.word)];
   add_carried(word.carried);
-  along = word.frame.transpose() * along;
+  along = along * word.frame;
   const auto r = static_cast<std::size_t>(follower.representative);
   if (subspace.orbits.bound[r] >= 0) {
     const Binding& binding = basis.bindings[static_cast<std::size_t>(subspace.orbits.bound[r])];
     add_carried(binding.bound);
-    along = binding.kept.transpose() * along;
+    along = along * binding.kept;
   }
   subspace.lift.visit(follower.representative, [&](int atom, double weight) {
     for (int c = 0; c < 3; ++c) {
       for (decltype(basis.atoms)::InnerIterator it(basis.atoms, 3 * Eigen::Index{atom} + c); it; ++it) {
-        row[it.col()] += weight * along[c] * it.value();
+        rows.col(it.col()) += weight * it.value() * along.col(c);
       }
     }
   });

@@ -137,6 +137,23 @@ TEST(Render, WhatIsInFrontHidesWhatIsBehind) {
   EXPECT_TRUE(blueish(pixel(beside, 105, 45)));
 }
 
+TEST(Render, IsSeenFromWhereOneLooksFrom) {
+  for (const Eigen::Vector3d& up : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(1, 2, -3)}) {
+    for (const Eigen::Vector3d& from : {Eigen::Vector3d(1, 2, 0.5), Eigen::Vector3d(-4, 1, -3), up}) {
+      Scene scene;
+      const Eigen::RowVector3d towards = from.normalized().transpose();
+      scene.surfaces.push_back(coloured(sphere(2 * towards, 1), kRed));
+      scene.surfaces.push_back(coloured(sphere(-2 * towards, 1), kBlue));
+      ViewOptions view = small_view();
+      view.up = up.normalized();
+      look_from(from, view);
+      const Image image = render(scene, view, {});
+      EXPECT_TRUE(reddish(pixel(image, 60, 45)));
+      EXPECT_EQ(count_pixels(image, blueish), 0);
+    }
+  }
+}
+
 TEST(Render, UpIsUpInThePicture) {
   for (int axis = 0; axis < 3; ++axis) {
     Scene scene;

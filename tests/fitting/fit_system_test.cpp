@@ -1,5 +1,7 @@
 #include "fit_system.h"
 
+#include <ostream>
+
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
@@ -10,11 +12,20 @@
 namespace orbifit {
 namespace {
 
+struct SystemCase {
+  const char* model;
+  bool scale_open;
+
+  friend void PrintTo(const SystemCase& each, std::ostream* stream) {
+    *stream << each.model << (each.scale_open ? "_of_open_scale" : "");
+  }
+};
+
 // A template with random points beside its surface, which pull it there.
-class System : public testing::TestWithParam<const char*> {
+class System : public testing::TestWithParam<SystemCase> {
  protected:
   System()
-      : model_(generate(GetParam())),
+      : model_(generate(GetParam().model)),
         subspace_(build_subspace(model_.mesh, model_.truth, {}, context_)),
         system_(subspace_, model_.mesh, 0.3),
         size_(diagonal(model_.mesh.vertices)),
@@ -22,6 +33,8 @@ class System : public testing::TestWithParam<const char*> {
         data_(model_.mesh, random_) {
     hold_.stiffness = 0.3;
     hold_.damping = 0.2;
+    hold_.scale_open = GetParam().scale_open;
+    hold_.grown = 0.07;
     hold_.around = Eigen::VectorXd::Zero(subspace_.degrees_of_freedom());
     for (double& value : hold_.around) value = 0.01 * size_ * random_.uniform(-1, 1);
     system_.rotate(hold_.around);
@@ -31,13 +44,17 @@ class System : public testing::TestWithParam<const char*> {
   double energy(const Eigen::VectorXd& x) const {
     const Eigen::Index dof = subspace_.degrees_of_freedom();
     const Eigen::VectorXd q = x.head(dof);
-    const Eigen::Vector3d omega = x.segment<3>(dof) / size_;
-    const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, q);
+    const Eigen::Vector3d omega = x.segment<3>(x.size() - 6) / size_;
+    const double growth = x.size() > dof + 6 ? 1 + x[dof] / size_ : 1;
+    const Eigen::RowVector3d pivot = pivot_.transpose();
+    const Points grown = (growth * (model_.mesh.vertices.rowwise() - pivot)).rowwise() + pivot;
+    const Points moved = grown + vertex_displacements(subspace_, q);
     const auto scan = [&](const Eigen::Vector3d& s) -> Eigen::Vector3d {
       return s + omega.cross(s - pivot_) + x.tail<3>();
     };
     double sum = hold_.stiffness * system_.regularity(q) + hold_.damping * (q - hold_.around).squaredNorm() +
-                 hold_.damping * x.tail<6>().squaredNorm();
+                 hold_.damping * x.tail(x.size() - dof).squaredNorm() +
+                 hold_.stiffness * system_.growth_cost(hold_.grown + growth - 1);
     for (const Correspondence& pair : data_.pairs) {
       const Eigen::Vector3d foot = moved(model_.mesh.faces.row(pair.face), Eigen::all).transpose() * pair.barycentric;
       const double offset = pair.normal.dot(foot - scan(data_.points.row(pair.scan_point)));
@@ -64,14 +81,22 @@ class System : public testing::TestWithParam<const char*> {
 TEST_P(System, SolutionIsWhereTheEnergyIsLeast) {
   const FitSystem::Solution solution = system_.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, context_);
   const Eigen::Index dof = subspace_.degrees_of_freedom();
-  Eigen::VectorXd x(dof + 6);
-  // Back from the motion to the unknowns: a rotation vector about the pivot, and a translation.
+  const Eigen::Index of_pose = GetParam().scale_open ? 7 : 6;
+  Eigen::VectorXd x(dof + of_pose);
+  // Back to the unknowns: the growth, and of the motion a rotation vector about the pivot and a translation.
   const AxisAngle turn = axis_angle(solution.scan_step.linear);
-  x << solution.q, size_ * turn.angle * turn.axis, solution.scan_step(pivot_) - pivot_;
+  x.tail<6>() << size_ * turn.angle * turn.axis, solution.scan_step(pivot_) - pivot_;
+  x.head(dof) = solution.growth * solution.q;
+  if (GetParam().scale_open) {
+    EXPECT_NE(solution.growth, 1);
+    x[dof] = size_ * (solution.growth - 1);
+  } else {
+    EXPECT_EQ(solution.growth, 1);
+  }
   const double least = energy(x);
   Random random(1);
-  for (int k = 0; k < 12; ++k) {
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(dof + 6);
+  for (Eigen::Index k = 0; k < 6 + of_pose; ++k) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
     if (k < 6) {
       for (double& value : step) value = random.uniform(-1, 1);
     } else {
@@ -96,8 +121,10 @@ TEST_P(System, SolutionIsTheSameWithTwoThreads) {
   EXPECT_EQ(other.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, two).q, one.q);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, System, testing::Values("bar", "table"),
-                         [](const auto& each) { return std::string(each.param); });
+INSTANTIATE_TEST_SUITE_P(Models, System,
+                         testing::Values(SystemCase{"bar", false}, SystemCase{"table", false}, SystemCase{"bar", true},
+                                         SystemCase{"table", true}),
+                         [](const auto& each) { return testing::PrintToString(each.param); });
 
 }  // namespace
 }  // namespace orbifit

@@ -128,6 +128,28 @@ TEST(Fit, DoesNotFollowNoiseThatNeighboursShare) {
   EXPECT_LT(std::sqrt(off.rowwise().squaredNorm().mean()), kHeight / 2 * size);
 }
 
+// What stood before the table has been taken out of the scan: nothing is seen there, neither the table nor the floor.
+TEST(Fit, IsNoLessConfidentWhereTheScanWasCutOff) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  PointCloud scan = virtual_scan(model.mesh, {}, context);
+  const double size = diagonal(model.mesh.vertices);
+  const double middle = bounding_box_centre(model.mesh.vertices).x();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    if (scan.points(i, 0) < middle + 0.1 * size) kept.push_back(i);
+  }
+  const auto cut_off = [&] {
+    const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, {}, context);
+    EXPECT_GT(result.confidence, 0.95);
+    return result.cut_off;
+  };
+  EXPECT_EQ(cut_off(), 0);
+  scan.points = Points(scan.points(kept, Eigen::all));
+  scan.viewpoints = Points(scan.viewpoints(kept, Eigen::all));
+  EXPECT_GT(cut_off(), 0.1);
+}
+
 // The crest of the taller back is nearer to the slat below it than to the template's crest.
 TEST(Fit, OfAChairWithATallerBackFindsTheRightSlats) {
   RunContext context;
@@ -142,6 +164,58 @@ TEST(Fit, OfAChairWithATallerBackFindsTheRightSlats) {
   EXPECT_EQ(result.pose.scale, 1);
   const Points off = result.fitted.vertices - truth.mesh.vertices;
   EXPECT_LT(off.rowwise().norm().mean(), 0.005 * diagonal(truth.mesh.vertices));
+}
+
+// ICP with scale makes up for other lengths; what then is too thick or too thin tells the scale.
+TEST(Fit, OfOtherLengthsAnywhereFindsTheScaleOfTheParts) {
+  RunContext context;
+  const GeneratedModel model = generate("desk_fan");
+  const GeneratedModel truth = generate("desk_fan", {{"height", 0.4}, {"radius", 0.22}, {"depth", 0.075}});
+  ScanOptions scanner;
+  scanner.views = 3;
+  scanner.noise = 0.001;
+  PointCloud scan = virtual_scan(truth.mesh, scanner, context);
+  Random random(3, "pose of a desk fan");
+  const Similarity pose{40, random.rotation(), 300 * random.direction()};
+  for (Points* points : {&scan.points, &scan.viewpoints}) {
+    for (Eigen::Index i = 0; i < points->rows(); ++i) points->row(i) = pose(points->row(i).transpose()).transpose();
+  }
+  FitOptions options;
+  options.place = true;
+  const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, options, context);
+  EXPECT_TRUE(result.converged) << result.stopped_because;
+  const auto off = [&](const Similarity& found) { return std::abs(std::log(found.scale / pose.scale)); };
+  EXPECT_GT(off(result.placements.front().pose), 0.1);
+  EXPECT_LT(off(result.pose), 0.5 * off(result.placements.front().pose));
+  EXPECT_LT(result.field_residual, 1e-12);
+}
+
+// A table of which two views tell little fits at several turns and scales.
+TEST(Fit, ShortFitsChooseAmongPlacesThatTie) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  const GeneratedModel truth = generate("table", {{"width", 1.1}, {"height", 0.66}, {"apron_height", 0.12}});
+  ScanOptions scanner;
+  scanner.views = 2;
+  scanner.elevation = 30;
+  scanner.noise = 0.002;
+  const PointCloud scan = virtual_scan(truth.mesh, scanner, context);
+  FitOptions options;
+  options.place = true;
+  options.tie = 0.5;
+  options.most_tied = 1;
+  const auto found_of = [&](int most_tried) {
+    options.most_tried = most_tried;
+    return fit({model.mesh, model.truth, scan, {3, axis_rotation(Eigen::Vector3d::UnitX(), 1), {9, 9, 9}}}, options,
+               context);
+  };
+  const FitResult first = found_of(1);
+  const FitResult chosen = found_of(8);
+  ASSERT_GT(first.placements.size(), 1U);
+  EXPECT_EQ(first.iterations_in_all, static_cast<int>(first.iterations.size()));
+  EXPECT_GT(chosen.iterations_in_all, static_cast<int>(chosen.iterations.size()));
+  EXPECT_GE(chosen.confidence, first.confidence - 0.01);
+  EXPECT_TRUE(chosen.converged) << chosen.stopped_because;
 }
 
 // Floating groups carry no leg that stands at another slant: its axis has another direction.
@@ -290,6 +364,9 @@ TEST(Fit, RefusesAnEmptyScanAndOptionsThatMakeNoSense) {
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
   options.last_stiffness = 20;
+  EXPECT_THROW(options.validate(), UsageError);
+  options = {};
+  options.most_tried = options.most_tied - 1;
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
   options.most_iterations = 5;

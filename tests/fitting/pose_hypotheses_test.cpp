@@ -1,10 +1,14 @@
 #include "pose_hypotheses.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
+
+#include "poses_apart.h"
 
 namespace orbifit {
 namespace {
@@ -30,12 +34,7 @@ TEST_P(Hypotheses, OfTwoPointsOfThePosedTemplateHoldItsPose) {
     hypotheses.propose(truth(samples.points.row(i)), normal(i), truth(samples.points.row(j)), normal(j), 400, random,
                        [&](const Similarity& pose) {
                          ++proposed;
-                         double worst = 0;
-                         for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
-                           const Eigen::Vector3d vertex = mesh.vertices.row(v);
-                           worst = std::max(worst, (pose(vertex) - truth(vertex)).norm());
-                         }
-                         nearest = std::min(nearest, worst / (size * truth.scale));
+                         nearest = std::min(nearest, poses_apart(mesh.vertices, pose, truth));
                        });
   }
   EXPECT_GT(proposed, 0);

@@ -40,7 +40,8 @@ TEST_F(Wall, WhatStandsBeforeItShouldHaveBeenSeen) {
   const SurfaceIndex surface(square_);
   ASSERT_TRUE(seen.knows_viewpoints());
   EXPECT_EQ(seen.look(samples_, surface, at(1), 0.1, context_).missed.size(), 200U);
-  EXPECT_EQ(seen.covered(samples_, surface, at(1), 0.1), 0);
+  EXPECT_EQ(seen.coverage(samples_, surface, at(1), 0.1).through, 200);
+  EXPECT_EQ(seen.coverage(samples_, surface, at(1), 0.1).share(), 0);
 }
 
 // Where a view has nothing at all, that may have been cut off; where it has the wall, it saw through.
@@ -68,7 +69,33 @@ TEST_F(Wall, WhatLiesAtItWasSeen) {
   const SurfaceIndex surface(square_);
   EXPECT_TRUE(seen.look(samples_, surface, at(0), 0.1, context_).missed.empty());
   EXPECT_EQ(seen.look(samples_, surface, at(0), 0.1, context_).seen, 200);
-  EXPECT_EQ(seen.covered(samples_, surface, at(0), 0.1), 1);
+  EXPECT_EQ(seen.coverage(samples_, surface, at(0), 0.1).share(), 1);
+}
+
+// Where little is missing the square may be too large; where much is, the scan has been cut.
+TEST_F(Wall, WhatHasBeenCutOffIsNotMissed) {
+  const SurfaceIndex surface(square_);
+  const auto coverage_without = [&](double from) {
+    PointCloud cut = scan_;
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < scan_.points.rows(); ++i) {
+      const bool around = scan_.points.row(i).cwiseAbs().maxCoeff() > 0.6;
+      if (around || scan_.points(i, 0) < from) kept.push_back(i);
+    }
+    cut.points = Points(scan_.points(kept, Eigen::all));
+    return SeenSurface(cut, cut.points).coverage(samples_, surface, at(0), 0.05);
+  };
+  const SeenSurface::Coverage few = coverage_without(0.24);
+  EXPECT_GT(few.nothing, 0);
+  EXPECT_EQ(few.cut_off(), 0);
+  EXPECT_EQ(few.without_cut_off().share(), few.share());
+  EXPECT_LT(few.share(), 1);
+  const SeenSurface::Coverage half = coverage_without(0);
+  EXPECT_GT(half.nothing, 50);
+  EXPECT_EQ(half.seen + half.through + half.nothing, half.samples);
+  EXPECT_DOUBLE_EQ(half.cut_off(), half.nothing / 200.0);
+  EXPECT_LT(half.share(), 0.6);
+  EXPECT_GT(half.without_cut_off().share(), 0.9);
 }
 
 TEST_F(Wall, WhatLiesBehindItIsHidden) {

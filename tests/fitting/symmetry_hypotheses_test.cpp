@@ -9,6 +9,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 
+#include "poses_apart.h"
+
 namespace orbifit {
 namespace {
 
@@ -28,7 +30,6 @@ TEST_P(BroughtBySymmetry, OfAPosedElementAndPointHoldThePose) {
   Random random(static_cast<std::uint64_t>(GetParam().seed), GetParam().model);
   const GeneratedModel model = generate(GetParam().model);
   const SurfaceSamples samples = sample_surface(model.mesh, 60, random);
-  const double size = diagonal(model.mesh.vertices);
   const Similarity truth{std::exp(random.uniform(-2, 2)), random.rotation(), 5 * random.direction()};
   const std::vector<SymmetryElement> own = template_symmetries(model.mesh, model.truth);
   const SymmetryHypotheses hypotheses(samples, own);
@@ -43,12 +44,7 @@ TEST_P(BroughtBySymmetry, OfAPosedElementAndPointHoldThePose) {
       hypotheses.propose(posed, truth(samples.points.row(i)), truth.linear * samples.normals.row(i).transpose(), 400,
                          random, [&](const Similarity& pose) {
                            ++proposed;
-                           double worst = 0;
-                           for (Eigen::Index k = 0; k < samples.points.rows(); ++k) {
-                             const Eigen::Vector3d point = samples.points.row(k);
-                             worst = std::max(worst, (pose(point) - truth(point)).norm());
-                           }
-                           nearest = std::min(nearest, worst / (size * truth.scale));
+                           nearest = std::min(nearest, poses_apart(samples.points, pose, truth));
                          });
     }
   }

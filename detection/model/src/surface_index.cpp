@@ -262,6 +262,7 @@ struct Search {
 
   const Eigen::Vector3d* facing = nullptr;
   Eigen::Vector4f way = Eigen::Vector4f::Zero();  // (facing, 0)
+  double way_margin = 0;
   double min_cosine = 0;
   bool unsigned_normal = false;
   bool any = false;  // the first face found will do
@@ -288,8 +289,8 @@ Look look_at_way(const Search& search, const Facet& facet) {
   if (search.facing == nullptr) return Look::kYes;
   const float cosine = (facet.planes * search.way)[0];
   const double known = search.unsigned_normal ? std::abs(cosine) : cosine;
-  if (known < search.min_cosine - kFacetMargin) return Look::kNo;
-  return known >= search.min_cosine + kFacetMargin ? Look::kYes : Look::kUnsure;
+  if (known < search.min_cosine - search.way_margin) return Look::kNo;
+  return known >= search.min_cosine + search.way_margin ? Look::kYes : Look::kUnsure;
 }
 
 // Whether the triangle is nearer than the best face so far, by its plane and by the lines of its edges within that
@@ -438,7 +439,10 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   search.min_cosine = min_cosine;
   search.unsigned_normal = unsigned_normal;
   search.any = any;
-  if (normal != nullptr) search.way << normal->cast<float>(), 0;
+  if (normal != nullptr) {
+    search.way << normal->cast<float>(), 0;
+    search.way_margin = kFacetMargin * normal->lpNorm<1>();
+  }
   const Eigen::Vector3d local = search.point - centre;
   search.place << local.cast<float>(), 1;
   search.facet_margin = kFacetMargin * (1 + static_cast<float>(local.cwiseAbs().maxCoeff()));
@@ -605,8 +609,8 @@ SurfaceIndex::~SurfaceIndex() = default;
 SurfaceIndex::SurfaceIndex(SurfaceIndex&&) noexcept = default;
 SurfaceIndex& SurfaceIndex::operator=(SurfaceIndex&&) noexcept = default;
 
-SurfaceIndex::Nearest SurfaceIndex::nearest(const Eigen::Vector3d& point, double max_distance) const {
-  return implementation_->nearest(point, max_distance, nullptr, 0, false, only_.get());
+SurfaceIndex::Nearest SurfaceIndex::nearest(const Eigen::Vector3d& point, double max_distance, int likely) const {
+  return implementation_->nearest(point, max_distance, nullptr, 0, false, only_.get(), false, likely);
 }
 
 SurfaceIndex::Nearest SurfaceIndex::nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,

@@ -162,6 +162,7 @@ TEST_P(Placed, MaximumDistanceIsInclusiveAndExact) {
     const Eigen::Vector3d p = query(2);
     const SurfaceIndex::Nearest nearest = index.nearest(p);
     EXPECT_EQ(index.nearest(p, nearest.distance).face, nearest.face);
+    EXPECT_EQ(index.nearest(p, nearest.distance, static_cast<int>(random_.below(300))).face, nearest.face);
     EXPECT_EQ(index.nearest(p, std::nextafter(nearest.distance, 0)).face, -1);
     EXPECT_EQ(index.nearest(p, -1).face, -1);
   }
@@ -240,6 +241,24 @@ INSTANTIATE_TEST_SUITE_P(Placements, Placed,
                                          Placement{"large_and_far", 1e3, 1e4}, Placement{"tiny", 1e-100, 0},
                                          Placement{"huge", 1e100, 1}),
                          [](const auto& placement) { return placement.param.name; });
+
+// Single precision, which looks first, is off by as much more.
+TEST(SurfaceIndex, ALongNormalFiltersAsClosely) {
+  constexpr double kLength = 1000;
+  constexpr double kClosely = 1e-9 * kLength;
+  Random random(4);
+  const Mesh mesh = random_soup(random, 300);
+  const SurfaceIndex index(mesh);
+  const Points normals = face_normals(mesh);
+  for (int f = 0; f < 300; ++f) {
+    const Eigen::Vector3d middle = mesh.vertices(mesh.faces.row(f), Eigen::all).colwise().mean();
+    const Eigen::Vector3d facing = kLength * random.direction();
+    const double cosine = normals.row(f).dot(facing);
+    const double reach = 1e-12 * diagonal(mesh.vertices);
+    EXPECT_EQ(index.nearest_facing(middle, facing, cosine - kClosely, reach).face, f);
+    EXPECT_EQ(index.nearest_facing(middle, facing, cosine + kClosely, reach).face, -1);
+  }
+}
 
 TEST(SurfaceIndex, EqualDistancesGoToTheLowestFace) {
   // Forty copies of the same face, and the query on them, above them and far away.

@@ -58,6 +58,10 @@ struct ViewOptions {
   Colour background{1, 1, 1};
 };
 
+/// Sets azimuth and elevation so that the picture is seen from there. \param direction  from the scene to the eye, any
+/// length; the view stays as it is where that is zero
+void look_from(const Eigen::Vector3d& direction, ViewOptions& view);
+
 /// Ray-cast picture with soft light and ambient occlusion; the same scene gives the same bytes with any number of
 /// threads. \throw UsageError naming the field of `view`, its value and the rule
 Image render(const Scene& scene, const ViewOptions& view, const RunContext& context);

@@ -31,8 +31,9 @@ struct FitOptions {
   double least_inliers = 0.5;     ///< explained share of the whole scan below which a fit failed, in [0, 1]
   bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
   PlacementOptions placement;
-  double tie = 0.8;           ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
-  int most_tied = 3;          ///< placements fitted, >= 1
+  double tie = 0.8;    ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
+  int most_tried = 8;  ///< of those, by their score: where there are more than `most_tied` short fits choose among them
+  int most_tied = 3;   ///< placements fitted in full, >= 1, <= most_tried
   bool judge_groups = false;  ///< compare with a fit without groups: see group_agreement(); takes as long again
   /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
   bool relax = false;
@@ -77,11 +78,14 @@ struct FitResult {
   double inlier_fraction = 0;  ///< of the scan points used, within inlier_distance of the fitted surface
   double rms = 0;              ///< of those, fraction of the fitted mesh's diagonal
   double covered = 1;          ///< of the fitted surface that the viewpoints should have seen, the share that they saw
-  double confidence = 0;       ///< inlier_fraction * covered, less what was torn off, in [0, 1]
-  double landmark_rms = 0;     ///< of landmarks and handles, fraction of the fitted mesh's diagonal
-  std::vector<char> seen;      ///< #V: a scan point lies near the fitted vertex
-  double hidden_fraction = 0;  ///< share of the fitted area around vertices not seen
-  double field_residual = 0;   ///< worst of the regions: see orbifit::field_residual
+  /// Of the fitted surface that the viewpoints have before them the share where they have nothing, neither it nor
+  /// anything behind, where that is so much that points have been cut off the scan; not in `covered`.
+  double cut_off = 0;
+  double confidence = 0;               ///< inlier_fraction * covered, less what was torn off, in [0, 1]
+  double landmark_rms = 0;             ///< of landmarks and handles, fraction of the fitted mesh's diagonal
+  std::vector<char> seen;              ///< #V: a scan point lies near the fitted vertex
+  double hidden_fraction = 0;          ///< share of the fitted area around vertices not seen
+  double field_residual = 0;           ///< worst of the regions: see orbifit::field_residual
   std::vector<GroupAgreement> groups;  ///< what the scan says of the regions' groups, where that was asked
   std::vector<int> relaxed;            ///< ids of regions that were left out since the scan has not their symmetry
   std::vector<StageTime> times;

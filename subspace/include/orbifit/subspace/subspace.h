@@ -115,10 +115,10 @@ struct VertexRow {
   double constant = 0;
 };
 
-/// Adds direction . u(vertex) to a linear form in a basis' coordinates; what turned groups add whatever the coordinates
-/// are, is left out.
-void add_vertex_row(const Subspace& subspace, const CarriedBasis& basis, int vertex, const Eigen::Vector3d& direction,
-                    Eigen::Ref<Eigen::RowVectorXd> row);
+/// Adds u(vertex) to three linear forms in a basis' coordinates; what turned groups add whatever the coordinates are,
+/// is left out. \param rows  3 by DoF
+void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
+                     Eigen::Ref<Eigen::Matrix3Xd> rows);
 
 /// The annotation of the deformed mesh: the same regions and patterns, carried along.
 SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,

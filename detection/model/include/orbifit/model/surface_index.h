@@ -45,11 +45,13 @@ class SurfaceIndex {
   };
 
   /// O(log F). Nearest point within `max_distance`.
-  Nearest nearest(const Eigen::Vector3d& point, double max_distance = std::numeric_limits<double>::infinity()) const;
-
-  /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
   /// \param likely  the place of a face that may well be the nearest, of an answer of this index before: the answer is
   ///                the same but comes sooner; -1: none
+  Nearest nearest(const Eigen::Vector3d& point, double max_distance = std::numeric_limits<double>::infinity(),
+                  int likely = -1) const;
+
+  /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
+  /// \param likely  as above
   Nearest nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
                          double max_distance = std::numeric_limits<double>::infinity(), bool unsigned_normal = false,
                          int likely = -1) const;
