@@ -89,6 +89,7 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
   constexpr double kLeast = 0.3;      // of a turned region
   constexpr double kLeastKept = 0.8;  // of its samples: it was verified with the discs, and is not to fail for borders
   constexpr double kMostOfFinite = 0.5;  // with less beside the discs, a region of a finite group is about the rest
+  constexpr double kLeastShare = 0.002;  // of the mesh's area: a smaller rest says little
   constexpr int kDiscSamples = 1000;
   if (std::ranges::none_of(regions, about_axis)) return;
   CutDiscs discs(prepared);
@@ -100,7 +101,7 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
     const double share = area / region.area;
     bool drop = turned && share < kLeast;
     if (!drop) {
-      if (!turned && (share > kMostOfFinite || faces.empty())) return false;
+      if (!turned && (share > kMostOfFinite || area < kLeastShare * prepared.area)) return false;
       const SurfacePatch patch = make_patch(prepared, faces, kDiscSamples, tolerance, context, "discs");
       const Verification rest = verify_group(patch, region.placement, context);
       if (!turned && !passes(rest)) return false;
