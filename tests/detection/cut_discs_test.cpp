@@ -56,11 +56,11 @@ INSTANTIATE_TEST_SUITE_P(Prisms, DiscsOfAPrism,
                                          Disc{"WithinACoin", 60, 0.7, 0.1, false}, Disc{"OfARod", 60, 2, 3, false}),
                          [](const auto& each) { return std::string(each.param.name); });
 
-// A grid of squares and some apart from it.
+// A box and smaller ones apart from it.
 struct Specks {
   const char* name;
   int count;
-  double size;  // of each, the grid's is 1
+  double size;  // of each, the large one's is 1
   bool gone;
 
   friend void PrintTo(const Specks& specks, std::ostream* out) { *out << specks.name; }

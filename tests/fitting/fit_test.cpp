@@ -166,15 +166,20 @@ TEST(Fit, OfAChairWithATallerBackFindsTheRightSlats) {
   EXPECT_LT(off.rowwise().norm().mean(), 0.005 * diagonal(truth.mesh.vertices));
 }
 
+// \param noise of the diagonal
+ScanOptions noisy_views(int views, double noise) {
+  ScanOptions scanner;
+  scanner.views = views;
+  scanner.noise = noise;
+  return scanner;
+}
+
 // ICP with scale makes up for other lengths; what then is too thick or too thin tells the scale.
 TEST(Fit, OfOtherLengthsAnywhereFindsTheScaleOfTheParts) {
   RunContext context;
   const GeneratedModel model = generate("desk_fan");
   const GeneratedModel truth = generate("desk_fan", {{"height", 0.4}, {"radius", 0.22}, {"depth", 0.075}});
-  ScanOptions scanner;
-  scanner.views = 3;
-  scanner.noise = 0.001;
-  PointCloud scan = virtual_scan(truth.mesh, scanner, context);
+  PointCloud scan = virtual_scan(truth.mesh, noisy_views(3, 0.001), context);
   Random random(3, "pose of a desk fan");
   const Similarity pose{40, random.rotation(), 300 * random.direction()};
   for (Points* points : {&scan.points, &scan.viewpoints}) {
@@ -195,10 +200,8 @@ TEST(Fit, ShortFitsChooseAmongPlacesThatTie) {
   RunContext context;
   const GeneratedModel model = generate("table");
   const GeneratedModel truth = generate("table", {{"width", 1.1}, {"height", 0.66}, {"apron_height", 0.12}});
-  ScanOptions scanner;
-  scanner.views = 2;
+  ScanOptions scanner = noisy_views(2, 0.002);
   scanner.elevation = 30;
-  scanner.noise = 0.002;
   const PointCloud scan = virtual_scan(truth.mesh, scanner, context);
   FitOptions options;
   options.place = true;

@@ -58,8 +58,9 @@ void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vec
                         Explanation* explanation = nullptr);
 
 /// Whether a region is symmetric by coincidence: it is far off, while another one, around it and at least twice as
-/// large, is exact and shows that this mesh is: triangles that know no symmetry fit no part exactly. Kept, its group would also clash with the exact ones. To be asked of finite groups
-/// only: a turned part's residual is that of its facets and says nothing.
+/// large, is exact and shows that this mesh is: triangles that know no symmetry fit no part exactly. Kept, its group
+/// would also clash with the exact ones. To be asked of finite groups only: a turned part's residual is that of its
+/// facets and says nothing.
 /// \param misfit, misfit_around largest residuals \param tolerance of the detector; all fractions of the diagonal
 bool by_coincidence(double area, double misfit, double area_around, double misfit_around, double tolerance);
 

@@ -109,12 +109,6 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
                             const RunContext& context = RunContext{});
 Points vertex_displacements(const Subspace& subspace, const Eigen::VectorXd& q);
 
-/// An affine form in q: row * q + constant.
-struct VertexRow {
-  Eigen::RowVectorXd row;  ///< DoF
-  double constant = 0;
-};
-
 /// Adds u(vertex) to three linear forms in a basis' coordinates; what turned groups add whatever the coordinates are,
 /// is left out. \param rows  3 by DoF
 void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
