@@ -59,7 +59,7 @@ Eigen::Vector3f linear_colour(const Colour& colour) {
   });
 }
 
-RayScene::RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame)
+RayScene::RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame, float beside)
     : device_(rtcNewDevice("threads=1,set_affinity=0")), centre_(0.5 * frame.row(0) + 0.5 * frame.row(1)) {
   if (device_ == nullptr) throw Error("Embree cannot create its device");
   const double size = (frame.row(1) - frame.row(0)).norm();
@@ -70,18 +70,22 @@ RayScene::RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame)
     draws_edges_ = draws_edges_ || layer.edges;
   }
   for (const PointLayer& layer : scene.points) {
-    if (layer.points.rows() > 0) add_points(layer);
+    if (layer.points.rows() == 0) continue;
+    add_points(marks_, layer, layer.radius);
+    add_points(thick_marks_, layer, layer.radius + beside);
   }
   for (const SegmentLayer& layer : scene.segments) {
-    if (layer.from.rows() > 0) add_segments(layer);
+    if (layer.from.rows() == 0) continue;
+    add_segments(marks_, layer, layer.radius);
+    add_segments(thick_marks_, layer, layer.radius + beside);
   }
-  for (const Part* part : {&opaque_, &glass_, &marks_}) {
+  for (const Part* part : {&opaque_, &glass_, &marks_, &thick_marks_}) {
     if (part->scene != nullptr) rtcCommitScene(part->scene);
   }
 }
 
 RayScene::~RayScene() {
-  for (const Part* part : {&opaque_, &glass_, &marks_}) {
+  for (const Part* part : {&opaque_, &glass_, &marks_, &thick_marks_}) {
     if (part->scene != nullptr) rtcReleaseScene(part->scene);
   }
   rtcReleaseDevice(device_);
@@ -119,25 +123,27 @@ void RayScene::add_surface(Part& part, const SurfaceLayer& layer) {
   Layer entry;
   entry.surface = &layer;
   entry.corner_normals = corner_normals(layer.mesh, kCreaseDegrees);
+  for (const Colour& colour : layer.face_colours) entry.face_colours.push_back(linear_colour(colour));
+  if (layer.face_colours.empty()) entry.face_colours.push_back(linear_colour(kClay));
   if (layer.edges) entry.drawn_edges = polygon_sides(layer.mesh);
   attach(part, geometry, std::move(entry));
 }
 
-void RayScene::add_points(const PointLayer& layer) {
+void RayScene::add_points(Part& part, const PointLayer& layer, double radius) {
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
   auto* spheres =
       static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                                   4 * sizeof(float), static_cast<std::size_t>(layer.points.rows())));
   for (Eigen::Index p = 0; p < layer.points.rows(); ++p) {
     spheres = std::copy_n(to_scene(layer.points.row(p)).data(), 3, spheres);
-    *spheres++ = static_cast<float>(layer.radius);
+    *spheres++ = static_cast<float>(radius);
   }
   Layer entry;
   entry.colour = linear_colour(layer.colour);
-  attach(marks_, geometry, std::move(entry));
+  attach(part, geometry, std::move(entry));
 }
 
-void RayScene::add_segments(const SegmentLayer& layer) {
+void RayScene::add_segments(Part& part, const SegmentLayer& layer, double radius) {
   const auto count = static_cast<std::size_t>(layer.from.rows());
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
   auto* ends = static_cast<float*>(
@@ -147,13 +153,13 @@ void RayScene::add_segments(const SegmentLayer& layer) {
   for (std::size_t s = 0; s < count; ++s) {
     for (const Points* side : {&layer.from, &layer.to}) {
       ends = std::copy_n(to_scene(side->row(static_cast<Eigen::Index>(s))).data(), 3, ends);
-      *ends++ = static_cast<float>(layer.radius);
+      *ends++ = static_cast<float>(radius);
     }
     indices[s] = static_cast<unsigned>(2 * s);
   }
   Layer entry;
   entry.colour = linear_colour(layer.colour);
-  attach(marks_, geometry, std::move(entry));
+  attach(part, geometry, std::move(entry));
 }
 
 std::optional<SurfaceHit> RayScene::hit(const Part& part, const Ray& ray, float beyond, float up_to) const {
@@ -195,11 +201,8 @@ std::optional<SurfaceHit> RayScene::hit(const Part& part, const Ray& ray, float 
       colour += weights[k] * surface.vertex_colours[static_cast<std::size_t>(surface.mesh.faces(face, k))];
     }
     result.colour = linear_colour(colour);
-  } else if (surface.face_colours.size() == 1) {
-    result.colour = linear_colour(surface.face_colours[0]);
   } else {
-    result.colour =
-        linear_colour(surface.face_colours.empty() ? kClay : surface.face_colours[static_cast<std::size_t>(face)]);
+    result.colour = layer.face_colours[layer.face_colours.size() == 1 ? 0 : static_cast<std::size_t>(face)];
   }
   if (!layer.drawn_edges.empty()) {
     const float half_width = 0.45F * pixel_width * result.distance;
@@ -233,6 +236,15 @@ std::optional<MarkHit> RayScene::mark(const Ray& ray, float up_to) const {
   if (result.normal.dot(ray.direction) > 0) result.normal *= -1;
   result.colour = marks_.layers[query.hit.geomID].colour;
   return result;
+}
+
+bool RayScene::near_mark(const Ray& ray) const {
+  if (thick_marks_.scene == nullptr) return false;
+  RTCRay query = ray_hit(ray, 0, std::numeric_limits<float>::infinity()).ray;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(thick_marks_.scene, &context, &query);
+  return query.tfar < 0;
 }
 
 unsigned RayScene::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f* directions, int count,

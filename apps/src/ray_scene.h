@@ -40,7 +40,8 @@ struct MarkHit {
 class RayScene {
  public:
   /// \param frame box whose diagonal becomes 1 and whose centre the origin, 2 by 3
-  RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame);
+  /// \param beside how far from a mark `near_mark` still finds it; scene units
+  RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame, float beside);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
@@ -48,6 +49,9 @@ class RayScene {
   std::optional<SurfaceHit> surface(const Ray& ray, float beyond, float up_to) const;
   std::optional<SurfaceHit> glass(const Ray& ray, float beyond, float up_to) const;
   std::optional<MarkHit> mark(const Ray& ray, float up_to) const;
+
+  /// Whether the ray comes near a mark, behind whatever it may be.
+  bool near_mark(const Ray& ray) const;
 
   /// Which of `count` directions from `origin` (at most 8) meet an opaque surface within `reach`: one bit each.
   unsigned occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f* directions, int count, float reach) const;
@@ -64,6 +68,7 @@ class RayScene {
     const SurfaceLayer* surface = nullptr;
     std::vector<Eigen::Vector3f> corner_normals;  // 3 a face
     std::vector<std::uint8_t> drawn_edges;        // bit k: the edge from corner k is drawn
+    std::vector<Eigen::Vector3f> face_colours;    // #F or one for all, linear
     Eigen::Vector3f colour;                       // of marks, linear
   };
   struct Part {
@@ -72,8 +77,8 @@ class RayScene {
   };
 
   void add_surface(Part& part, const SurfaceLayer& layer);
-  void add_points(const PointLayer& layer);
-  void add_segments(const SegmentLayer& layer);
+  void add_points(Part& part, const PointLayer& layer, double radius);
+  void add_segments(Part& part, const SegmentLayer& layer, double radius);
   void attach(Part& part, RTCGeometry geometry, Layer layer);
   std::optional<SurfaceHit> hit(const Part& part, const Ray& ray, float beyond, float up_to) const;
   Eigen::Vector3f to_scene(const Eigen::RowVector3d& point) const;
@@ -82,7 +87,7 @@ class RayScene {
   Eigen::RowVector3d centre_;
   double scale_ = 1;
   bool draws_edges_ = false;
-  Part opaque_, glass_, marks_;
+  Part opaque_, glass_, marks_, thick_marks_;
 };
 
 /// sRGB to linear light.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "orbifit/model/errors.h"
 
@@ -71,14 +72,19 @@ class Painter {
         view_(view),
         lamps_(lamps(camera)),
         background_(linear_colour(view.background)),
-        buffer_(light_buffer(scene, camera, ground, view.width, view.height, context)) {}
+        buffer_(light_buffer(scene, camera, ground, view.width, view.height, context)) {
+    if (scene.has_glass()) look_through_glass(context);
+  }
 
   Vector pixel(int x, int y) const {
     const int side = static_cast<int>(std::lround(std::sqrt(view_.samples)));
     const bool plain = !scene_.draws_edges() && even(x, y);
-    const bool layered = scene_.has_marks() || scene_.has_glass();
-    const Base middle = plain ? base(x, y, ray_at(x, y, 0.5F, 0.5F)) : Base{};
-    if (plain && !layered) return encoded(middle.colour);
+    const Ray through_middle = ray_at(x, y, 0.5F, 0.5F);
+    const Base middle = plain ? base(x, y, through_middle) : Base{};
+    const bool marked = scene_.has_marks() && scene_.near_mark(through_middle);
+    if (plain && !marked && even_glass(x, y))
+      return encoded(scene_.has_glass() ? glass_at(x, y).over(middle.colour) : middle.colour);
+    const bool layered = marked || scene_.has_glass();
     Vector sum = Vector::Zero();
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) {
@@ -106,6 +112,47 @@ class Painter {
         if ((other.colour - middle.colour).cwiseAbs().maxCoeff() > 0.03F) return false;
         const float step = std::abs((other.position - middle.position).dot(middle.normal));
         if (step > 3 * scene_.pixel_width * middle.distance) return false;
+      }
+    }
+    return true;
+  }
+
+  // All the glass before the middle of a pixel: what it adds, and the share of what is behind that passes.
+  struct Glass {
+    Vector colour = Vector::Zero();
+    float passes = 1;
+
+    Vector over(const Vector& behind) const { return colour + passes * behind; }
+  };
+
+  const Glass& glass_at(int x, int y) const {
+    return glass_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
+  }
+
+  void look_through_glass(const RunContext& context) {
+    const auto width = static_cast<std::size_t>(view_.width);
+    glass_.resize(width * static_cast<std::size_t>(view_.height));
+    parallel_for(context, glass_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t place = begin; place < end; ++place) {
+        const int x = static_cast<int>(place % width);
+        const int y = static_cast<int>(place / width);
+        const PixelSurface& behind = buffer_.at(x, y);
+        const bool surface = behind.kind == PixelSurface::Kind::surface;
+        glass_[place] =
+            glass(ray_at(x, y, 0.5F, 0.5F), surface ? behind.distance : std::numeric_limits<float>::infinity());
+      }
+    });
+  }
+
+  // Whether the pixel and its neighbours look through the same glass.
+  bool even_glass(int x, int y) const {
+    if (!scene_.has_glass()) return true;
+    const Glass& middle = glass_at(x, y);
+    for (int v = std::max(0, y - 1); v <= std::min(view_.height - 1, y + 1); ++v) {
+      for (int u = std::max(0, x - 1); u <= std::min(view_.width - 1, x + 1); ++u) {
+        const Glass& other = glass_at(u, v);
+        if (std::abs(other.passes - middle.passes) > 0.02F) return false;
+        if ((other.colour - middle.colour).cwiseAbs().maxCoeff() > 0.02F) return false;
       }
     }
     return true;
@@ -141,7 +188,7 @@ class Painter {
       end = mark->distance;
       colour = shade(*mark, ray);
     }
-    return scene_.has_glass() ? through_glass(ray, end, colour) : colour;
+    return scene_.has_glass() ? glass(ray, end).over(colour) : colour;
   }
 
   Vector ground_colour(int x, int y, const Vector& position) const {
@@ -175,9 +222,8 @@ class Painter {
     return mark.colour * (0.45F + 0.35F * facing_key + 0.25F * facing_eye);
   }
 
-  Vector through_glass(const Ray& ray, float end, const Vector& behind) const {
-    Vector colour = Vector::Zero();
-    float remaining = 1;
+  Glass glass(const Ray& ray, float end) const {
+    Glass result;
     float beyond = 0;
     for (int layer = 0; layer < kMaxGlassLayers; ++layer) {
       const auto hit = scene_.glass(ray, beyond, end);
@@ -185,11 +231,11 @@ class Painter {
       // Seen edge-on glass is denser.
       const float facing = std::abs(hit->normal.dot(ray.direction));
       const float opacity = 1 - std::pow(1 - hit->opacity, 1 / std::max(facing, 0.35F));
-      colour += remaining * opacity * shade(*hit, ray, {1, 1});
-      remaining *= 1 - opacity;
+      result.colour += result.passes * opacity * shade(*hit, ray, {1, 1});
+      result.passes *= 1 - opacity;
       beyond = hit->distance * (1 + 1e-5F) + 1e-6F;
     }
-    return colour + remaining * behind;
+    return result;
   }
 
   // Linear light to sRGB.
@@ -207,6 +253,7 @@ class Painter {
   Lamps lamps_;
   Vector background_;
   LightBuffer buffer_;
+  std::vector<Glass> glass_;  // one a pixel, if there is any
 };
 
 }  // namespace
@@ -224,9 +271,15 @@ Image render(const Scene& scene, const ViewOptions& view, const RunContext& cont
   const Eigen::RowVector3d centre = 0.5 * box.row(0) + 0.5 * box.row(1);
   const auto local = [&](const Points& points) -> Points { return scale * (points.rowwise() - centre); };
 
-  RayScene rays(scene, box);
   const Camera camera = frame_points(local(framed), view);
-  rays.pixel_width = 2 * camera.half_height / static_cast<float>(view.height);
+  const float pixel_width = 2 * camera.half_height / static_cast<float>(view.height);
+  double farthest = 0;
+  const Points placed = local(drawn);
+  for (const auto& point : placed.rowwise()) {
+    farthest = std::max(farthest, (point.transpose() - camera.eye.cast<double>()).norm());
+  }
+  RayScene rays(scene, box, pixel_width * static_cast<float>(farthest));
+  rays.pixel_width = pixel_width;
   Ground ground;
   ground.up = horizon(view.up).up.cast<float>();
   if (view.ground_shadow && !scene.surfaces.empty()) {

@@ -26,6 +26,7 @@ namespace orbifit::commands {
 namespace {
 
 constexpr std::size_t kMostPictures = 24;  // in one preview
+constexpr std::size_t kManyPictures = 8;   // beyond them fewer rays a pixel: nobody waits for smooth lines
 
 struct DetectArguments {
   std::string mesh, output, preview, colour, explain;
@@ -110,6 +111,8 @@ void write_preview(const DetectArguments& arguments, const Mesh& mesh, const Sym
   view.width = 480;
   view.height = 360;
   view.up = to_direction("--up", arguments.up);
+  const std::size_t total = found.regions.size() + found.patterns.size();
+  if (total > kManyPictures) view.samples = 4;
   std::vector<Image> images;
   std::vector<std::string> captions;
   const auto add = [&](const Scene& scene, const std::string& caption) {
@@ -132,7 +135,6 @@ void write_preview(const DetectArguments& arguments, const Mesh& mesh, const Sym
     plain.surfaces.emplace_back().mesh = mesh;
     add(plain, "no symmetry found");
   }
-  const std::size_t total = found.regions.size() + found.patterns.size();
   if (total > images.size()) {
     run.message("the preview shows the first " + std::to_string(images.size()) + " of " + std::to_string(total) +
                 " regions and patterns");
