@@ -1,7 +1,9 @@
 #include "axial_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "orbifit/detection/verification.h"
@@ -134,9 +136,33 @@ class AxialSearch {
     std::ranges::stable_sort(peaks, std::greater<>(), &std::pair<int, double>::first);
     std::vector<double> result;
     for (const auto& [count, value] : peaks) {
-      if (result.size() < most) result.push_back(value);
+      if (result.size() < most) result.push_back(centred(value, (to - from) / steps, motion_at));
     }
     return result;
+  }
+
+  // The middle of where nearly as many samples are kept as at best, near a parameter: what lies across the motion is
+  // lost on either side alike. Planes along it, which say nothing of where it is, must not decide alone.
+  template <typename MotionAt>
+  double centred(double value, double step, const MotionAt& motion_at) const {
+    constexpr int kFine = 4;  // steps in one
+    constexpr int kReach = 2 * kFine;
+    constexpr std::size_t kFineLooks = 400;
+    constexpr double kNearly = 0.985;
+    const std::size_t looks = std::min(samples_.size(), kFineLooks);
+    std::array<int, 2 * kReach + 1> counts{};
+    for (int k = -kReach; k <= kReach; ++k) {
+      const Motion motion = motion_at(value + step * k / kFine);
+      for (std::size_t i = 0; i < looks; ++i) {
+        counts[static_cast<std::size_t>(k + kReach)] += holds(samples_[i * samples_.size() / looks], motion) ? 1 : 0;
+      }
+    }
+    const auto best = std::ranges::max_element(counts);
+    const auto near = [&](int count) { return count >= kNearly * *best; };
+    const auto high = std::find_if_not(best, counts.end(), near);
+    const auto low = std::find_if_not(std::make_reverse_iterator(best), counts.rend(), near).base();
+    const double middle = 0.5 * static_cast<double>((low - counts.begin()) + (high - counts.begin()) - 1);
+    return value + step * (middle - kReach) / kFine;
   }
 
   const ScreenedSurface& surface_;

@@ -7,6 +7,7 @@
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/verification.h"
 
+#include "creases.h"
 #include "face_points.h"
 #include "thresholds.h"
 
@@ -21,6 +22,7 @@ constexpr double kMostCut = 0.3;      // of the border of what is taken of a fla
 constexpr double kWholePiece = 0.97;  // of a piece
 constexpr double kSpacing = 4;        // of a face's points, tolerances
 constexpr int kMostCuts = 6;          // of an edge
+constexpr double kCreaseReach = 3;    // tolerances, as in verification
 
 std::vector<int> with_area(const PreparedMesh& prepared) {
   std::vector<int> faces;
@@ -30,23 +32,52 @@ std::vector<int> with_area(const PreparedMesh& prepared) {
   return faces;
 }
 
+/// Whether motions keep faces on the surface.
+class FaceTest {
+ public:
+  FaceTest(const ScreenedSurface& surface, const std::vector<Motion>& motions) : surface_(surface), motions_(motions) {}
+
+  // All motions keep all but a few points of the face. Not for several threads at once.
+  bool keep(int face) {
+    face_points(surface_.prepared, face, kSpacing * surface_.tolerance, kMostCuts, points_);
+    at_crease_.assign(points_.size(), -1);
+    const auto allowed = static_cast<std::size_t>(kMostOff * static_cast<double>(points_.size()));
+    const Vector3d normal = surface_.prepared.normals.row(face);
+    return std::ranges::all_of(motions_, [&](const Motion& motion) {
+      const Vector3d turned = motion.linear * normal;
+      std::size_t off = 0;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const Vector3d image = motion(points_[i]);
+        const bool on = surface_.grid.holds(image, turned) || (surface_.grid.covers(image) && at_crease(face, i));
+        if (!on && ++off > allowed) return false;
+      }
+      return true;
+    });
+  }
+
+ private:
+  // Next to a crease any normal will do.
+  bool at_crease(int face, std::size_t i) {
+    if (at_crease_[i] < 0) {
+      at_crease_[i] = near_crease(surface_.prepared, points_[i], face, kCreaseReach * surface_.tolerance) ? 1 : 0;
+    }
+    return at_crease_[i] != 0;
+  }
+
+  const ScreenedSurface& surface_;
+  const std::vector<Motion>& motions_;
+  std::vector<Vector3d> points_;
+  std::vector<signed char> at_crease_;  // of the points, -1 where it was not asked yet
+};
+
 std::vector<int> kept_faces(const ScreenedSurface& surface, const std::vector<int>& faces,
                             const std::vector<Motion>& motions, const RunContext& context) {
   std::vector<char> kept(faces.size(), 0);
   parallel_for(context, faces.size(), [&](std::size_t begin, std::size_t end) {
-    std::vector<Vector3d> points;
+    FaceTest test(surface, motions);
     for (std::size_t i = begin; i < end; ++i) {
       if (i % 256 == 0) context.check();
-      face_points(surface.prepared, faces[i], kSpacing * surface.tolerance, kMostCuts, points);
-      const Vector3d normal = surface.prepared.normals.row(faces[i]);
-      const auto allowed = static_cast<std::size_t>(kMostOff * static_cast<double>(points.size()));
-      kept[i] = std::ranges::all_of(motions, [&](const Motion& motion) {
-        const Vector3d turned = motion.linear * normal;
-        std::size_t off = 0;
-        return std::ranges::all_of(points, [&](const Vector3d& point) {
-          return surface.grid.holds(motion(point), turned) || ++off <= allowed;
-        });
-      });
+      kept[i] = test.keep(faces[i]) ? 1 : 0;
     }
   });
   std::vector<int> result;

@@ -203,7 +203,7 @@ class GroupSearch {
     if ((placement.centre - centre_).norm() > 0.1 * patch_.moments.radius) return false;
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
     const int samples = thorough_ ? 0 : std::max(250, 12000 / static_cast<int>(motions.size()));
-    const VerificationLimits limits;
+    const VerificationLimits limits = limits_of(patch_);
     return passes(verify(patch_, motions, tolerance_of(placement.group), samples, limits.joint, context_), limits);
   }
 
@@ -398,7 +398,7 @@ class GroupSearch {
          {refine_on_vertices(patch_, refine(patch_, before, context_, options)), before}) {
       Verification verification = verify(patch_, judged_motions(placement.group, placement.frame, placement.centre),
                                          tolerance_of(placement.group), 0, 0, context_);
-      if (!passes(verification)) continue;
+      if (!passes(verification, limits_of(patch_))) continue;
       best_ = OwnGroup{placement, std::move(verification)};
       return true;
     }
@@ -427,7 +427,7 @@ Verification verify_group(const SurfacePatch& patch, const GroupPlacement& place
 }
 
 bool verified(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context, int samples) {
-  return passes(verify_group(patch, placement, context, samples));
+  return passes(verify_group(patch, placement, context, samples), limits_of(patch));
 }
 
 std::optional<OwnGroup> find_own_group(const SurfacePatch& patch, const DirectionSet* screen, const GroupHints& hints,

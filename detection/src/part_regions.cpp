@@ -19,6 +19,7 @@
 #include "orbifit/model/dense.h"
 
 #include "chance_symmetry.h"
+#include "face_points.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -59,7 +60,9 @@ class PartSearch {
     find_subgroup_regions();
     for (const Found& found : found_) {
       if (found.known) continue;
-      result_.regions.push_back({found.placement, faces_of(found.parts), found.area, name_of_parts(found.parts)});
+      std::vector<int> faces = kept_faces(found);
+      const double area = orbifit::area_of(prepared_, faces);
+      result_.regions.push_back({found.placement, std::move(faces), area, name_of_parts(found.parts)});
     }
     return std::move(result_);
   }
@@ -93,7 +96,33 @@ class PartSearch {
 
   SurfacePatch patch_of(const std::vector<int>& parts, std::string_view stream) const {
     const int extra = parts.size() > 1 ? 40 * static_cast<int>(std::min<std::size_t>(parts.size(), 40)) : 0;
-    return make_patch(prepared_, faces_of(parts), kPartSamples + extra, options_.tolerance, context_, stream);
+    return patch_of(parts, kPartSamples + extra, stream);
+  }
+
+  // Where a piece was joined to others its surface has holes, which have no images.
+  SurfacePatch patch_of(const std::vector<int>& parts, int samples, std::string_view stream) const {
+    constexpr double kLargestHole = 0.02;
+    SurfacePatch patch = make_patch(prepared_, faces_of(parts), samples, options_.tolerance, context_, stream);
+    if (options_.pieces && parts.size() == 1) patch.largest_blot = kLargestHole;
+    return patch;
+  }
+
+  // The faces of the parts but for those that lie where holes are carried, if there are any.
+  std::vector<int> kept_faces(const Found& found) const {
+    std::vector<int> faces = faces_of(found.parts);
+    const PointGroup& group = found.placement.group;
+    if (!options_.pieces || found.parts.size() > 1 || group.continuous()) return faces;
+    const SurfacePatch patch = patch_of(found.parts, "holes");
+    const std::vector<Motion> motions = judged_motions(group, found.placement.frame, found.placement.centre);
+    if (passes(verify(patch, motions, patch.tolerance, 0, 0, context_))) return faces;
+    std::erase_if(faces, [&](int face) {
+      const Vector3d centroid = face_centroid(prepared_, face);
+      const Vector3d normal = prepared_.normals.row(face);
+      return !std::ranges::all_of(motions, [&](const Motion& motion) {
+        return patch.index->within_facing(motion(centroid), motion.linear * normal, kFacetNormals, patch.tolerance);
+      });
+    });
+    return faces;
   }
 
   // A region found before counts for the parts that lie in it.
@@ -156,9 +185,7 @@ class PartSearch {
   }
 
   bool verified(const GroupPlacement& placement, const std::vector<int>& parts) const {
-    return orbifit::verified(
-        make_patch(prepared_, faces_of(parts), kPartSamples, options_.tolerance, context_, "grown"), placement,
-        context_);
+    return orbifit::verified(patch_of(parts, kPartSamples, "grown"), placement, context_);
   }
 
   // Smaller groups on more of the surface: a subgroup may permute parts that the group itself does not.
@@ -285,10 +312,7 @@ class PartSearch {
 
   PartLook look_at_part(int part, const GroupHints& given) const {
     const SurfaceMoments& mine = moments(part);
-    PartLook look{make_patch(prepared_, prepared_.components.faces[static_cast<std::size_t>(part)], kPartSamples,
-                             options_.tolerance, context_, "part"),
-                  flat(mine, options_.tolerance),
-                  {}};
+    PartLook look{patch_of({part}, kPartSamples, "part"), flat(mine, options_.tolerance), {}};
     bool screen = needs_screen(mine);
     GroupHints hints = given;
     if (options_.pieces) {

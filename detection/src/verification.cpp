@@ -192,6 +192,12 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
   return result;
 }
 
+VerificationLimits limits_of(const SurfacePatch& patch) {
+  VerificationLimits limits;
+  limits.cluster = patch.largest_blot;
+  return limits;
+}
+
 bool passes(const Verification& verification, const VerificationLimits& limits) {
   return objection(verification, limits).empty();
 }

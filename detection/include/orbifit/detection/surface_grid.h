@@ -21,17 +21,13 @@ class SurfaceGrid {
   /// \param reach a length; raised to 1/400 of the mesh's diagonal where it is less
   SurfaceGrid(const PreparedMesh& prepared, const std::vector<int>& faces, double reach);
 
-  /// \param normal unit
+  /// Whether a face whose normal is like that lies near. \param normal unit
   bool holds(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
-    const Eigen::Vector3d cell = (point - origin_) * per_cell_;
-    if (!(cell.minCoeff() >= 0) || !(cell.maxCoeff() < kMost)) return false;
-    const Eigen::Vector3i at = cell.cast<int>();
-    if ((at.array() >= cells_.array()).any()) return false;
-    const int block = blocks_[number({at[0] >> 3, at[1] >> 3, at[2] >> 3}, counts_[1], counts_[2])];
-    if (block < 0) return false;
-    const auto inside = static_cast<std::size_t>(((at[0] & 7) << 6) | ((at[1] & 7) << 3) | (at[2] & 7));
-    return (masks_[static_cast<std::size_t>(block)][inside] >> direction(normal) & 1U) != 0;
+    return (mask(point) >> direction(normal) & 1U) != 0;
   }
+
+  /// Whether any face lies near.
+  bool covers(const Eigen::Vector3d& point) const { return mask(point) != 0; }
 
  private:
   static constexpr double kMost = 4096;
@@ -45,6 +41,19 @@ class SurfaceGrid {
     return (size(at[0]) * size(second) + size(at[1])) * size(third) + size(at[2]);
   }
   unsigned direction(const Eigen::Vector3d& normal) const;
+
+  // The directions of the normals of what lies near.
+  std::uint64_t mask(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d cell = (point - origin_) * per_cell_;
+    if (!(cell.minCoeff() >= 0) || !(cell.maxCoeff() < kMost)) return 0;
+    const Eigen::Vector3i at = cell.cast<int>();
+    if ((at.array() >= cells_.array()).any()) return 0;
+    const int block = blocks_[number({at[0] >> 3, at[1] >> 3, at[2] >> 3}, counts_[1], counts_[2])];
+    if (block < 0) return 0;
+    const auto inside = static_cast<std::size_t>(((at[0] & 7) << 6) | ((at[1] & 7) << 3) | (at[2] & 7));
+    return masks_[static_cast<std::size_t>(block)][inside];
+  }
+
   void make_directions();
   void make_stencils();
   void add(const Eigen::Vector3d& point, std::uint64_t mask);

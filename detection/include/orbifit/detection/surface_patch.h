@@ -58,6 +58,7 @@ struct SurfacePatch {
   std::vector<char> part_at_crease;
   double tolerance = 0;           ///< min(t, 4 t d): t the mesh's, d the patch's diagonal
   double relative_tolerance = 0;  ///< t, a fraction of a diagonal
+  double largest_blot = 0.005;    ///< share in one piece that may lie where there is no image
   std::shared_ptr<const SurfaceIndex> index;
 };
 

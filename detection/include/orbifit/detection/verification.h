@@ -34,6 +34,9 @@ struct VerificationLimits {
   double part = 0.6;       ///< of each part, so that large flats do not swamp small parts
 };
 
+/// The usual limits, with the blot that the patch allows.
+VerificationLimits limits_of(const SurfacePatch& patch);
+
 /// Images are on the surface when a face whose normal is within 25 degrees (any face for samples next to a crease) lies
 /// within `tolerance`.
 /// \param samples how many of the patch's samples to use, spread evenly; 0: all
