@@ -40,6 +40,7 @@
 #include "cut_discs.h"
 #include "looser_groups.h"
 #include "region_patterns.h"
+#include "row_growth.h"
 
 namespace orbifit {
 
@@ -204,7 +205,10 @@ class Detector {
     // Of one surface what lines say is asked first: pieces have little to add to it.
     const bool fine = one_fine_surface();
     const bool cut = count != prepared_.components.faces.size();
-    if (fine) find_turned(partition, fine);
+    if (fine) {
+      for (FoundRegion& region : regions_) region.of_pieces = true;  // where components end is chance there
+      find_turned(partition, fine);
+    }
     if (late()) return;
     if (fine || cut) {
       ComponentSurvey survey = survey_of(partition);
@@ -227,11 +231,11 @@ class Detector {
     add_patterns(repeated, parts, true);
   }
 
-  // Whether nearly all is one component of small triangles, of which creases tell little. Where parts are modelled as
+  // Whether much is one component of small triangles, of which creases tell little. Where parts are modelled as
   // such, they and their pieces say all there is; and where triangles are large the pieces are exact.
   bool one_fine_surface() const {
-    constexpr double kNearlyAll = 0.8;  // of the area
-    constexpr double kFine = 5;         // mean length of the triangles' longest edges, tolerances
+    constexpr double kMuch = 0.4;  // of the area
+    constexpr double kFine = 5;    // mean length of the triangles' longest edges, tolerances
     double lengths = 0;
     for (Eigen::Index f = 0; f < prepared_.mesh.faces.rows(); ++f) {
       double longest = 0;
@@ -244,7 +248,7 @@ class Detector {
     }
     return lengths < kFine * options_.tolerance * prepared_.area &&
            std::ranges::any_of(prepared_.components.faces, [&](const std::vector<int>& faces) {
-             return area_of(prepared_, faces) > kNearlyAll * prepared_.area;
+             return area_of(prepared_, faces) > kMuch * prepared_.area;
            });
   }
 
@@ -317,8 +321,15 @@ class Detector {
 
   void add_patterns(const PreparedMesh& partition, const PartRegions& parts, bool pieces) {
     for (Pattern& pattern : find_patterns(partition, parts, regions_, part_options(pieces), limited_)) {
-      pattern.id = static_cast<int>(patterns_.size());
-      patterns_.push_back(std::move(pattern));
+      std::optional<Pattern> grown;
+      if (pieces && !late()) grown = grown_row(prepared_, pattern, options_.tolerance, limited_);
+      if (grown && options_.explanation != nullptr) {
+        options_.explanation->notes.push_back(
+            {"rows", to_string(pattern.kind) + " of " + pattern.name, true,
+             "grown to what the step repeats, " + std::to_string(grown->instances.size()) + " times"});
+      }
+      patterns_.push_back(grown ? std::move(*grown) : std::move(pattern));
+      patterns_.back().id = static_cast<int>(patterns_.size()) - 1;
     }
   }
 

@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kPatchSamples = 1000;
 constexpr double kNearly = 0.9;       // of the samples: less is not worth thinning out
+constexpr double kOfTurned = 0.98;    // of the samples of a turned surface that all rotations must keep
 constexpr int kRounds = 2;            // of thinning out what does not verify
 constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
 
@@ -120,7 +121,10 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   if (says_nothing_new(region)) return judged(false, "known from a larger region");
   for (int round = 0;; ++round) {
     const Verification verification = verify_group(patch, region.placement, context);
-    const std::string reason = objection(verification);
+    VerificationLimits limits;
+    // Ragged borders of what any rotation keeps: whoever looks from other places sees more of them.
+    if (start.group.continuous()) limits.joint = kOfTurned;
+    const std::string reason = objection(verification, limits);
     if (reason.empty()) break;
     if (round == kRounds || verification.joint < kNearly) return judged(false, reason);
     std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context);
