@@ -63,7 +63,9 @@ struct MovingSurface::Ray {
   Vector3d origin, direction;  // unit
   double least, most;
   std::array<float, 3> local, inverse;
-  float margin, first, last;
+  float margin, first;
+  bool any = false;  // whichever face is met will do
+  int face = -1;
 };
 
 MovingSurface::MovingSurface(const Mesh& mesh) : mesh_(&mesh), face_numbers_(space_order(face_centroids(mesh))) {
@@ -223,10 +225,29 @@ MovingSurface::Nearest MovingSurface::nearest_facing(const Vector3d& point, cons
   return answer(query, likely);
 }
 
-bool MovingSurface::blocked(std::size_t level, std::size_t group, const Ray& ray) const {
+MovingSurface::Ray MovingSurface::ray_of(const Vector3d& origin, const Vector3d& direction, double least,
+                                         double most) const {
+  constexpr double kLevel = 1e-12;  // a direction's part below this is taken for this, which no box is far enough for
+  Ray ray{};
+  ray.origin = origin;
+  ray.direction = direction.stableNormalized();
+  ray.least = least;
+  ray.most = most;
+  const Vector3d local = scale_ * (origin - centre_);
+  ray.margin = static_cast<float>(kCullMargin * (1 + local.cwiseAbs().maxCoeff()));
+  ray.first = static_cast<float>(scale_ * least * (1 - kCullMargin)) - ray.margin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double part = ray.direction[static_cast<Eigen::Index>(k)];
+    ray.local[k] = static_cast<float>(local[static_cast<Eigen::Index>(k)]);
+    ray.inverse[k] = static_cast<float>(1 / (std::abs(part) < kLevel ? std::copysign(kLevel, part) : part));
+  }
+  return ray;
+}
+
+void MovingSurface::trace(std::size_t level, std::size_t group, Ray& ray) const {
   const Group& boxes = levels_[level][group];
   Four first = Four::Constant(ray.first);
-  Four last = Four::Constant(ray.last);
+  Four last = Four::Constant(static_cast<float>(scale_ * ray.most * (1 + kCullMargin)) + ray.margin);
   for (std::size_t k = 0; k < 3; ++k) {
     const Four to_low = (lanes(boxes.low[k]) - (ray.local[k] + ray.margin)) * ray.inverse[k];
     const Four to_high = (lanes(boxes.high[k]) - (ray.local[k] - ray.margin)) * ray.inverse[k];
@@ -237,47 +258,49 @@ bool MovingSurface::blocked(std::size_t level, std::size_t group, const Ray& ray
     const std::size_t child = 4 * group + static_cast<std::size_t>(lane);
     if (!(first[lane] <= last[lane])) continue;
     if (level > 0) {
-      if (child < levels_[level - 1].size() && blocked(level - 1, child, ray)) return true;
-      continue;
+      trace(level - 1, child, ray);
+    } else {
+      meet(child, ray);
     }
-    if (child >= face_numbers_.size()) continue;
-    // Moeller and Trumbore 1997
-    const Vector3d a = corner(child, 0);
-    const Vector3d ab = corner(child, 1) - a;
-    const Vector3d ac = corner(child, 2) - a;
-    const Vector3d across = ray.direction.cross(ac);
-    const double determinant = ab.dot(across);
-    if (determinant == 0) continue;
-    const Vector3d to_origin = ray.origin - a;
-    const double u = to_origin.dot(across) / determinant;
-    const Vector3d turned = to_origin.cross(ab);
-    const double v = ray.direction.dot(turned) / determinant;
-    const double distance = ac.dot(turned) / determinant;
-    constexpr double kEdge = 1e-9;  // what passes between two faces meets one of them
-    if (u >= -kEdge && v >= -kEdge && u + v <= 1 + kEdge && distance >= ray.least && distance <= ray.most) return true;
+    if (ray.any && ray.face >= 0) return;
   }
-  return false;
+}
+
+// Moeller and Trumbore 1997
+void MovingSurface::meet(std::size_t place, Ray& ray) const {
+  constexpr double kEdge = 1e-9;  // what passes between two faces meets one of them
+  const Vector3d a = corner(place, 0);
+  const Vector3d ab = corner(place, 1) - a;
+  const Vector3d ac = corner(place, 2) - a;
+  const Vector3d across = ray.direction.cross(ac);
+  const double determinant = ab.dot(across);
+  if (determinant == 0) return;
+  const Vector3d to_origin = ray.origin - a;
+  const double u = to_origin.dot(across) / determinant;
+  const Vector3d turned = to_origin.cross(ab);
+  const double v = ray.direction.dot(turned) / determinant;
+  const double distance = ac.dot(turned) / determinant;
+  if (!(u >= -kEdge && v >= -kEdge && u + v <= 1 + kEdge && distance >= ray.least && distance <= ray.most)) return;
+  const int face = face_numbers_[place];
+  if (ray.face >= 0 && distance == ray.most && face > ray.face) return;
+  ray.most = distance;
+  ray.face = face;
 }
 
 bool MovingSurface::occluded(const Vector3d& origin, const Vector3d& direction, double min_distance,
                              double max_distance) const {
-  Ray ray{};
-  ray.origin = origin;
-  ray.direction = direction.stableNormalized();
-  ray.least = min_distance;
-  ray.most = max_distance;
-  const Vector3d local = scale_ * (origin - centre_);
-  const double offset = local.cwiseAbs().maxCoeff();
-  ray.margin = static_cast<float>(kCullMargin * (1 + offset));
-  ray.first = static_cast<float>(scale_ * min_distance * (1 - kCullMargin)) - ray.margin;
-  ray.last = static_cast<float>(scale_ * max_distance * (1 + kCullMargin)) + ray.margin;
-  constexpr double kLevel = 1e-12;  // a direction's part below this is taken for this, which no box is far enough for
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double part = ray.direction[static_cast<Eigen::Index>(k)];
-    ray.local[k] = static_cast<float>(local[static_cast<Eigen::Index>(k)]);
-    ray.inverse[k] = static_cast<float>(1 / (std::abs(part) < kLevel ? std::copysign(kLevel, part) : part));
-  }
-  return !face_numbers_.empty() && blocked(levels_.size() - 1, 0, ray);
+  if (face_numbers_.empty()) return false;
+  Ray ray = ray_of(origin, direction, min_distance, max_distance);
+  ray.any = true;
+  trace(levels_.size() - 1, 0, ray);
+  return ray.face >= 0;
+}
+
+int MovingSurface::first_hit(const Vector3d& origin, const Vector3d& direction, double min_distance) const {
+  if (face_numbers_.empty()) return -1;
+  Ray ray = ray_of(origin, direction, min_distance, std::numeric_limits<double>::infinity());
+  trace(levels_.size() - 1, 0, ray);
+  return ray.face;
 }
 
 }  // namespace orbifit

@@ -45,6 +45,7 @@ class MatchSurface {
  public:
   explicit MatchSurface(const Mesh& mesh) : index(mesh), mesh_(&mesh) {}
 
+  const Mesh& mesh() const { return *mesh_; }
   Eigen::Vector3d normal(int face) const { return face_normal(*mesh_, face); }
 
   SurfaceIndex index;

@@ -39,6 +39,9 @@ class MovingSurface {
   bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double min_distance,
                 double max_distance) const;
 
+  /// The first face along the ray from this distance on; -1: none.
+  int first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double min_distance) const;
+
   Eigen::Vector3d normal(int face) const { return face_normal(*mesh_, face); }
 
  private:
@@ -52,7 +55,9 @@ class MovingSurface {
   void fit_faces(std::size_t begin, std::size_t end);  // groups of the lowest level
   void fit_nodes(std::size_t level, std::size_t begin, std::size_t end);
   void search(std::size_t level, std::size_t group, Query& query) const;
-  bool blocked(std::size_t level, std::size_t group, const Ray& ray) const;
+  void trace(std::size_t level, std::size_t group, Ray& ray) const;
+  Ray ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double least, double most) const;
+  void meet(std::size_t place, Ray& ray) const;
   void measure(std::size_t place, Query& query) const;
   Nearest answer(Query& query, int likely) const;
   Eigen::Vector3d corner(std::size_t place, int k) const {
