@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbifit/fitting/moving_surface.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include "pulls.h"
 

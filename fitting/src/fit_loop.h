@@ -6,10 +6,10 @@
 
 #include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/fit.h"
-#include "orbifit/fitting/moving_surface.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include "deformation_system.h"
 #include "scan_views.h"

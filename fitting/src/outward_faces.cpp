@@ -1,8 +1,8 @@
 #include "outward_faces.h"
 
-#include "orbifit/fitting/moving_surface.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
+#include "orbifit/subspace/moving_surface.h"
 
 namespace orbifit {
 

@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "orbifit/fitting/correspondences.h"
-#include "orbifit/fitting/moving_surface.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/sampling.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include "seen_surface.h"
 

@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "orbifit/fitting/moving_surface.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/moving_surface.h"
 
 namespace orbifit {
 

@@ -10,16 +10,17 @@
 
 namespace orbifit {
 
-/// Nearest points and occlusion on a triangle mesh whose vertices move, as SurfaceIndex answers them for one at rest.
-/// A tree of boxes whose shape follows from the faces' order in space as it was first made, and never changes: after a
-/// move only the boxes do, in a hundredth of the time that a tree of its own would take. Distances are exact in double
+/// Nearest points and rays on a triangle mesh whose vertices move, or that is asked too little to be worth a
+/// SurfaceIndex, which answers the same several times sooner but takes ten times as long to be made. A tree of boxes
+/// whose shape follows from the faces' order in space as it was first made, and never changes: after a move only the
+/// boxes do, in a hundredth of the time that a tree of its own would take. Distances are exact in double
 /// precision; among faces at the same distance the lowest number wins. Const calls may run on several threads.
 class MovingSurface {
  public:
   using Nearest = SurfaceIndex::Nearest;
 
-  /// O(F log F). \param mesh  kept by reference; must have faces
-  explicit MovingSurface(const Mesh& mesh);
+  /// O(F log F). \param mesh  kept by reference \param faces  those that there are; empty means all
+  explicit MovingSurface(const Mesh& mesh, const std::vector<int>& faces = {});
 
   /// The same faces of another mesh, which is kept by reference from then on, or of the same with its vertices
   /// elsewhere. O(F)

@@ -1,8 +1,9 @@
-#include "orbifit/fitting/moving_surface.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -20,8 +21,8 @@ using Four = Eigen::Array4f;
 constexpr double kCullMargin = 1e-6;
 // Beyond this many boxes from the mesh single precision cannot tell its faces apart: every face is then measured.
 constexpr double kFarAway = 1e6;
-constexpr double kSliver = 1e-8;  // squared sine of a corner below which a face's plane is uncertain; above it, what
-constexpr double kSlope = 1e-6;   // squared distances to it may be off by, as a share
+constexpr double kSliver = 1e-8;  // squared sine of a corner below which a face's plane is uncertain
+constexpr double kPlane = 1e-10;  // above it, what distances to the plane may be off by, of the box and of themselves
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 Four lanes(const std::array<float, 4>& values) {
@@ -42,19 +43,22 @@ struct MovingSurface::Query {
   Vector3d point;
   std::array<float, 3> local;  // in the boxes' frame
   double max_distance;
-  double margin;
+  double offset;  // from the middle of the mesh, in its boxes
   const Vector3d* facing = nullptr;
   double min_cosine = 0;
   bool unsigned_normal = false;
 
-  float limit = kNothing;  // boxes farther than this, squared, hold nothing nearer
+  float limit = kNothing;  // boxes farther than this, squared, hold nothing nearer, nor do planes
+  double plane_limit = std::numeric_limits<double>::infinity();
   double squared_distance = std::numeric_limits<double>::infinity();
   int face = -1;
   std::size_t place = 0;
   Vector3d barycentric;
 
   void reach(double distance, double scale) {
-    const double local_distance = distance * scale * (1 + kCullMargin) + margin;
+    const double to_plane = distance + kPlane * (1 + offset) / scale + kPlane * distance;
+    plane_limit = to_plane * to_plane;
+    const double local_distance = distance * scale * (1 + kCullMargin) + kCullMargin * (1 + offset);
     limit = static_cast<float>(local_distance * local_distance * (1 + kCullMargin));
   }
 };
@@ -68,7 +72,19 @@ struct MovingSurface::Ray {
   int face = -1;
 };
 
-MovingSurface::MovingSurface(const Mesh& mesh) : mesh_(&mesh), face_numbers_(space_order(face_centroids(mesh))) {
+MovingSurface::MovingSurface(const Mesh& mesh, const std::vector<int>& faces) : mesh_(&mesh), face_numbers_(faces) {
+  if (faces.empty()) {
+    face_numbers_.resize(static_cast<std::size_t>(mesh.faces.rows()));
+    std::iota(face_numbers_.begin(), face_numbers_.end(), 0);
+  }
+  Points middles(static_cast<Eigen::Index>(face_numbers_.size()), 3);
+  for (std::size_t place = 0; place < face_numbers_.size(); ++place) {
+    middles.row(static_cast<Eigen::Index>(place)) = (corner(place, 0) + corner(place, 1) + corner(place, 2)) / 3;
+  }
+  std::vector<int> ordered;
+  ordered.reserve(face_numbers_.size());
+  for (const int place : space_order(middles)) ordered.push_back(face_numbers_[static_cast<std::size_t>(place)]);
+  face_numbers_ = std::move(ordered);
   std::size_t boxes = face_numbers_.size();
   do {
     boxes = (boxes + 3) / 4;
@@ -137,7 +153,7 @@ void MovingSurface::measure(std::size_t place, Query& query) const {
   }
   // Most faces are farther than the best by their plane alone, where that is known.
   const double height = vector.dot(query.point - a);
-  if (height * height > (1 + kSlope) * squared_length * query.squared_distance &&
+  if (height * height > squared_length * query.plane_limit &&
       squared_length > kSliver * (b - a).squaredNorm() * (c - a).squaredNorm()) {
     return;
   }
@@ -185,13 +201,12 @@ MovingSurface::Nearest MovingSurface::answer(Query& query, int likely) const {
   Nearest result;
   if (face_numbers_.empty() || !(query.max_distance >= 0)) return result;
   const Vector3d local = scale_ * (query.point - centre_);
-  const double offset = local.cwiseAbs().maxCoeff();
-  query.margin = kCullMargin * (1 + offset);
+  query.offset = local.cwiseAbs().maxCoeff();
   query.reach(query.max_distance, scale_);
   if (likely >= 0 && static_cast<std::size_t>(likely) < face_numbers_.size()) {
     measure(static_cast<std::size_t>(likely), query);
   }
-  if (offset < kFarAway) {
+  if (query.offset < kFarAway) {
     for (std::size_t k = 0; k < 3; ++k) query.local[k] = static_cast<float>(local[static_cast<Eigen::Index>(k)]);
     search(levels_.size() - 1, 0, query);
   } else {
@@ -246,6 +261,7 @@ MovingSurface::Ray MovingSurface::ray_of(const Vector3d& origin, const Vector3d&
 
 void MovingSurface::trace(std::size_t level, std::size_t group, Ray& ray) const {
   const Group& boxes = levels_[level][group];
+  const std::size_t count = level > 0 ? levels_[level - 1].size() : face_numbers_.size();
   Four first = Four::Constant(ray.first);
   Four last = Four::Constant(static_cast<float>(scale_ * ray.most * (1 + kCullMargin)) + ray.margin);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -256,7 +272,7 @@ void MovingSurface::trace(std::size_t level, std::size_t group, Ray& ray) const 
   }
   for (Eigen::Index lane = 0; lane < 4; ++lane) {
     const std::size_t child = 4 * group + static_cast<std::size_t>(lane);
-    if (!(first[lane] <= last[lane])) continue;
+    if (child >= count || !(first[lane] <= last[lane])) continue;
     if (level > 0) {
       trace(level - 1, child, ray);
     } else {
