@@ -94,9 +94,9 @@ Similarity align_landmarks(const Mesh& mesh, const std::vector<Landmark>& landma
   return {scale, nearest_orthogonal(found.topLeftCorner<3, 3>()), found.topRightCorner<3, 1>()};
 }
 
-Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Similarity& start,
+Similarity align_rigidly(const MatchSurface& surface, const PreparedScan& scan, const Similarity& start,
                          const RunContext& context) {
-  const MatchSurface surface(mesh);
+  const Mesh& mesh = surface.mesh();
   const double size = diagonal(mesh.vertices);
   const Eigen::Vector3d pivot = bounding_box_centre(mesh.vertices);
   Similarity pose = start;
@@ -127,13 +127,12 @@ Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Simil
   return pose;
 }
 
-Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const PreparedScan& scan,
-                            const std::vector<int>& points, const Similarity& start,
-                            const ScaledAlignmentOptions& options) {
+Similarity align_with_scale(const MatchSurface& surface, const PreparedScan& scan, const std::vector<int>& points,
+                            const Similarity& start, const ScaledAlignmentOptions& options) {
   constexpr double kNormalCosine = 0.7;
   constexpr double kReach = 3;  // robust scales
-  const double size = diagonal(mesh.vertices);
-  const Eigen::Vector3d pivot = bounding_box_centre(mesh.vertices);
+  const double size = diagonal(surface.mesh().vertices);
+  const Eigen::Vector3d pivot = bounding_box_centre(surface.mesh().vertices);
   Similarity pose = start;
   std::vector<int> likely(points.size(), -1);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {

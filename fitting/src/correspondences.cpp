@@ -29,9 +29,13 @@ double robust_weight(double distance, double scale) {
   return 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
 }
 
-std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
-                                                 const Points& scan_normals, const CorrespondenceOptions& options,
-                                                 const RunContext& context, std::vector<int>* likely) {
+namespace {
+
+// \param index  with nearest_facing() \param surface  with normal()
+template <typename Index, typename Surface>
+std::vector<Correspondence> correspondences(const Index& index, const Surface& surface, const Points& scan_points,
+                                            const Points& scan_normals, const CorrespondenceOptions& options,
+                                            const RunContext& context, std::vector<int>* likely) {
   const auto every = static_cast<std::size_t>(options.every);
   const auto count = static_cast<std::size_t>(scan_points.rows());
   std::vector<Correspondence> all((count + every - 1) / every);
@@ -40,9 +44,9 @@ std::vector<Correspondence> find_correspondences(const MatchSurface& surface, co
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t point = i * every;
       const auto row = static_cast<Eigen::Index>(point);
-      const auto nearest = surface.index.nearest_facing(
-          scan_points.row(row).transpose(), scan_normals.row(row).transpose(), options.min_normal_cosine,
-          options.max_distance, !options.signed_normals, likely != nullptr ? (*likely)[point] : -1);
+      const auto nearest = index.nearest_facing(scan_points.row(row).transpose(), scan_normals.row(row).transpose(),
+                                                options.min_normal_cosine, options.max_distance,
+                                                !options.signed_normals, likely != nullptr ? (*likely)[point] : -1);
       if (likely != nullptr) (*likely)[point] = nearest.place;
       if (nearest.face < 0) continue;
       Correspondence& pair = all[i];
@@ -64,6 +68,20 @@ std::vector<Correspondence> find_correspondences(const MatchSurface& surface, co
   const double limit = std::max(distances[static_cast<std::size_t>(last)], options.never_trim);
   std::erase_if(all, [&](const Correspondence& pair) { return pair.distance > limit; });
   return all;
+}
+
+}  // namespace
+
+std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
+                                                 const Points& scan_normals, const CorrespondenceOptions& options,
+                                                 const RunContext& context, std::vector<int>* likely) {
+  return correspondences(surface.index, surface, scan_points, scan_normals, options, context, likely);
+}
+
+std::vector<Correspondence> find_correspondences(const MovingSurface& surface, const Points& scan_points,
+                                                 const Points& scan_normals, const CorrespondenceOptions& options,
+                                                 const RunContext& context, std::vector<int>* likely) {
+  return correspondences(surface, surface, scan_points, scan_normals, options, context, likely);
 }
 
 double weighted_rms(const std::vector<Correspondence>& correspondences) {

@@ -16,45 +16,40 @@ namespace {
 class Batch {
  public:
   /// \param last  columns that all rows have, the last ones
-  Batch(Eigen::Index columns, int last) : last_(last), place_(static_cast<std::size_t>(columns), -1) {}
+  Batch(Eigen::Index columns, int last) : last_(last), used_(static_cast<std::size_t>(columns), 0) {}
 
-  // Which columns the rows will have. In ascending order the local lower half is one of the whole matrix's.
-  void begin(Eigen::Index rows, const std::vector<const std::vector<VertexRows::Entry>*>& entries) {
-    for (const int column : columns_) place_[static_cast<std::size_t>(column)] = -1;
-    columns_.clear();
-    for (const auto* row : entries) {
-      for (const VertexRows::Entry& entry : *row) {
-        int& place = place_[static_cast<std::size_t>(entry.column)];
-        if (place < 0) columns_.push_back(entry.column);
-        place = 0;
-      }
-    }
-    std::ranges::sort(columns_);
-    for (int k = 0; k < last_; ++k) columns_.push_back(static_cast<int>(place_.size()) - last_ + k);
-    for (std::size_t j = 0; j < columns_.size(); ++j) {
-      place_[static_cast<std::size_t>(columns_[j])] = static_cast<int>(j);
-    }
-    local_.setZero(rows, static_cast<Eigen::Index>(columns_.size()));
+  void begin(Eigen::Index rows) {
+    std::ranges::fill(used_, char{0});
+    std::fill(used_.end() - last_, used_.end(), char{1});
+    all_.setZero(rows, static_cast<Eigen::Index>(used_.size()));
     right_.setZero(rows);
   }
 
   // direction . u(vertex) is part of a row.
   void add_vertex(Eigen::Index row, const std::vector<VertexRows::Entry>& entries, const Eigen::Vector3d& direction) {
+    double* to = all_.row(row).data();
     for (const VertexRows::Entry& entry : entries) {
-      local_(row, place_[static_cast<std::size_t>(entry.column)]) += direction.dot(entry.factor);
+      used_[static_cast<std::size_t>(entry.column)] = 1;
+      to[entry.column] += direction.dot(entry.factor);
     }
   }
 
   // The unknowns of the pose, the right-hand side, and the weight of the row: its last step.
   void finish(Eigen::Index row, const Eigen::Matrix<double, 7, 1>& pose, double right, double weight) {
-    local_.row(row).tail(last_) = pose.tail(last_);
+    all_.row(row).tail(last_) = pose.tail(last_);
     right_[row] = right;
     const double root = std::sqrt(weight);
-    local_.row(row) *= root;
+    all_.row(row) *= root;
     right_[row] *= root;
   }
 
+  // Columns in ascending order: the lower half on them is one of the whole matrix's.
   void add_to(DataNormal& normal) {
+    columns_.clear();
+    for (std::size_t j = 0; j < used_.size(); ++j) {
+      if (used_[j] != 0) columns_.push_back(static_cast<int>(j));
+    }
+    local_ = all_(Eigen::all, columns_);
     gram_.setZero(local_.cols(), local_.cols());
     gram_.selfadjointView<Eigen::Lower>().rankUpdate(local_.transpose());
     side_.noalias() = local_.transpose() * right_;
@@ -68,9 +63,11 @@ class Batch {
   }
 
  private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   int last_;
-  std::vector<int> columns_, place_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> local_;
+  std::vector<char> used_;  // by column
+  std::vector<int> columns_;
+  Rows all_, local_;  // on all columns, and on those used
   Eigen::MatrixXd gram_;
   Eigen::VectorXd right_, side_;
 };
@@ -113,16 +110,11 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return pairs[i].face; });
   parallel_for(context, blocks.size(), [&](std::size_t begin, std::size_t end) {
     Batch batch(all, step.unknowns());
-    std::vector<const std::vector<VertexRows::Entry>*> entries;
     for (std::size_t b = begin; b < end; ++b) {
       const std::size_t last = (b + 1) * pairs.size() / blocks.size();
       for (std::size_t first = b * pairs.size() / blocks.size(); first < last; first += kRows) {
         const std::size_t count = std::min(kRows, last - first);
-        entries.clear();
-        for (std::size_t i = first; i < first + count; ++i) {
-          for (int k = 0; k < 3; ++k) entries.push_back(&rows.of(mesh.faces(pairs[order[i]].face, k)));
-        }
-        batch.begin(static_cast<Eigen::Index>(count), entries);
+        batch.begin(static_cast<Eigen::Index>(count));
         for (std::size_t i = 0; i < count; ++i) {
           const Correspondence& pair = pairs[order[first + i]];
           const auto row = static_cast<Eigen::Index>(i);
@@ -131,7 +123,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
           const Eigen::Vector3d goal = scan_points.row(pair.scan_point);
           for (int k = 0; k < 3; ++k) {
             if (pair.barycentric[k] == 0) continue;
-            batch.add_vertex(row, *entries[3 * i + static_cast<std::size_t>(k)], pair.barycentric[k] * pair.normal);
+            batch.add_vertex(row, rows.of(mesh.faces(pair.face, k)), pair.barycentric[k] * pair.normal);
           }
           batch.finish(row, of_pose(rest, goal, pair.normal), pair.normal.dot(goal - rest), share * pair.weight);
         }
@@ -148,7 +140,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
   for (const Pull& pull : pulls) {
     const std::vector<VertexRows::Entry>& entries = rows.of(pull.vertex);
     const Eigen::Vector3d rest = mesh.vertices.row(pull.vertex);
-    batch.begin(3, {&entries});
+    batch.begin(3);
     for (int c = 0; c < 3; ++c) {
       const Eigen::Vector3d direction = Eigen::Vector3d::Unit(c);
       batch.add_vertex(c, entries, direction);

@@ -5,7 +5,7 @@
 
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include "pulls.h"
 
@@ -24,7 +24,7 @@ double pulls_rms(const FitInput& input, const FitResult& result) {
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result) {
   const double size = diagonal(result.fitted.vertices);
-  const SurfaceIndex surface(result.fitted);
+  const MovingSurface surface(result.fitted);
   double squares = 0;
   int inliers = 0;
   for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "orbifit/fitting/alignment.h"
-#include "orbifit/model/surface_index.h"
 
 #include "stage_clock.h"
 
@@ -26,7 +25,6 @@ constexpr std::array<double, 3> kSettling{0.02, 0.012, 0.007};
 // stiffness has fallen so far tells of noise that neighbours share, which is not seen among them.
 constexpr double kLittleNoise = 0.001;
 constexpr double kStiffest = 0.05;
-constexpr double kSlack = 0.3;           // robust scales: see SurfaceIndex::move
 constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is settled by then
 constexpr double kStill = 1e-4;          // of the diagonal: the fit has settled when no sample moves more,
 constexpr double kGain = 0.02;           // or when so many steps in turn lowered the energy by less than this share;
@@ -49,7 +47,7 @@ FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const ScanView
       context_(context),
       size_(diagonal(input.mesh.vertices)),
       deformed_(input.mesh),
-      surface_(MatchSurface::of_moving(deformed_)) {}
+      surface_(deformed_) {}
 
 FitLoop::Stage FitLoop::stage(int iteration) const {
   Stage now;
@@ -118,10 +116,10 @@ double FitLoop::energy(const FitState& state, const Matches& matches, double sha
   return result / (unit(state) * unit(state));
 }
 
-void FitLoop::move_to(const FitState& state, double slack) {
+void FitLoop::move_to(const FitState& state) {
   system_.rotate(state.q);
   deformed_.vertices = input_.mesh.vertices + system_.vertices_at(state.q, context_);
-  surface_.index.move(deformed_, slack, context_);
+  surface_.move(deformed_, context_);
 }
 
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
@@ -136,7 +134,7 @@ void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, do
   const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
   state.pose = state.pose * Similarity{1, back.linear, back.translation} *
                Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
-  move_to(state, kSlack * now.robust);
+  move_to(state);
   record.damping = damping;
   record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;
 }
@@ -192,7 +190,7 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
   }
   if (best) {
     state = best->state;
-    move_to(state, kSlack * now.robust);
+    move_to(state);
     system_.set_rotations(best->rotations);
   }
   return reason;
@@ -200,7 +198,7 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
 
 std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std::vector<FitIteration>& iterations) {
   first_scale_ = state.pose.scale;
-  move_to(state, 0);
+  move_to(state);
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(0);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {

@@ -9,6 +9,7 @@
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include "deformation_system.h"
 #include "scan_views.h"
@@ -63,7 +64,7 @@ class FitLoop {
             FitIteration& record);
   // Steps that lower the energy of one stage, until it stalls.
   std::string settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
-  void move_to(const FitState& state, double slack);
+  void move_to(const FitState& state);
   // A length of the template's as the fit began, in its units now.
   double unit(const FitState& state) const { return first_scale_ / state.pose.scale; }
 
@@ -78,7 +79,7 @@ class FitLoop {
   double last_stiffness_ = 0;   // as the scan's noise allows
   double least_stiffness_ = 0;  // as what is left unexplained allows
   Mesh deformed_;
-  MatchSurface surface_;  // of deformed_
+  MovingSurface surface_;  // of deformed_
   std::vector<int> likely_;
   std::optional<bool> cut_off_;  // what viewpoints saw, once the pose is settled
 };

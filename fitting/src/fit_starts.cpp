@@ -12,12 +12,13 @@ namespace {
 FitStarts found_starts(const FitInput& input, const FitOptions& options, const ScanPreparationOptions& preparation,
                        const RunContext& context) {
   FitStarts result;
+  const MatchSurface surface(input.mesh);
   std::vector<Placement> found =
-      find_placements(input.mesh, input.annotation, input.scan, options.placement, context, input.pose);
+      find_placements(surface, input.annotation, input.scan, options.placement, context, input.pose);
   for (const Placement& each : found) {
     if (static_cast<int>(result.places.size()) == options.most_tried) break;
     if (each.score() < options.tie * found.front().score()) break;
-    auto placed = placed_scan(input.mesh, input.scan, each.pose, input.pose, options.placement, preparation, context);
+    auto placed = placed_scan(surface, input.scan, each.pose, input.pose, options.placement, preparation, context);
     if (placed) result.places.push_back(std::move(*placed));
   }
   if (!result.places.empty()) result.placements = std::move(found);
@@ -41,7 +42,7 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, const RunC
   if (!input.landmarks.empty()) {
     start.pose = align_landmarks(input.mesh, input.landmarks);
   } else if (options.align && !given) {
-    start.pose = align_rigidly(input.mesh, start.scan, input.pose, context);
+    start.pose = align_rigidly(MatchSurface(input.mesh), start.scan, input.pose, context);
   }
   clock.finished("alignment");
   result.places.push_back(std::move(start));

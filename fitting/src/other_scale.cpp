@@ -18,7 +18,7 @@ std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan
   std::vector<int> some;
   for (int i = 0; i < count; i += std::max(1, count / kEnough)) some.push_back(i);
   PlacedScan result = start;
-  result.pose = align_with_scale(input.mesh, MatchSurface(input.mesh), start.scan, some, start.pose, {});
+  result.pose = align_with_scale(MatchSurface(input.mesh), start.scan, some, start.pose, {});
   const double growth = std::abs(std::log(result.pose.scale / start.pose.scale));
   if (growth < kMuchTheSame || growth > kOneKind) return std::nullopt;
   return result;

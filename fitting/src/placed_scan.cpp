@@ -77,26 +77,26 @@ Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const Surfac
 
 }  // namespace
 
-std::optional<PlacedScan> placed_scan(const Mesh& mesh, const PointCloud& cloud, const Similarity& pose,
+std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
                                       const Similarity& given, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context) {
   constexpr double kNear = 0.12;  // of the diagonal
   constexpr int kMore = 2;        // points, since planes among them go
   constexpr Eigen::Index kFewestNear = 10;
-  const SurfaceIndex surface(mesh);
+  const Mesh& mesh = surface.mesh();
   const double size = diagonal(mesh.vertices);
-  const PointCloud near = points_near(surface, size, cloud, pose, kNear, context);
+  const PointCloud near = points_near(surface.index, size, cloud, pose, kNear, context);
   if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) return std::nullopt;
   ScanPreparationOptions more = preparation;
   more.most_points *= kMore;
   PlacedScan result;
-  result.scan = without_planes(surface, size, prepare_scan(near, more, context), pose, options.reach, context);
+  result.scan = without_planes(surface.index, size, prepare_scan(near, more, context), pose, options.reach, context);
   if (result.scan.points.rows() < kFewestNear) return std::nullopt;
-  const Shares shares = shares_of(cloud, result.scan, surface, pose, kNear * size * pose.scale, context);
+  const Shares shares = shares_of(cloud, result.scan, surface.index, pose, kNear * size * pose.scale, context);
   result.used_fraction = shares.used;
   result.torn_off = shares.torn_off;
   result.scale_open = !near_given(mesh, pose, given);
-  result.pose = result.scale_open ? pose : align_rigidly(mesh, result.scan, given, context);
+  result.pose = result.scale_open ? pose : align_rigidly(surface, result.scan, given, context);
   return result;
 }
 

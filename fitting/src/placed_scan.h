@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/placement.h"
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
@@ -24,9 +25,9 @@ struct PlacedScan {
 };
 
 /// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain.
-/// \param given  rough pose: where the placement is much the same, its scale is kept
+/// \param surface  the template's \param given  rough pose: where the placement is much the same, its scale is kept
 /// \return none where all of the scan is of something else \throw InputError as prepare_scan() does
-std::optional<PlacedScan> placed_scan(const Mesh& mesh, const PointCloud& cloud, const Similarity& pose,
+std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
                                       const Similarity& given, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context);
 

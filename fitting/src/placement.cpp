@@ -37,18 +37,18 @@ constexpr std::size_t kMostReturned = 10;
 /// A template and a scan, with what it takes to judge poses fast.
 class Search {
  public:
-  Search(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& cloud, PreparedScan scan,
+  Search(const MatchSurface& surface, const SymmetryAnnotation& annotation, const PointCloud& cloud, PreparedScan scan,
          const PlacementOptions& options, const RunContext& context)
-      : mesh_(mesh),
+      : mesh_(surface.mesh()),
         annotation_(annotation),
         scan_(std::move(scan)),
         options_(options),
         context_(context),
         random_(context.seed, "placement"),
-        size_(diagonal(mesh.vertices)),
-        samples_(sample_surface(mesh, kTemplateSamples, random_)),
-        surface_(mesh),
-        field_(mesh, surface_.index, kCells, context),
+        size_(diagonal(mesh_.vertices)),
+        samples_(sample_surface(mesh_, kTemplateSamples, random_)),
+        surface_(surface),
+        field_(mesh_, surface_.index, kCells, context),
         extent_(scan_extent()),
         seen_(cloud, scan_.points) {
     // The points in an order of which every beginning is spread over the scan.
@@ -282,7 +282,7 @@ class Search {
     std::vector<Placement> result(starts.size());
     parallel_for(context_, starts.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        result[i].pose = align_with_scale(mesh_, surface_, scan_, of, starts[i], {iterations, robust, 0.015});
+        result[i].pose = align_with_scale(surface_, scan_, of, starts[i], {iterations, robust, 0.015});
         const Similarity back = inverse(result[i].pose);
         const double reach = reach_of(result[i].pose);
         result[i].explained = closeness(back, reach / result[i].pose.scale, 1500);
@@ -300,7 +300,7 @@ class Search {
   Random random_;
   double size_;
   SurfaceSamples samples_;
-  MatchSurface surface_;
+  const MatchSurface& surface_;
   TemplateField field_;
   double extent_;  // of the scan, scan units
   SeenSurface seen_;
@@ -322,11 +322,17 @@ void PlacementOptions::validate() const {
 std::vector<Placement> find_placements(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& scan,
                                        const PlacementOptions& options, const RunContext& context,
                                        const std::optional<Similarity>& given) {
+  return find_placements(MatchSurface(mesh), annotation, scan, options, context, given);
+}
+
+std::vector<Placement> find_placements(const MatchSurface& surface, const SymmetryAnnotation& annotation,
+                                       const PointCloud& scan, const PlacementOptions& options,
+                                       const RunContext& context, const std::optional<Similarity>& given) {
   options.validate();
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
   preparation.evenly = false;  // a floor of few points is not to outweigh the shape that stands on it
-  return Search(mesh, annotation, scan, prepare_scan(scan, preparation, context), options, context).run(given);
+  return Search(surface, annotation, scan, prepare_scan(scan, preparation, context), options, context).run(given);
 }
 
 }  // namespace orbifit

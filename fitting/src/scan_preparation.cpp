@@ -15,6 +15,7 @@
 #include "orbifit/model/random.h"
 
 #include "scan_normals.h"
+#include "stray_points.h"
 
 namespace orbifit {
 
@@ -76,16 +77,12 @@ std::vector<int> some_of(Eigen::Index total, int most, std::uint64_t seed) {
 }
 
 // Of planes through the nearest points: on a smooth surface that is scanned finely, what the scanner adds.
-double noise_of(const Points& points, int neighbours, std::uint64_t seed) {
-  constexpr int kMostPoints = 200000;  // of which neighbours are sought
-  constexpr int kPlanes = 400;
-  const Points some = points(some_of(points.rows(), kMostPoints, seed), Eigen::all);
-  const PointIndex index(some);
+double noise_of(const Points& points, const PointIndex& index, const std::vector<int>& typical, int neighbours) {
   std::vector<double> offsets;
-  for (const int i : some_of(some.rows(), kPlanes, seed)) {
+  for (const int i : typical) {
     std::vector<int> near;
-    for (const auto& neighbour : index.nearest(some.row(i).transpose(), neighbours)) near.push_back(neighbour.index);
-    const Points patch = some(near, Eigen::all);
+    for (const auto& neighbour : index.nearest(points.row(i).transpose(), neighbours)) near.push_back(neighbour.index);
+    const Points patch = points(near, Eigen::all);
     const Points centred = patch.rowwise() - patch.colwise().mean();
     const Eigen::Matrix3d spread = centred.transpose() * centred;
     const double least =
@@ -118,12 +115,18 @@ PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& 
   }
   if (!(diagonal(scan.points) > 0)) throw InputError("", "scan", "all its points are at one place");
   context.progress("scan", 0);
-  const std::vector<int> kept = options.evenly ? spread_evenly(scan.points, options.most_points)
-                                               : some_of(scan.points.rows(), options.most_points, context.seed);
+  constexpr int kMostPoints = 200000;  // of which neighbours are sought
+  constexpr int kPlanes = 400;
+  const Points some = scan.points(some_of(scan.points.rows(), kMostPoints, context.seed), Eigen::all);
+  const PointIndex index(some);
+  const std::vector<int> typical = some_of(some.rows(), kPlanes, context.seed);
+  std::vector<int> kept = options.evenly ? spread_evenly(scan.points, options.most_points)
+                                         : some_of(scan.points.rows(), options.most_points, context.seed);
+  kept = without_strays(scan.points, kept, some, index, typical);
   PreparedScan result;
   result.points = scan.points(kept, Eigen::all);
   result.spacing = median_spacing(result.points);
-  result.noise = noise_of(scan.points, options.neighbours, context.seed);
+  result.noise = noise_of(some, index, typical, options.neighbours);
   if (scan.normals.rows() == scan.points.rows()) {
     result.normals = scan.normals(kept, Eigen::all);
     result.normals_oriented = true;

@@ -97,7 +97,7 @@ bool SeenSurface::through(const Vector3d& point, double reach) const {
 
 // What viewpoints saw that have the point before them, and yet did not see it: the most certain. The template itself
 // may stand in between.
-SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const SurfaceIndex& surface,
+SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const Occluder& surface,
                                          const Similarity& pose, double reach) const {
   constexpr double kGrazing = 0.25;  // cosine: flatter rays see little
   const Vector3d point = pose(own);
@@ -134,7 +134,7 @@ SeenSurface::Coverage SeenSurface::Coverage::without_cut_off() const {
   return result;
 }
 
-SeenSurface::Coverage SeenSurface::coverage(const SurfaceSamples& samples, const SurfaceIndex& surface,
+SeenSurface::Coverage SeenSurface::coverage(const SurfaceSamples& samples, const Occluder& surface,
                                             const Similarity& pose, double reach) const {
   Coverage result;
   result.samples = static_cast<int>(samples.points.rows());
@@ -151,7 +151,7 @@ SeenSurface::Coverage SeenSurface::coverage(const SurfaceSamples& samples, const
   return result;
 }
 
-SeenSurface::Look SeenSurface::look(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
+SeenSurface::Look SeenSurface::look(const SurfaceSamples& samples, const Occluder& surface, const Similarity& pose,
                                     double reach, const RunContext& context) const {
   if (views_.empty()) return {};
   std::vector<Missed> all(static_cast<std::size_t>(samples.points.rows()));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <concepts>
+#include <functional>
 #include <vector>
 
 #include "orbifit/model/mesh.h"
@@ -7,9 +9,26 @@
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
 
 namespace orbifit {
+
+/// A surface that may hide things: SurfaceIndex or MovingSurface, kept by reference.
+class Occluder {
+ public:
+  template <typename Surface>
+  requires(!std::same_as<Surface, Occluder>)
+      Occluder(const Surface& surface)  // NOLINT(google-explicit-constructor): either surface is to serve as it is
+      : occluded_([&surface](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double least,
+                             double most) { return surface.occluded(origin, direction, least, most); }) {}
+
+  /// Whether anything lies between these distances along the ray.
+  bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double least, double most) const {
+    return occluded_(origin, direction, least, most);
+  }
+
+ private:
+  std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&, double, double)> occluded_;
+};
 
 /// What a scan's viewpoints see, and so what of a posed template they should have seen.
 class SeenSurface {
@@ -37,7 +56,7 @@ class SeenSurface {
   /// farther away, or to nothing: the surface cannot be there. None where no viewpoint is known.
   /// \param surface  the template's, in its frame as the samples \param pose template -> scan
   /// \param reach  scan units: nearer to a point of the scan a sample is seen
-  Look look(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose, double reach,
+  Look look(const SurfaceSamples& samples, const Occluder& surface, const Similarity& pose, double reach,
             const RunContext& context) const;
 
   /// Samples of the template's surface that the viewpoints have before them, neither behind the template itself nor
@@ -57,8 +76,7 @@ class SeenSurface {
     Coverage without_cut_off() const;
   };
   /// \param samples, surface  the template's \param pose template -> scan \param reach scan units
-  Coverage coverage(const SurfaceSamples& samples, const SurfaceIndex& surface, const Similarity& pose,
-                    double reach) const;
+  Coverage coverage(const SurfaceSamples& samples, const Occluder& surface, const Similarity& pose, double reach) const;
 
   /// Whether a viewpoint saw something behind a point, or no farther in front of it than `reach`, scan units: nothing
   /// that hides can be there.
@@ -81,7 +99,7 @@ class SeenSurface {
   };
   enum class Sight { hidden, nothing, through };  // what a view has where a point is that it should have seen
   Sight look(const View& view, const Eigen::Vector3d& point, double reach) const;
-  Sight expected(const Eigen::Vector3d& own, const Eigen::Vector3d& normal, const SurfaceIndex& surface,
+  Sight expected(const Eigen::Vector3d& own, const Eigen::Vector3d& normal, const Occluder& surface,
                  const Similarity& pose, double reach) const;
 
   std::vector<View> views_;

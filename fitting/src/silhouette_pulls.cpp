@@ -31,7 +31,7 @@ SilhouettePulls::SilhouettePulls(const Mesh& mesh, const PointCloud& cloud, cons
   }
 }
 
-SurfaceSamples SilhouettePulls::samples_on(const Mesh& deformed, const MatchSurface& surface) const {
+SurfaceSamples SilhouettePulls::samples_on(const Mesh& deformed, const MovingSurface& surface) const {
   SurfaceSamples samples;
   samples.points.resize(static_cast<Eigen::Index>(faces_.size()), 3);
   samples.normals.resize(samples.points.rows(), 3);
@@ -44,20 +44,20 @@ SurfaceSamples SilhouettePulls::samples_on(const Mesh& deformed, const MatchSurf
   return samples;
 }
 
-SeenSurface::Look SilhouettePulls::look(const SurfaceSamples& samples, const MatchSurface& surface,
+SeenSurface::Look SilhouettePulls::look(const SurfaceSamples& samples, const MovingSurface& surface,
                                         const Similarity& pose, const RunContext& context) const {
   const double reach = std::max(kSeenReach * size_ * pose.scale, 1.5 * spacing_);
-  return seen_.look(samples, surface.index, pose, reach, context);
+  return seen_.look(samples, surface, pose, reach, context);
 }
 
-bool SilhouettePulls::cut_off(const Mesh& deformed, const MatchSurface& surface, const Similarity& pose,
+bool SilhouettePulls::cut_off(const Mesh& deformed, const MovingSurface& surface, const Similarity& pose,
                               const RunContext& context) const {
   const SeenSurface::Look found = look(samples_on(deformed, surface), surface, pose, context);
   const auto nothing = std::ranges::count(found.missed, false, &SeenSurface::Missed::through);
   return static_cast<double>(nothing) > SeenSurface::kCutOff * found.seen;
 }
 
-double SilhouettePulls::add(const Mesh& deformed, const MatchSurface& surface, const Points& points,
+double SilhouettePulls::add(const Mesh& deformed, const MovingSurface& surface, const Points& points,
                             const Similarity& pose, double robust, std::vector<Correspondence>& pairs,
                             const RunContext& context) const {
   const SurfaceSamples samples = samples_on(deformed, surface);

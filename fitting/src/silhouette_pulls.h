@@ -8,6 +8,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/sampling.h"
+#include "orbifit/subspace/moving_surface.h"
 
 #include "seen_surface.h"
 
@@ -25,19 +26,19 @@ class SilhouettePulls {
 
   /// Whether viewpoints have nothing where much of the template should be: then points have been cut off the scan, with
   /// other things or as noise, and that viewpoints do not see the template says nothing of it.
-  bool cut_off(const Mesh& deformed, const MatchSurface& surface, const Similarity& pose,
+  bool cut_off(const Mesh& deformed, const MovingSurface& surface, const Similarity& pose,
                const RunContext& context) const;
 
   /// Appends a pair for each sample of the deformed template that was seen through and the scan's point nearest to it.
   /// \param surface of the deformed mesh \param points  the scan's, in the template's frame
   /// \param pose template -> scan \param robust  Geman-McClure's scale, template units
   /// \return their robust_error(), weighted
-  double add(const Mesh& deformed, const MatchSurface& surface, const Points& points, const Similarity& pose,
+  double add(const Mesh& deformed, const MovingSurface& surface, const Points& points, const Similarity& pose,
              double robust, std::vector<Correspondence>& pairs, const RunContext& context) const;
 
  private:
-  SurfaceSamples samples_on(const Mesh& deformed, const MatchSurface& surface) const;
-  SeenSurface::Look look(const SurfaceSamples& samples, const MatchSurface& surface, const Similarity& pose,
+  SurfaceSamples samples_on(const Mesh& deformed, const MovingSurface& surface) const;
+  SeenSurface::Look look(const SurfaceSamples& samples, const MovingSurface& surface, const Similarity& pose,
                          const RunContext& context) const;
 
   double size_;     // the template's diagonal

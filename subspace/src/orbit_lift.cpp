@@ -217,7 +217,7 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
         for (std::int64_t k = 0; k < points; ++k) {
           const auto at = static_cast<std::size_t>(vertices.first_point[r] + k);
           const int word = vertices.point_words[at];
-          plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch);
+          plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch, static_cast<std::size_t>(k));
           for (LiftTerm term : scratch.terms) {
             term.weight /= static_cast<double>(points);
             terms[i].push_back({term, word});

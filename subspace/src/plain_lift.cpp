@@ -75,7 +75,7 @@ int PlainLift::continuous_place(int set) const {
   return chosen;
 }
 
-void PlainLift::find_near(const Eigen::Vector3d& point, int set, Scratch& scratch) const {
+void PlainLift::find_near(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot) const {
   scratch.near.clear();
   scratch.blended = false;
   if (!faded_) return;
@@ -83,9 +83,13 @@ void PlainLift::find_near(const Eigen::Vector3d& point, int set, Scratch& scratc
     if (!regions_.whole(place)) scratch.near.emplace_back(place, kOutside);
   }
   const double band = kBand * sampling_.radius;
+  constexpr std::size_t kSlots = 64;
+  const auto places = static_cast<std::size_t>(regions_.places());
+  if (scratch.likely.empty()) scratch.likely.assign(kSlots * places, -1);
+  int* const likely = scratch.likely.data() + slot % kSlots * places;
   for (const int place : partial_places_) {
     if (regions_.holds(set, place)) continue;
-    const double distance = regions_.distance(point, place, band);
+    const double distance = regions_.distance(point, place, band, likely + place);
     if (!(distance < band)) continue;
     scratch.near.emplace_back(place, std::max(kOutside, smooth_step(distance / band)));
     scratch.blended = true;
@@ -110,10 +114,10 @@ double PlainLift::factor(int sample, Scratch& scratch) const {
   return scratch.factors[set];
 }
 
-void PlainLift::terms(const Eigen::Vector3d& point, int set, Scratch& scratch) const {
+void PlainLift::terms(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot) const {
   ++scratch.stamp;
   scratch.terms.clear();
-  find_near(point, set, scratch);
+  find_near(point, set, scratch, slot);
   const int place = faded_ ? continuous_place(set) : -1;
   if (place >= 0) {
     ring_terms(point, place, scratch);

@@ -37,19 +37,21 @@ class PlainLift {
     std::vector<int> stamps;                   // by set
     std::vector<std::pair<int, double>> near;  // places at hand and what they leave of samples outside
     std::vector<LiftTerm> terms;
+    std::vector<int> likely;  // by slot and place: see RegionMap::distance()
     int stamp = 0;
     bool blended = false;  ///< the last point lies in the fading band of a place
   };
 
   /// The terms for a point of a set, normalised so that those of kind full and centre sum to 1; in scratch.terms.
   /// A point under a continuous group must be in its canonical place. O(samples within 3.7 radii).
-  void terms(const Eigen::Vector3d& point, int set, Scratch& scratch) const;
+  /// \param slot  any number: points of the same one, asked for one after another, are mostly near one another
+  void terms(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot = 0) const;
 
   /// The place whose continuum acts on points of the set; -1: none.
   int continuous_place(int set) const;
 
  private:
-  void find_near(const Eigen::Vector3d& point, int set, Scratch& scratch) const;
+  void find_near(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot) const;
   double factor(int sample, Scratch& scratch) const;
   void gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) const;
   void ring_terms(const Eigen::Vector3d& point, int place, Scratch& scratch) const;

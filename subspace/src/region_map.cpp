@@ -287,9 +287,9 @@ int RegionMap::joined(int a, int b) const {
   return result;
 }
 
-const SurfaceIndex& RegionMap::surface(int place) const {
+const MovingSurface& RegionMap::surface(int place) const {
   auto& surface = surfaces_[static_cast<std::size_t>(place)];
-  if (!surface) surface = std::make_unique<SurfaceIndex>(mesh_, at(place).faces);
+  if (!surface) surface = std::make_unique<MovingSurface>(mesh_, at(place).faces);
   return *surface;
 }
 
@@ -311,10 +311,12 @@ int RegionMap::set_near(const Vector3d& point, int place, const Vector3d& normal
   return set_of_face(surface(place).nearest(point).face);
 }
 
-double RegionMap::distance(const Vector3d& point, int place, double most) const {
+double RegionMap::distance(const Vector3d& point, int place, double most, int* likely) const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   if (at(place).faces.empty() || at(place).box.exteriorDistance(point) > most) return kFar;
-  return surface(place).nearest(point, most).distance;
+  const auto nearest = surface(place).nearest(point, most, likely != nullptr ? *likely : -1);
+  if (likely != nullptr && nearest.face >= 0) *likely = nearest.place;
+  return nearest.distance;
 }
 
 int innermost_region(const RegionMap& regions, int set) {

@@ -235,13 +235,17 @@ void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int ve
     add_carried(binding.bound);
     along = along * binding.kept;
   }
+  Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, rows.cols());
   subspace.lift.visit(follower.representative, [&](int atom, double weight) {
     for (int c = 0; c < 3; ++c) {
       for (decltype(basis.atoms)::InnerIterator it(basis.atoms, 3 * Eigen::Index{atom} + c); it; ++it) {
-        rows.col(it.col()) += weight * it.value() * along.col(c);
+        own(c, it.col()) += weight * it.value();
       }
     }
   });
+  for (Eigen::Index j = 0; j < own.cols(); ++j) {
+    if (!own.col(j).isZero(0)) rows.col(j) += along * own.col(j);
+  }
 }
 
 SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,

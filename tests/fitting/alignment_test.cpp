@@ -57,7 +57,8 @@ TEST_P(RigidAlignment, FindsASmallMotionFromOneSide) {
   }
   scan.viewpoints.resize(0, 3);
   const PreparedScan prepared = prepare_scan(scan, {}, context);
-  EXPECT_LT(worst_offset(align_rigidly(mesh, prepared, Similarity{}, context), truth, mesh.vertices), 2e-3);
+  EXPECT_LT(worst_offset(align_rigidly(MatchSurface(mesh), prepared, Similarity{}, context), truth, mesh.vertices),
+            2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RigidAlignment, testing::Values(1, 2, 3, 4));

@@ -1,10 +1,14 @@
 #include "orbifit/fitting/scan_preparation.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
+#include "orbifit/model/surface_index.h"
 
 namespace orbifit {
 namespace {
@@ -60,6 +64,55 @@ TEST(ScanPreparation, KeepsNearlyAsManyPointsAsAllowedAndSpreadsThem) {
   EXPECT_LE(prepared.points.rows(), 500);
   EXPECT_GT(prepared.points.rows(), 400);
   EXPECT_GT(prepared.spacing, 0.03);
+}
+
+// Points of a virtual scan that are farther than `far` from its mesh, a fraction of the diagonal.
+int far_from(const Mesh& mesh, const Points& points, double far) {
+  const SurfaceIndex surface(mesh);
+  const double size = diagonal(mesh.vertices);
+  int count = 0;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    count += surface.within(points.row(i).transpose(), far * size) ? 0 : 1;
+  }
+  return count;
+}
+
+class Scanned : public testing::TestWithParam<const char*> {};
+
+TEST_P(Scanned, LosesItsStraysAndLittleElse) {
+  constexpr double kFar = 0.03;
+  RunContext context;
+  const Mesh mesh = generate(GetParam()).mesh;
+  ScanOptions options;
+  options.noise = 0.002;
+  const PointCloud clean = virtual_scan(mesh, options, context);
+  ScanPreparationOptions all;
+  all.most_points = static_cast<int>(clean.points.rows());
+  EXPECT_GT(prepare_scan(clean, all, context).points.rows(), 0.99 * static_cast<double>(clean.points.rows()));
+  options.outliers = 0.05;
+  const PointCloud spoilt = virtual_scan(mesh, options, context);
+  const Points left = prepare_scan(spoilt, all, context).points;
+  const int before = far_from(mesh, spoilt.points, kFar);
+  ASSERT_GT(before, 50);
+  EXPECT_LT(far_from(mesh, left, kFar), 0.3 * before);
+  EXPECT_GT(left.rows(), 0.94 * static_cast<double>(spoilt.points.rows()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Scanned, testing::Values("car", "chair", "desk_fan", "plane"),
+                         [](const auto& each) { return std::string(each.param); });
+
+// A floor that is seen far more sparsely than what stands on it is no less a surface.
+TEST(ScanPreparation, KeepsSparseSurfaces) {
+  Random random(8);
+  PointCloud scan = sphere_scan(6000, {0, 0, 1});
+  const Eigen::Index dense = scan.points.rows();
+  scan.points.conservativeResize(dense + 400, 3);
+  for (Eigen::Index i = dense; i < scan.points.rows(); ++i) {
+    scan.points.row(i) << random.uniform(-4, 4), random.uniform(-4, 4), -3;
+  }
+  ScanPreparationOptions all;
+  all.most_points = static_cast<int>(scan.points.rows());
+  EXPECT_GT(prepare_scan(scan, all, RunContext{}).points.rows(), dense + 390);
 }
 
 TEST(ScanPreparation, RefusesTooFewPointsAndPointsAtOnePlace) {

@@ -17,8 +17,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kHold = 1e-6;   // weight by which what nothing determines stays where it is
-constexpr double kSlack = 0.01;  // see SurfaceIndex::move
+constexpr double kHold = 1e-6;  // weight by which what nothing determines stays where it is
 constexpr double kUnlimited = 1e9;
 
 }  // namespace
@@ -33,7 +32,7 @@ KurzFit::KurzFit(const FitInput& input, const UnitInput& unit, const KurzOptions
                                 options.symmetry_weight > 0 ? options.mode : GroupMode::fixed, context)),
       signed_normals_(options.signed_normals && unit.scan.normals_oriented && faces_outwards(unit.mesh, context)),
       deformed_(unit.mesh),
-      surface_(MatchSurface::of_moving(deformed_)) {
+      surface_(deformed_) {
   if (options.symmetry_weight == 0) demands_.demands.clear();
   state_.carriers = Points::Zero(demands_.carriers, 3);
   state_.rotations.assign(unit.annotation.regions.size(), Eigen::Matrix3d::Identity());
@@ -149,7 +148,7 @@ void KurzFit::iterate(KurzNormal& normal, bool first) {
   const Points places = unit_.mesh.vertices + vertex_values_ * state_.nodes;
   record.change = (places - deformed_.vertices).rowwise().norm().maxCoeff() / size_;
   deformed_.vertices = places;
-  if (!handles_alone()) surface_.index.move(deformed_, kSlack, context_);
+  if (!handles_alone()) surface_.move(deformed_, context_);
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   iterations_.push_back(record);
 }

@@ -49,7 +49,7 @@ class KurzFit {
   Eigen::SparseMatrix<double> plate_;
   SparseRows vertex_values_;
   Mesh deformed_;
-  MatchSurface surface_;  // of deformed_
+  MovingSurface surface_;  // of deformed_
   std::vector<int> likely_;
   std::vector<FitIteration> iterations_;
   std::string stopped_because_;  // of the linear functions, or of the smooth ones where those came to rest

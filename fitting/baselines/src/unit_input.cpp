@@ -22,7 +22,7 @@ UnitInput unit_input(const FitInput& input, const KurzOptions& options, const Ru
     preparation.most_points = options.scan_points;
     result.scan = prepare_scan(input.scan, preparation, context);
     if (options.align && input.landmarks.empty() && input.handles.empty()) {
-      pose = align_rigidly(input.mesh, result.scan, pose, context);
+      pose = align_rigidly(MatchSurface(input.mesh), result.scan, pose, context);
     }
     result.points = from_template(result.unit, to_template(pose, result.scan.points));
     result.normals = normals_to_template(pose, result.scan.normals);

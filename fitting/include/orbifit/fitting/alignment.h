@@ -16,9 +16,9 @@ namespace orbifit {
 Similarity align_landmarks(const Mesh& mesh, const std::vector<Landmark>& landmarks);
 
 /// Rigid point-to-plane ICP, scan -> template, trimmed and robust, from a rough pose.
-/// \param start template -> scan; its scale is kept
+/// \param surface  the template's \param start template -> scan; its scale is kept
 /// \return the refined pose, template -> scan; `start` itself when too few points correspond
-Similarity align_rigidly(const Mesh& mesh, const PreparedScan& scan, const Similarity& start,
+Similarity align_rigidly(const MatchSurface& surface, const PreparedScan& scan, const Similarity& start,
                          const RunContext& context);
 
 struct ScaledAlignmentOptions {
@@ -28,11 +28,10 @@ struct ScaledAlignmentOptions {
 };
 
 /// Point-to-plane ICP with scale, scan -> template, robust, over some points of the scan. Costs O(P log F) an
-/// iteration. \param surface of the mesh \param points  numbers of the scan's points; the others do not take part
+/// iteration. \param surface  the template's \param points  numbers of the scan's points; the others do not take part
 /// \return the refined pose, template -> scan; the last one where no point is near
-Similarity align_with_scale(const Mesh& mesh, const MatchSurface& surface, const PreparedScan& scan,
-                            const std::vector<int>& points, const Similarity& start,
-                            const ScaledAlignmentOptions& options);
+Similarity align_with_scale(const MatchSurface& surface, const PreparedScan& scan, const std::vector<int>& points,
+                            const Similarity& start, const ScaledAlignmentOptions& options);
 
 /// A small rotation vector about `pivot` and a translation as a motion.
 Motion small_motion(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation, const Eigen::Vector3d& pivot);

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/moving_surface.h"
 
 namespace orbifit {
 
@@ -40,21 +40,17 @@ double robust_error(double distance, double scale);
 /// 1 / (1 + (distance / scale)^2)^2, by which a least-squares step lowers that error: what is far hardly counts.
 double robust_weight(double distance, double scale);
 
-/// A surface to match against. The mesh is kept by reference.
+/// A surface at rest to match against. The mesh is kept by reference.
 class MatchSurface {
  public:
   explicit MatchSurface(const Mesh& mesh) : index(mesh), mesh_(&mesh) {}
 
-  /// One whose mesh may move: after each move the index must be brought up to date by index.move().
-  static MatchSurface of_moving(const Mesh& mesh) { return {SurfaceIndex::of_moving(mesh), mesh}; }
-
+  const Mesh& mesh() const { return *mesh_; }
   Eigen::Vector3d normal(int face) const { return face_normal(*mesh_, face); }
 
   SurfaceIndex index;
 
  private:
-  MatchSurface(SurfaceIndex moving, const Mesh& mesh) : index(std::move(moving)), mesh_(&mesh) {}
-
   const Mesh* mesh_;
 };
 
@@ -64,6 +60,9 @@ class MatchSurface {
 ///   the iteration before, -1 for none: the answer does not depend on it, but comes sooner. Replaced by the places of
 ///   the faces found for the points looked at. May be null
 std::vector<Correspondence> find_correspondences(const MatchSurface& surface, const Points& scan_points,
+                                                 const Points& scan_normals, const CorrespondenceOptions& options,
+                                                 const RunContext& context, std::vector<int>* likely = nullptr);
+std::vector<Correspondence> find_correspondences(const MovingSurface& surface, const Points& scan_points,
                                                  const Points& scan_normals, const CorrespondenceOptions& options,
                                                  const RunContext& context, std::vector<int>* likely = nullptr);
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "orbifit/fitting/correspondences.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
@@ -41,5 +42,10 @@ struct Placement {
 std::vector<Placement> find_placements(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& scan,
                                        const PlacementOptions& options, const RunContext& context,
                                        const std::optional<Similarity>& given = {});
+
+/// The same for a template whose surface is at hand.
+std::vector<Placement> find_placements(const MatchSurface& surface, const SymmetryAnnotation& annotation,
+                                       const PointCloud& scan, const PlacementOptions& options,
+                                       const RunContext& context, const std::optional<Similarity>& given = {});
 
 }  // namespace orbifit

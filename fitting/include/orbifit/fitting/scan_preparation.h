@@ -25,9 +25,9 @@ struct PreparedScan {
 /// Median distance of points to their nearest other one. O(P log P). \pre two points or more
 double median_spacing(const Points& points);
 
-/// Keeps at most `most_points` (the first point of each cell of a grid whose width is searched, or random ones), with
-/// normals from the file or from a plane through the nearest points of the whole scan, turned towards the viewpoint
-/// where one is known. \throw InputError when fewer than 10 points are given
+/// Keeps at most `most_points` (the first point of each cell of a grid whose width is searched, or random ones) less
+/// the strays among them, with normals from the file or from a plane through the nearest points of the whole scan,
+/// turned towards the viewpoint where one is known. \throw InputError when fewer than 10 points are given
 PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context);
 
 }  // namespace orbifit

@@ -15,7 +15,7 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/surface_index.h"
+#include "orbifit/subspace/moving_surface.h"
 #include "orbifit/subspace/piece_moments.h"
 
 namespace orbifit {
@@ -53,6 +53,8 @@ class RegionMap {
  public:
   /// \param context hears of patterns whose instances follow no lattice and are kept as congruent copies
   RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+  RegionMap(const RegionMap&) = delete;
+  RegionMap& operator=(const RegionMap&) = delete;
 
   int count() const { return regions_; }                           ///< regions
   int places() const { return static_cast<int>(places_.size()); }  ///< regions, then pattern instances
@@ -121,7 +123,8 @@ class RegionMap {
   const std::vector<int>& meeting(int place) const { return meeting_[static_cast<std::size_t>(place)]; }
 
   /// Distance to the place's surface, at most `most` (infinity beyond). For use by several threads after prepare().
-  double distance(const Eigen::Vector3d& point, int place, double most) const;
+  /// \param likely  where the nearest face may well be, as for the point before; brought up to date. May be null
+  double distance(const Eigen::Vector3d& point, int place, double most, int* likely = nullptr) const;
 
   /// Builds the places' trees now rather than when one is first needed.
   void prepare() const;
@@ -152,7 +155,7 @@ class RegionMap {
     std::unordered_map<int, int> sets;       // carried sets known so far
   };
   const Place& at(int place) const { return places_[static_cast<std::size_t>(place)]; }
-  const SurfaceIndex& surface(int place) const;
+  const MovingSurface& surface(int place) const;
   int intern(const std::vector<int>& places) const;
   PieceMoments common_moments(int a, int b) const;
   bool around(int outer, int inner) const;  // whether outer holds all faces of inner
@@ -174,10 +177,10 @@ class RegionMap {
   mutable std::map<std::vector<int>, int> number_of_set_;
   mutable std::vector<const std::vector<int>*> sets_;
   mutable std::unordered_map<std::uint64_t, int> with_;
-  mutable std::vector<std::unique_ptr<SurfaceIndex>> surfaces_;
-  std::vector<std::vector<int>> meeting_;             // of each place, the places that share faces with it
-  std::vector<PieceMoments> moments_;                 // of the faces of each set
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the moments
+  mutable std::vector<std::unique_ptr<MovingSurface>> surfaces_;  // of mesh_
+  std::vector<std::vector<int>> meeting_;                         // of each place, the places that share faces with it
+  std::vector<PieceMoments> moments_;                             // of the faces of each set
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();              // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };
 

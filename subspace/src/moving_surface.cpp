@@ -1,0 +1,322 @@
+#include "orbifit/subspace/moving_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/model/space_order.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Four = Eigen::Array4f;
+
+// Rounding of boxes, of the query and of distances to boxes, in units of the mesh's box; several times the worst case.
+constexpr double kCullMargin = 1e-6;
+// Beyond this many boxes from the mesh single precision cannot tell its faces apart: every face is then measured.
+constexpr double kFarAway = 1e6;
+constexpr double kSliver = 1e-8;  // squared sine of a corner below which a face's plane is uncertain
+constexpr double kPlane = 1e-10;  // above it, what distances to the plane may be off by, of the box and of themselves
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+Four lanes(const std::array<float, 4>& values) {
+  return Eigen::Map<const Four>(values.data());
+}
+
+// From p to the point with these weights. Differences first: they lose nothing far from the origin.
+Vector3d offset_to(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c,
+                   const Vector3d& weights) {
+  if (weights[1] == 1) return b - p;
+  if (weights[2] == 1) return c - p;
+  return (a - p) + (weights[1] * (b - a) + weights[2] * (c - a));
+}
+
+}  // namespace
+
+struct MovingSurface::Query {
+  Vector3d point;
+  std::array<float, 3> local;  // in the boxes' frame
+  double max_distance;
+  double offset;  // from the middle of the mesh, in its boxes
+  const Vector3d* facing = nullptr;
+  double min_cosine = 0;
+  bool unsigned_normal = false;
+
+  float limit = kNothing;  // boxes farther than this, squared, hold nothing nearer, nor do planes
+  double plane_limit = std::numeric_limits<double>::infinity();
+  double squared_distance = std::numeric_limits<double>::infinity();
+  int face = -1;
+  std::size_t place = 0;
+  Vector3d barycentric;
+
+  void reach(double distance, double scale) {
+    const double to_plane = distance + kPlane * (1 + offset) / scale + kPlane * distance;
+    plane_limit = to_plane * to_plane;
+    const double local_distance = distance * scale * (1 + kCullMargin) + kCullMargin * (1 + offset);
+    limit = static_cast<float>(local_distance * local_distance * (1 + kCullMargin));
+  }
+};
+
+struct MovingSurface::Ray {
+  Vector3d origin, direction;  // unit
+  double least, most;
+  std::array<float, 3> local, inverse;
+  float margin, first;
+  bool any = false;  // whichever face is met will do
+  int face = -1;
+};
+
+MovingSurface::MovingSurface(const Mesh& mesh, const std::vector<int>& faces) : mesh_(&mesh), face_numbers_(faces) {
+  if (faces.empty()) {
+    face_numbers_.resize(static_cast<std::size_t>(mesh.faces.rows()));
+    std::iota(face_numbers_.begin(), face_numbers_.end(), 0);
+  }
+  Points middles(static_cast<Eigen::Index>(face_numbers_.size()), 3);
+  for (std::size_t place = 0; place < face_numbers_.size(); ++place) {
+    middles.row(static_cast<Eigen::Index>(place)) = (corner(place, 0) + corner(place, 1) + corner(place, 2)) / 3;
+  }
+  std::vector<int> ordered;
+  ordered.reserve(face_numbers_.size());
+  for (const int place : space_order(middles)) ordered.push_back(face_numbers_[static_cast<std::size_t>(place)]);
+  face_numbers_ = std::move(ordered);
+  std::size_t boxes = face_numbers_.size();
+  do {
+    boxes = (boxes + 3) / 4;
+    levels_.emplace_back(boxes);
+  } while (boxes > 1);
+  move(mesh, RunContext{});
+}
+
+void MovingSurface::move(const Mesh& mesh, const RunContext& context) {
+  constexpr std::size_t kLeastShare = 8000;
+  mesh_ = &mesh;
+  const double extent = diagonal(mesh.vertices);
+  centre_ = bounding_box_centre(mesh.vertices);
+  scale_ = extent > 0 && std::isfinite(extent) ? 1 / extent : 1;
+  parallel_for(
+      context, levels_.front().size(), [&](std::size_t begin, std::size_t end) { fit_faces(begin, end); }, kLeastShare);
+  for (std::size_t level = 1; level < levels_.size(); ++level) fit_nodes(level, 0, levels_[level].size());
+}
+
+void MovingSurface::fit_faces(std::size_t begin, std::size_t end) {
+  for (std::size_t g = begin; g < end; ++g) {
+    Group& group = levels_.front()[g];
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t place = 4 * g + lane;
+      Eigen::Array3f low = Eigen::Array3f::Constant(kNothing);
+      Eigen::Array3f high = -low;
+      if (place < face_numbers_.size()) {
+        const Vector3d a = corner(place, 0);
+        const Vector3d b = corner(place, 1);
+        const Vector3d c = corner(place, 2);
+        low = (scale_ * (a.cwiseMin(b).cwiseMin(c) - centre_)).cast<float>();
+        high = (scale_ * (a.cwiseMax(b).cwiseMax(c) - centre_)).cast<float>();
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        group.low[k][lane] = low[static_cast<Eigen::Index>(k)];
+        group.high[k][lane] = high[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+}
+
+void MovingSurface::fit_nodes(std::size_t level, std::size_t begin, std::size_t end) {
+  const std::vector<Group>& below = levels_[level - 1];
+  for (std::size_t g = begin; g < end; ++g) {
+    Group& group = levels_[level][g];
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t child = 4 * g + lane;
+      for (std::size_t k = 0; k < 3; ++k) {
+        group.low[k][lane] = child < below.size() ? lanes(below[child].low[k]).minCoeff() : kNothing;
+        group.high[k][lane] = child < below.size() ? lanes(below[child].high[k]).maxCoeff() : -kNothing;
+      }
+    }
+  }
+}
+
+void MovingSurface::measure(std::size_t place, Query& query) const {
+  const Vector3d a = corner(place, 0);
+  const Vector3d b = corner(place, 1);
+  const Vector3d c = corner(place, 2);
+  const int face = face_numbers_[place];
+  const Vector3d vector = (b - a).cross(c - a);
+  const double squared_length = vector.squaredNorm();
+  if (query.facing != nullptr) {
+    const double cosine = squared_length > 0 ? vector.dot(*query.facing) / std::sqrt(squared_length) : 0;
+    if (!((query.unsigned_normal ? std::abs(cosine) : cosine) >= query.min_cosine)) return;
+  }
+  // Most faces are farther than the best by their plane alone, where that is known.
+  const double height = vector.dot(query.point - a);
+  if (height * height > squared_length * query.plane_limit &&
+      squared_length > kSliver * (b - a).squaredNorm() * (c - a).squaredNorm()) {
+    return;
+  }
+  const Vector3d barycentric = nearest_on_triangle(query.point, a, b, c);
+  const double squared = offset_to(query.point, a, b, c, barycentric).squaredNorm();
+  if (!(squared <= query.squared_distance)) return;
+  // Equal distances: the lowest number, whatever the order in which the tree is walked.
+  if (squared == query.squared_distance && query.face >= 0 && face >= query.face) return;
+  const double distance = std::sqrt(squared);
+  if (distance > query.max_distance) return;
+  query.squared_distance = squared;
+  query.face = face;
+  query.place = place;
+  query.barycentric = barycentric;
+  query.reach(distance, scale_);
+}
+
+void MovingSurface::search(std::size_t level, std::size_t group, Query& query) const {
+  const Group& boxes = levels_[level][group];
+  Four squared = Four::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Four off = (lanes(boxes.low[k]) - query.local[k]).max(query.local[k] - lanes(boxes.high[k])).max(0.0F);
+    squared += off * off;
+  }
+  // The nearest first; between them the limit may fall.
+  std::array<std::pair<float, std::size_t>, 4> order;
+  std::size_t count = 0;
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const float here = squared[static_cast<Eigen::Index>(lane)];
+    if (!(here <= query.limit) || here == kNothing) continue;
+    std::size_t at = count++;
+    for (; at > 0 && order[at - 1].first > here; --at) order[at] = order[at - 1];
+    order[at] = {here, 4 * group + lane};
+  }
+  for (std::size_t i = 0; i < count && order[i].first <= query.limit; ++i) {
+    if (level == 0) {
+      measure(order[i].second, query);
+    } else {
+      search(level - 1, order[i].second, query);
+    }
+  }
+}
+
+MovingSurface::Nearest MovingSurface::answer(Query& query, int likely) const {
+  Nearest result;
+  if (face_numbers_.empty() || !(query.max_distance >= 0)) return result;
+  const Vector3d local = scale_ * (query.point - centre_);
+  query.offset = local.cwiseAbs().maxCoeff();
+  query.reach(query.max_distance, scale_);
+  if (likely >= 0 && static_cast<std::size_t>(likely) < face_numbers_.size()) {
+    measure(static_cast<std::size_t>(likely), query);
+  }
+  if (query.offset < kFarAway) {
+    for (std::size_t k = 0; k < 3; ++k) query.local[k] = static_cast<float>(local[static_cast<Eigen::Index>(k)]);
+    search(levels_.size() - 1, 0, query);
+  } else {
+    for (std::size_t place = 0; place < face_numbers_.size(); ++place) measure(place, query);
+  }
+  if (query.face < 0) return result;
+  result.distance = std::sqrt(query.squared_distance);
+  result.face = query.face;
+  result.place = static_cast<int>(query.place);
+  result.barycentric = query.barycentric;
+  result.point = query.point + offset_to(query.point, corner(query.place, 0), corner(query.place, 1),
+                                         corner(query.place, 2), query.barycentric);
+  return result;
+}
+
+MovingSurface::Nearest MovingSurface::nearest(const Vector3d& point, double max_distance, int likely) const {
+  Query query{};
+  query.point = point;
+  query.max_distance = max_distance;
+  return answer(query, likely);
+}
+
+MovingSurface::Nearest MovingSurface::nearest_facing(const Vector3d& point, const Vector3d& normal, double min_cosine,
+                                                     double max_distance, bool unsigned_normal, int likely) const {
+  Query query{};
+  query.point = point;
+  query.max_distance = max_distance;
+  query.facing = &normal;
+  query.min_cosine = min_cosine;
+  query.unsigned_normal = unsigned_normal;
+  return answer(query, likely);
+}
+
+MovingSurface::Ray MovingSurface::ray_of(const Vector3d& origin, const Vector3d& direction, double least,
+                                         double most) const {
+  constexpr double kLevel = 1e-12;  // a direction's part below this is taken for this, which no box is far enough for
+  Ray ray{};
+  ray.origin = origin;
+  ray.direction = direction.stableNormalized();
+  ray.least = least;
+  ray.most = most;
+  const Vector3d local = scale_ * (origin - centre_);
+  ray.margin = static_cast<float>(kCullMargin * (1 + local.cwiseAbs().maxCoeff()));
+  ray.first = static_cast<float>(scale_ * least * (1 - kCullMargin)) - ray.margin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double part = ray.direction[static_cast<Eigen::Index>(k)];
+    ray.local[k] = static_cast<float>(local[static_cast<Eigen::Index>(k)]);
+    ray.inverse[k] = static_cast<float>(1 / (std::abs(part) < kLevel ? std::copysign(kLevel, part) : part));
+  }
+  return ray;
+}
+
+void MovingSurface::trace(std::size_t level, std::size_t group, Ray& ray) const {
+  const Group& boxes = levels_[level][group];
+  const std::size_t count = level > 0 ? levels_[level - 1].size() : face_numbers_.size();
+  Four first = Four::Constant(ray.first);
+  Four last = Four::Constant(static_cast<float>(scale_ * ray.most * (1 + kCullMargin)) + ray.margin);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Four to_low = (lanes(boxes.low[k]) - (ray.local[k] + ray.margin)) * ray.inverse[k];
+    const Four to_high = (lanes(boxes.high[k]) - (ray.local[k] - ray.margin)) * ray.inverse[k];
+    first = first.max(to_low.min(to_high));
+    last = last.min(to_low.max(to_high));
+  }
+  for (Eigen::Index lane = 0; lane < 4; ++lane) {
+    const std::size_t child = 4 * group + static_cast<std::size_t>(lane);
+    if (child >= count || !(first[lane] <= last[lane])) continue;
+    if (level > 0) {
+      trace(level - 1, child, ray);
+    } else {
+      meet(child, ray);
+    }
+    if (ray.any && ray.face >= 0) return;
+  }
+}
+
+// Moeller and Trumbore 1997
+void MovingSurface::meet(std::size_t place, Ray& ray) const {
+  constexpr double kEdge = 1e-9;  // what passes between two faces meets one of them
+  const Vector3d a = corner(place, 0);
+  const Vector3d ab = corner(place, 1) - a;
+  const Vector3d ac = corner(place, 2) - a;
+  const Vector3d across = ray.direction.cross(ac);
+  const double determinant = ab.dot(across);
+  if (determinant == 0) return;
+  const Vector3d to_origin = ray.origin - a;
+  const double u = to_origin.dot(across) / determinant;
+  const Vector3d turned = to_origin.cross(ab);
+  const double v = ray.direction.dot(turned) / determinant;
+  const double distance = ac.dot(turned) / determinant;
+  if (!(u >= -kEdge && v >= -kEdge && u + v <= 1 + kEdge && distance >= ray.least && distance <= ray.most)) return;
+  const int face = face_numbers_[place];
+  if (ray.face >= 0 && distance == ray.most && face > ray.face) return;
+  ray.most = distance;
+  ray.face = face;
+}
+
+bool MovingSurface::occluded(const Vector3d& origin, const Vector3d& direction, double min_distance,
+                             double max_distance) const {
+  if (face_numbers_.empty()) return false;
+  Ray ray = ray_of(origin, direction, min_distance, max_distance);
+  ray.any = true;
+  trace(levels_.size() - 1, 0, ray);
+  return ray.face >= 0;
+}
+
+int MovingSurface::first_hit(const Vector3d& origin, const Vector3d& direction, double min_distance) const {
+  if (face_numbers_.empty()) return -1;
+  Ray ray = ray_of(origin, direction, min_distance, std::numeric_limits<double>::infinity());
+  trace(levels_.size() - 1, 0, ray);
+  return ray.face;
+}
+
+}  // namespace orbifit
