@@ -2,14 +2,29 @@
 
 #include <algorithm>
 #include <functional>
+#include <string>
 #include <utility>
 
+#include "orbifit/detection/own_group.h"
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/detection/verification.h"
 
 namespace orbifit {
 
 namespace {
+
+constexpr int kSamples = 1000;
+// What stages after the one that found a region do to it must not spoil it, and what lies at the tolerance's very edge
+// is no symmetry. A share less than where it was verified: there are other samples.
+constexpr double kStricter = 0.8;  // of the tolerance
+constexpr double kLeastKept = 0.9;
+
+void note_spoilt(Explanation* explanation, const FoundRegion& region, double kept) {
+  if (explanation == nullptr) return;
+  const auto percent = static_cast<int>(100 * kept);
+  explanation->notes.push_back({"regions", region.placement.group.symbol() + " on " + region.name, false,
+                                "in the end its motions together keep " + std::to_string(percent) + " %"});
+}
 
 void drop_coincidences(const PreparedMesh& prepared, double tolerance, std::vector<Region>& regions,
                        Explanation* explanation) {
@@ -38,12 +53,19 @@ std::vector<Region> annotated(const PreparedMesh& prepared, std::vector<FoundReg
   std::vector<Region> regions;
   for (const FoundRegion& each : found) {
     const GroupPlacement& placement = each.placement;
+    SurfacePatch patch = make_patch(prepared, each.faces, kSamples, tolerance, context, "residual");
+    patch.tolerance *= kStricter;
+    patch.relative_tolerance *= kStricter;
+    const double kept = verify_group(patch, placement, context).joint;
+    if (kept < kLeastKept) {
+      note_spoilt(explanation, each, kept);
+      continue;
+    }
     Region region = make_region(placement.group, prepared.input_of_normalised(placement.centre), placement.frame,
                                 each.faces, each.name);
     if (each.residual) {
       region.residual = *each.residual;
     } else {
-      const SurfacePatch patch = make_patch(prepared, each.faces, 1000, tolerance, context, "residual");
       region.residual =
           measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context);
     }

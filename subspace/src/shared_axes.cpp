@@ -217,8 +217,11 @@ SymmetryAnnotation share_axes(const Mesh& mesh, const SymmetryAnnotation& annota
   const auto reach_of = [&](const Region& region, const Placement& placement) {
     constexpr double kOfSize = 0.002;
     constexpr double kOfMisfit = 5;
+    // Regions move by twice that and their images by twice as much again: half the tolerance, or they no longer fit.
+    constexpr double kOfTolerance = 0.125;
     if (which == MayMove::all) return tolerance * size;
-    return std::min(tolerance * size, kOfSize * placement.reach + kOfMisfit * region.residual.rms * size);
+    return std::min(kOfTolerance * tolerance * size,
+                    kOfSize * placement.reach + kOfMisfit * region.residual.rms * size);
   };
   // Larger regions first: what is around a region stands before the region itself.
   std::vector<std::size_t> order(annotation.regions.size());

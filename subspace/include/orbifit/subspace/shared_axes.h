@@ -7,8 +7,10 @@ namespace orbifit {
 
 /// Which regions share_axes() may move, and how far.
 enum class MayMove {
-  inexact,  ///< none by more than a few times its residual and a little of its own size: what fits exactly stays
-  all,      ///< all by up to the tolerance, for annotations whose residuals say nothing
+  /// None by more than a few times its residual and a little of its own size, nor by a quarter of the tolerance: what
+  /// fits exactly stays, and what fits is not spoilt.
+  inexact,
+  all,  ///< all by up to the tolerance, for annotations whose residuals say nothing
 };
 
 /// Regions detected one by one share axes, planes and centres only up to the tolerance, and groups that miss each other
