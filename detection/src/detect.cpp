@@ -149,6 +149,12 @@ class Detector {
     if (prepared_.components.faces.size() < 2) return;
     const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
     for (const FoundRegion& region : parts.regions) regions_.push_back(region);
+    for (std::size_t k = 0; k < parts.own_groups.size(); ++k) {
+      if (!parts.own_groups[k]) continue;
+      for (const int part : parts.survey.classes[k].members) {
+        symmetric_area_ += parts.survey.moments[static_cast<std::size_t>(part)].area;
+      }
+    }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     add_patterns(prepared_, parts, false);
   }
@@ -231,11 +237,14 @@ class Detector {
     add_patterns(repeated, parts, true);
   }
 
-  // Whether much is one component of small triangles, of which creases tell little. Where parts are modelled as
-  // such, they and their pieces say all there is; and where triangles are large the pieces are exact.
+  // Whether nearly all is one component of small triangles, of which creases tell little; or much of it is, and the
+  // rest are scraps without symmetry, into which thin parts fall where a surface was made anew. Where parts are
+  // modelled as such, they and their pieces say all there is; and where triangles are large the pieces are exact.
   bool one_fine_surface() const {
-    constexpr double kMuch = 0.4;  // of the area
-    constexpr double kFine = 5;    // mean length of the triangles' longest edges, tolerances
+    constexpr double kNearlyAll = 0.8;  // of the area
+    constexpr double kMuch = 0.4;
+    constexpr double kAll = 0.9;  // of the area, in components with a group of their own
+    constexpr double kFine = 5;   // mean length of the triangles' longest edges, tolerances
     double lengths = 0;
     for (Eigen::Index f = 0; f < prepared_.mesh.faces.rows(); ++f) {
       double longest = 0;
@@ -246,10 +255,13 @@ class Detector {
       }
       lengths += prepared_.areas[f] * longest;
     }
-    return lengths < kFine * options_.tolerance * prepared_.area &&
-           std::ranges::any_of(prepared_.components.faces, [&](const std::vector<int>& faces) {
-             return area_of(prepared_, faces) > kMuch * prepared_.area;
-           });
+    if (lengths >= kFine * options_.tolerance * prepared_.area) return false;
+    double largest = 0;
+    for (const std::vector<int>& faces : prepared_.components.faces) {
+      largest = std::max(largest, area_of(prepared_, faces));
+    }
+    return largest > kNearlyAll * prepared_.area ||
+           (largest > kMuch * prepared_.area && symmetric_area_ < kAll * prepared_.area);
   }
 
   void add_of_pieces(std::vector<FoundRegion> found) {
@@ -343,6 +355,7 @@ class Detector {
   std::vector<FoundRegion> regions_;
   std::vector<Pattern> patterns_;
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
+  double symmetric_area_ = 0;      // of components that have a group of their own
 };
 
 void take_noise_out(PreparedMesh& prepared, double noise, Explanation* explanation, const RunContext& context) {

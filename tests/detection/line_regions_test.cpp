@@ -1,6 +1,7 @@
 // Regions found on the surface itself: rotations about given axes, mirrors, and what the grid says of a group.
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <ostream>
@@ -14,6 +15,7 @@
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/wider_subgroups.h"
 
+#include "axial_groups.h"
 #include "shapes.h"
 
 namespace orbifit {
@@ -196,6 +198,24 @@ TEST(PlaneRegions, AreFoundWithoutAnyHint) {
 
 TEST(PlaneRegions, AreNotFoundOnAnAsymmetricShape) {
   EXPECT_EQ(symbols(Screened(test::scalene()).mirrored()), std::vector<std::string>{});
+}
+
+TEST_P(PrismAbout, HasItsMirrorsWhereTheyAre) {
+  // To a fraction of what the tolerance leaves open: ends slide, and only sides tell.
+  const int n = GetParam();
+  const Screened screened(test::moved(test::subdivided(test::prism(n, 1, 0.3), 3),
+                                      {axis_rotation(Vector3d::UnitZ(), 0.0371), Vector3d::Zero()}));
+  std::vector<int> samples(screened.surface().samples.faces.size());
+  std::iota(samples.begin(), samples.end(), 0);
+  const Line axis{screened.placement("C2").centre, Vector3d::UnitZ()};
+  const std::vector<AxialGroup> groups = larger_groups(screened.surface(), axis, n, samples, 0.5);
+  ASSERT_FALSE(groups.empty());
+  EXPECT_EQ(groups.front().placement.group, (PointGroup{PointGroup::Family::Dnh, n}));
+  const Vector3d first = groups.front().placement.frame.col(0);
+  const double period = std::numbers::pi / n;
+  const double off = std::remainder(std::atan2(first.y(), first.x()) - 0.0371, period);
+  const double radius = screened.surface().prepared.mesh.vertices.leftCols(2).rowwise().norm().maxCoeff();
+  EXPECT_LT(std::abs(off) * radius, 0.25 * test::kTolerance);
 }
 
 TEST(GridRegion, TakesNoDiscOutOfAPlane) {

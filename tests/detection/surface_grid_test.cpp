@@ -80,9 +80,28 @@ TEST_P(GridOf, DoesNotHoldWhatIsFar) {
   EXPECT_GT(far, 10000);
 }
 
+TEST_P(GridOf, CoversWhatItHoldsWithSomeNormal) {
+  Random random(5, "covered");
+  const SurfaceSamples samples = sample_surface(prepared_.mesh, 500, random);
+  int only_covered = 0;
+  for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+    const Vector3d place =
+        Vector3d(samples.points.row(i)) + 3 * GetParam().reach * random.uniform() * direction(random);
+    bool held = false;
+    for (Eigen::Index f = 0; f < prepared_.normals.rows(); ++f)
+      held = held || grid_.holds(place, prepared_.normals.row(f));
+    EXPECT_EQ(grid_.covers(place), held) << place.transpose();
+    const Vector3d across = Vector3d(samples.normals.row(i)).unitOrthogonal();
+    if (grid_.covers(samples.points.row(i)) && !grid_.holds(samples.points.row(i), across)) ++only_covered;
+  }
+  EXPECT_GT(only_covered, 200);
+}
+
 TEST_P(GridOf, HoldsNothingOutsideTheBox) {
   for (const double far : {1.0, 1e3, 1e9, 1e300, -1e9}) EXPECT_FALSE(grid_.holds({far, 0, 0}, Vector3d::UnitX()));
   EXPECT_FALSE(grid_.holds({std::nan(""), 0, 0}, Vector3d::UnitX()));
+  EXPECT_FALSE(grid_.covers({std::nan(""), 0, 0}));
+  EXPECT_FALSE(grid_.covers({1e9, 0, 0}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, GridOf,

@@ -77,6 +77,25 @@ TEST(SharedAxes, LeaveAnExactRegionWhereItIs) {
   EXPECT_GT(moved(MayMove::all), 0.5 * off);
 }
 
+TEST(SharedAxes, LeaveAnInexactRegionOnItsSurface) {
+  // It may move by a few of its residuals, but not so far that its images leave the surface.
+  const GeneratedModel model = generate("table");
+  const double size = diagonal(model.mesh.vertices);
+  constexpr double kTolerance = 0.005;
+  for (const double off : {2e-4, 2e-3, 4e-3}) {
+    SymmetryAnnotation annotation = model.truth;
+    Region& inner = annotation.regions.back();
+    inner = make_region(inner.group, inner.centre + Eigen::Vector3d(off * size, 0, 0), frame_about(inner.axis),
+                        inner.faces, inner.name);
+    inner.id = model.truth.regions.back().id;
+    inner.residual = {1e-3, 2e-3};
+    const SymmetryAnnotation shared = share_axes(model.mesh, annotation, kTolerance, MayMove::inexact);
+    const double moved = (shared.regions.back().centre - inner.centre).norm();
+    EXPECT_LE(moved, 0.25 * kTolerance * size + 1e-12) << off;
+    EXPECT_GT(moved, off < 1e-3 ? 0.5 * off * size : -1.0) << off;
+  }
+}
+
 TEST(Closable, LeavesOutARegionThatClashesAndSaysSo) {
   const GeneratedModel model = generate("table");
   SymmetryAnnotation annotation = model.truth;
