@@ -237,9 +237,9 @@ class Detector {
     add_patterns(repeated, parts, true);
   }
 
-  // Whether nearly all is one component of small triangles, of which creases tell little; or much of it is, and the
-  // rest are scraps without symmetry, into which thin parts fall where a surface was made anew. Where parts are
-  // modelled as such, they and their pieces say all there is; and where triangles are large the pieces are exact.
+  // Whether nearly all is one component of small triangles, of which creases tell little; or much of it is, and others
+  // have no symmetry: thin parts fall into scraps where a surface was made anew. Where parts are modelled as such, they
+  // and their pieces say all there is; and where triangles are large the pieces are exact.
   bool one_fine_surface() const {
     constexpr double kNearlyAll = 0.8;  // of the area
     constexpr double kMuch = 0.4;

@@ -1,5 +1,8 @@
 #include "orbifit/detection/own_group.h"
 
+#include <optional>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "shapes.h"
@@ -7,10 +10,11 @@
 namespace orbifit {
 namespace {
 
-std::string symbol_of(const Mesh& mesh, double tolerance = 0.005) {
+std::string symbol_of(const Mesh& mesh, double tolerance = 0.005, std::optional<double> largest_blot = {}) {
   const PreparedMesh prepared = prepare(mesh);
   const RunContext context;
-  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 2500, tolerance, context, "test");
+  SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 2500, tolerance, context, "test");
+  if (largest_blot) patch.largest_blot = *largest_blot;
   const DirectionSet screen = hemisphere_directions(2000);
   const std::optional<OwnGroup> group = find_own_group(patch, &screen, {}, context);
   return group ? group->placement.group.symbol() : "C1";
@@ -52,6 +56,24 @@ TEST(OwnGroup, NearMissesAreTold) {
   EXPECT_EQ(symbol_of(test::box(1, 1.006, 2), 0.005), "D4h");
   EXPECT_EQ(symbol_of(test::box(1, 1, 1)), "Oh");
   EXPECT_EQ(symbol_of(test::box(1, 1.05, 1.1)), "D2h");
+}
+
+TEST(OwnGroup, AHoleCountsUnlessItIsForgiven) {
+  // A square bar with a hole of about a hundredth of its area in one end.
+  const Mesh bar = test::subdivided(test::box(1, 1, 2), 4);
+  Mesh holed = bar;
+  Eigen::Index count = 0;
+  for (Eigen::Index f = 0; f < bar.faces.rows(); ++f) {
+    Eigen::RowVector3d centroid = Eigen::RowVector3d::Zero();
+    for (const int vertex : bar.faces.row(f)) centroid += bar.vertices.row(vertex) / 3;
+    const bool hole = centroid.z() > 0.99 && centroid.head<2>().cwiseAbs().maxCoeff() < 0.16;
+    if (!hole) holed.faces.row(count++) = bar.faces.row(f);
+  }
+  ASSERT_LT(count, bar.faces.rows());
+  holed.faces.conservativeResize(count, 3);
+  EXPECT_EQ(symbol_of(bar), "D4h");
+  EXPECT_EQ(symbol_of(holed), "C4v");
+  EXPECT_EQ(symbol_of(holed, 0.005, 0.02), "D4h");
 }
 
 TEST(OwnGroup, NoneWhereThereIsNone) {
