@@ -14,9 +14,8 @@ namespace orbifit {
 namespace {
 
 constexpr int kSamples = 1000;
-// What stages after the one that found a region do to it must not spoil it, and what lies at the tolerance's very edge
-// is no symmetry. A share less than where it was verified: there are other samples.
-constexpr double kStricter = 0.8;  // of the tolerance, where noise does not use it up
+// What stages after the one that found a region do to it must not spoil it. A share less than where it was verified:
+// there are other samples.
 constexpr double kLeastKept = 0.9;
 
 void note_spoilt(Explanation* explanation, const FoundRegion& region, double kept) {
@@ -53,11 +52,7 @@ std::vector<Region> annotated(const PreparedMesh& prepared, std::vector<FoundReg
   std::vector<Region> regions;
   for (const FoundRegion& each : found) {
     const GroupPlacement& placement = each.placement;
-    SurfacePatch patch = make_patch(prepared, each.faces, kSamples, tolerance, context, "residual");
-    if (prepared.noise <= 0) {
-      patch.tolerance *= kStricter;
-      patch.relative_tolerance *= kStricter;
-    }
+    const SurfacePatch patch = make_patch(prepared, each.faces, kSamples, tolerance, context, "residual");
     const double kept = verify_group(patch, placement, context).joint;
     if (kept < kLeastKept) {
       note_spoilt(explanation, each, kept);
