@@ -151,17 +151,18 @@ class AxialSearch {
     constexpr double kNearly = 0.985;
     const std::size_t looks = std::min(samples_.size(), kFineLooks);
     std::array<int, 2 * kReach + 1> counts{};
-    for (int k = -kReach; k <= kReach; ++k) {
-      const Motion motion = motion_at(value + step * k / kFine);
+    for (std::size_t at = 0; at < counts.size(); ++at) {
+      const Motion motion = motion_at(value + step * (static_cast<double>(at) - kReach) / kFine);
       for (std::size_t i = 0; i < looks; ++i) {
-        counts[static_cast<std::size_t>(k + kReach)] += holds(samples_[i * samples_.size() / looks], motion) ? 1 : 0;
+        counts[at] += holds(samples_[i * samples_.size() / looks], motion) ? 1 : 0;
       }
     }
     const auto best = std::ranges::max_element(counts);
     const auto near = [&](int count) { return count >= kNearly * *best; };
     const auto high = std::find_if_not(best, counts.end(), near);
     const auto low = std::find_if_not(std::make_reverse_iterator(best), counts.rend(), near).base();
-    const double middle = 0.5 * static_cast<double>((low - counts.begin()) + (high - counts.begin()) - 1);
+    const double middle =
+        0.5 * (static_cast<double>(low - counts.begin()) + static_cast<double>(high - counts.begin()) - 1);
     return value + step * (middle - kReach) / kFine;
   }
 

@@ -16,6 +16,7 @@
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/point_index.h"
 
+#include "face_points.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -250,17 +251,10 @@ class Completion {
       const int face = near.index;
       if (prepared_.areas[face] <= 0) continue;
       const Vector3d normal = back.linear * prepared_.normals.row(face).transpose();
-      const Vector3d centroid = centroids_.row(face);
-      // Of four points in the face three must be on it.
-      int hits = 0;
-      int misses = 0;
-      for (int k = 3; k >= 0 && hits < 3 && misses < 2; --k) {
-        Vector3d point = centroid;
-        if (k < 3) point = 0.5 * (centroid + prepared_.mesh.vertices.row(prepared_.mesh.faces(face, k)).transpose());
-        const bool hit = surface.within_facing(back(point), normal, kFacetNormals, reach);
-        ++(hit ? hits : misses);
-      }
-      if (hits < 3) continue;
+      const bool most = most_of_face(prepared_, face, [&](const Vector3d& point) {
+        return surface.within_facing(back(point), normal, kFacetNormals, reach);
+      });
+      if (!most) continue;
       faces.push_back(face);
       area += prepared_.areas[face];
     }

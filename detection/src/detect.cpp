@@ -65,11 +65,17 @@ std::string number(double value) {
   return text.data();
 }
 
+using Clock = std::chrono::steady_clock;
+
+// Whether a share of the time that the options give has been spent.
+bool spent(const DetectOptions& options, Clock::time_point start, double share) {
+  const std::chrono::duration<double> time = Clock::now() - start;
+  return options.max_seconds > 0 && time.count() > share * options.max_seconds;
+}
+
 /// One run of the detector on a prepared mesh.
 class Detector {
  public:
-  using Clock = std::chrono::steady_clock;
-
   /// \param segments pieces of surface between creases; empty: those of the mesh
   Detector(const PreparedMesh& prepared, Components segments, const DetectOptions& options, Clock::time_point start,
            RunContext& context)
@@ -126,11 +132,7 @@ class Detector {
   }
 
   // Whether the share of the time is spent. What was found is worth more with its images: they get the last part.
-  bool late(double share = 0.8) const {
-    if (options_.max_seconds <= 0) return false;
-    const std::chrono::duration<double> spent = Clock::now() - start_;
-    return spent.count() > share * options_.max_seconds;
-  }
+  bool late(double share = 0.8) const { return spent(options_, start_, share); }
 
   void find_whole() {
     limited_.progress("whole", 0);
@@ -410,7 +412,7 @@ void DetectOptions::validate() const {
 
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
   options.validate();
-  const auto start = Detector::Clock::now();
+  const auto start = Clock::now();
   PreparedMesh prepared = prepare(mesh);
   SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
   std::optional<PreparedMesh> given;  // where there is noise: before it was taken out
@@ -438,10 +440,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   drop_cut_discs(prepared, options.tolerance, context, found.regions, options.explanation);
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
-  const auto late = [&] {
-    const std::chrono::duration<double> spent = Detector::Clock::now() - start;
-    return options.max_seconds > 0 && spent.count() > options.max_seconds;
-  };
+  const auto late = [&] { return spent(options, start, 1); };
   if (!late()) {
     const PartRegionOptions parts{options.tolerance, kLeastShare, false, options.explanation, late};
     std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),

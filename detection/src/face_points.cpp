@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thresholds.h"
+
 namespace orbifit {
 
 Eigen::Vector3d face_centroid(const PreparedMesh& prepared, int face) {
@@ -30,6 +32,14 @@ void face_points(const PreparedMesh& prepared, int face, double spacing, int mos
       if (i + j + 1 < cuts) points.emplace_back(a + ((i + 2.0 / 3) * u + (j + 2.0 / 3) * v) / cuts);
     }
   }
+}
+
+bool stays_on(const SurfacePatch& patch, const std::vector<Motion>& motions, int face) {
+  const Eigen::Vector3d centroid = face_centroid(*patch.prepared, face);
+  const Eigen::Vector3d normal = patch.prepared->normals.row(face);
+  return std::ranges::all_of(motions, [&](const Motion& motion) {
+    return patch.index->within_facing(motion(centroid), motion.linear * normal, kFacetNormals, patch.tolerance);
+  });
 }
 
 }  // namespace orbifit

@@ -186,12 +186,7 @@ std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePat
       const std::size_t piece = piece_of(patch.faces[i]);
       if (samples[piece] > 0 && kept[piece] >= kFaultless * samples[piece]) continue;
       if (i % 256 == 0) context.check();
-      const Vector3d centroid = face_centroid(prepared, patch.faces[i]);
-      const Vector3d normal = prepared.normals.row(patch.faces[i]);
-      const bool all = std::ranges::all_of(motions, [&](const Motion& motion) {
-        return patch.index->within_facing(motion(centroid), motion.linear * normal, kFacetNormals, patch.tolerance);
-      });
-      stays[i] = all ? 1 : 0;
+      stays[i] = stays_on(patch, motions, patch.faces[i]) ? 1 : 0;
     }
   });
   std::vector<int> faces;

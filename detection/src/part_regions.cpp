@@ -115,13 +115,7 @@ class PartSearch {
     const SurfacePatch patch = patch_of(found.parts, "holes");
     const std::vector<Motion> motions = judged_motions(group, found.placement.frame, found.placement.centre);
     if (passes(verify(patch, motions, patch.tolerance, 0, 0, context_))) return faces;
-    std::erase_if(faces, [&](int face) {
-      const Vector3d centroid = face_centroid(prepared_, face);
-      const Vector3d normal = prepared_.normals.row(face);
-      return !std::ranges::all_of(motions, [&](const Motion& motion) {
-        return patch.index->within_facing(motion(centroid), motion.linear * normal, kFacetNormals, patch.tolerance);
-      });
-    });
+    std::erase_if(faces, [&](int face) { return !stays_on(patch, motions, face); });
     return faces;
   }
 

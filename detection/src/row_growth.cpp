@@ -103,16 +103,9 @@ class RowSearch {
 
   bool on_surface(const Motion& motion, int face) const {
     const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
-    const Vector3d centroid = face_centroid(prepared_, face);
-    int hits = 0;
-    int misses = 0;
-    // Of four points in the face three must be on it.
-    for (int k = 3; k >= 0 && hits < 3 && misses < 2; --k) {
-      Vector3d point = centroid;
-      if (k < 3) point = 0.5 * (centroid + prepared_.mesh.vertices.row(prepared_.mesh.faces(face, k)).transpose());
-      ++(prepared_.index->within_facing(motion(point), normal, kAlikeNormals, tolerance_) ? hits : misses);
-    }
-    return hits >= 3;
+    return most_of_face(prepared_, face, [&](const Vector3d& point) {
+      return prepared_.index->within_facing(motion(point), normal, kAlikeNormals, tolerance_);
+    });
   }
 
   // Whether the face stays on the surface most of the way to the next place.
@@ -176,6 +169,7 @@ class RowSearch {
     const SurfaceIndex surface(prepared_.mesh, unit);
     const SurfaceMoments moments = surface_moments(prepared_, unit);
     std::vector<Motion> back;
+    back.reserve(static_cast<std::size_t>(places));
     for (int k = 0; k < places; ++k) back.push_back(inverse(step_.times(k)));
     std::vector<std::vector<int>> faces(back.size());
     for (int f = 0; f < static_cast<int>(lengths_.size()); ++f) {

@@ -42,6 +42,7 @@ std::vector<int> without_strays(const Points& points, const std::vector<int>& ke
                                 const PointIndex& index, const std::vector<int>& typical) {
   if (all.rows() <= kNeighbours || typical.empty()) return kept;
   std::vector<double> reaches;
+  reaches.reserve(typical.size());
   for (const int i : typical) reaches.push_back(reach_of(index, all.row(i).transpose()));
   const auto middle = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
   std::nth_element(reaches.begin(), middle, reaches.end());

@@ -245,6 +245,38 @@ TEST(Render, PointsAndSegmentsAreDrawnInTheirColours) {
   EXPECT_GT(count_pixels(image, blueish), 200);
 }
 
+TEST(Render, FewRaysSeeWhatManyDo) {
+  // Where a mesh's edges are drawn every pixel gets all its rays: behind the eye they change nothing else.
+  Scene scene;
+  scene.surfaces.push_back(coloured(sphere({0, 0, 0}, 1), kRed));
+  SurfaceLayer pane = coloured(sphere({0, 0, 0}, 1.5), kBlue);
+  pane.opacity = 0.2;
+  scene.surfaces.push_back(pane);
+  SegmentLayer lines;
+  lines.from = Points::Zero(2, 3);
+  lines.to.resize(2, 3);
+  lines.to << 0, 0, 1.8, 1.4, 0.4, 0.9;
+  scene.segments.push_back(lines);
+  ViewOptions view = small_view();
+  view.ground_shadow = false;
+  view.frame = pane.mesh.vertices;
+  const Image few = render(scene, view, RunContext{});
+  SurfaceLayer behind = coloured(sphere({200, 200, 200}, 0.01), kRed);
+  behind.edges = true;
+  scene.surfaces.push_back(behind);
+  const Image many = render(scene, view, RunContext{});
+  ASSERT_EQ(few.rgb.size(), many.rgb.size());
+  int most = 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < few.rgb.size(); ++i) {
+    const int off = std::abs(static_cast<int>(few.rgb[i]) - static_cast<int>(many.rgb[i]));
+    most = std::max(most, off);
+    sum += off;
+  }
+  EXPECT_LE(most, 39);  // glass that differs by .02 of the light, where it is darkest
+  EXPECT_LT(sum / static_cast<double>(few.rgb.size()), 0.1);
+}
+
 TEST(Render, VertexColoursAreInterpolated) {
   Scene scene;
   SurfaceLayer layer;

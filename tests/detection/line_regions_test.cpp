@@ -225,6 +225,17 @@ TEST(GridRegion, TakesNoDiscOutOfAPlane) {
   EXPECT_NEAR(box.share_of(grid_region(box.surface(), box.placement("C4v"), {})), 1, 1e-9);
 }
 
+TEST(GridRegion, TakesWhatIsKeptOfASmallPlane) {
+  // Any rotation keeps most of a small square, such as a tooth's end, wherever a host ends.
+  const Mesh host = test::subdivided(test::box(2, 2, 2), 4);
+  const Mesh block = test::moved(test::subdivided(test::box(0.36, 0.36, 0.36), 4), test::shift(0, 0, 2));
+  const Screened both(test::joined({host, block}));
+  const std::vector<int> region = grid_region(both.surface(), both.placement("C8"), {});
+  EXPECT_GT(region.size(), 500U);
+  EXPECT_LT(region.size(), 1024U);  // both ends of the block
+  for (const int face : region) EXPECT_GE(face, host.faces.rows());
+}
+
 TEST(GridRegion, LeavesOutWhatHasNoImage) {
   // A block at a distance from a plane, without its like on the other side.
   const Mesh middle = test::box(1, 1, 1);

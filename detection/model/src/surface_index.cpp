@@ -209,29 +209,23 @@ Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
 struct SurfaceIndex::Implementation {
   Device device;
   RTCScene scene = nullptr;
-  RTCGeometry geometry = nullptr;                    // kept for what moves
-  float* positions = nullptr;                        // Embree's, three corners of each face
   double scale = 1;                                  // a power of two; lengths below are in scaled units
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
   std::vector<Corners> corners;                      // scaled units
-  double slack = 0;                                  // how far a corner may be from where Embree has it, scaled units
-  std::vector<Facet> facets;      // empty for what moves: most faces are never asked about before they move on
-  FaceCells cells;                // likewise
+  std::vector<Facet> facets;
+  FaceCells cells;
   std::vector<int> face_numbers;  // in the mesh
-  std::vector<int> places;        // by face of the mesh, -1 for those that are not in; empty for what moves
+  std::vector<int> places;        // by face of the mesh, -1 for those that are not in
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
   ~Implementation() {
-    if (geometry != nullptr) rtcReleaseGeometry(geometry);
     if (scene != nullptr) rtcReleaseScene(scene);
   }
 
   void take(const Mesh& mesh);  // the corners of the faces numbered; those near one another come to lie near in memory
-  void choose_frame(const Eigen::Vector3d& least, const Eigen::Vector3d& most);  // of a box, not scaled
-  void build(bool moving);
-  void place(std::size_t begin, std::size_t end);  // Embree's positions from the corners
+  void build();
   Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
                   bool unsigned_normal, const std::vector<bool>* only, bool any = false, int likely = -1) const;
 
@@ -311,18 +305,15 @@ Look look_at_place(const Search& search, const Facet& facet) {
 bool is_nearest(Search& search, unsigned triangle) {
   if (search.any && search.face >= 0) return false;
   if (search.only != nullptr && !(*search.only)[triangle]) return false;
-  Look way = Look::kUnsure;
-  if (search.facets != nullptr) {
-    const Facet& facet = search.facets[triangle];
-    way = look_at_way(search, facet);
-    if (way == Look::kNo) return false;
-    const Look place = look_at_place(search, facet);
-    if (place == Look::kNo) return false;
-    if (search.any && place == Look::kYes && way == Look::kYes) {
-      search.face = search.face_numbers[triangle];
-      search.position = triangle;
-      return true;
-    }
+  const Facet& facet = search.facets[triangle];
+  const Look way = look_at_way(search, facet);
+  if (way == Look::kNo) return false;
+  const Look place = look_at_place(search, facet);
+  if (place == Look::kNo) return false;
+  if (search.any && place == Look::kYes && way == Look::kYes) {
+    search.face = search.face_numbers[triangle];
+    search.position = triangle;
+    return true;
   }
   if (way == Look::kUnsure && !search.faces_the_right_way(triangle)) return false;
   const Corners& corners = search.corners[triangle];
@@ -350,8 +341,8 @@ bool measure(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
-// Finds the nearest through the tree, which has the faces about `centre` and up to `slack` elsewhere.
-void walk(RTCScene scene, const Eigen::Vector3d& centre, double slack, Search& search) {
+// Finds the nearest through the tree, which has the faces about `centre`.
+void walk(RTCScene scene, const Eigen::Vector3d& centre, Search& search) {
   const Eigen::Vector3d local = search.point - centre;
   const double offset = local.cwiseAbs().maxCoeff();
   RTCPointQuery query{};
@@ -359,7 +350,7 @@ void walk(RTCScene scene, const Eigen::Vector3d& centre, double slack, Search& s
     query.x = static_cast<float>(local.x());
     query.y = static_cast<float>(local.y());
     query.z = static_cast<float>(local.z());
-    search.margin = kCullMargin * (1 + offset) + slack;
+    search.margin = kCullMargin * (1 + offset);
   } else {
     search.margin = std::numeric_limits<double>::infinity();
   }
@@ -372,53 +363,43 @@ void walk(RTCScene scene, const Eigen::Vector3d& centre, double slack, Search& s
 
 }  // namespace
 
-void SurfaceIndex::Implementation::choose_frame(const Eigen::Vector3d& least, const Eigen::Vector3d& most) {
-  scale = unit_scale((most - least).maxCoeff());
-  centre = scale * (0.5 * least + 0.5 * most);
-}
-
-void SurfaceIndex::Implementation::place(std::size_t begin, std::size_t end) {
-  float* to = positions + 9 * begin;
-  for (std::size_t i = begin; i < end; ++i) {
-    for (const Eigen::Vector3d* corner : {&corners[i].a, &corners[i].b, &corners[i].c}) {
-      const Eigen::Vector3f position = (*corner - centre).cast<float>();
-      to = std::copy_n(position.data(), 3, to);
-    }
-  }
-}
-
-void SurfaceIndex::Implementation::build(bool moving) {
+void SurfaceIndex::Implementation::build() {
   Eigen::AlignedBox3d box;
   for (const Corners& face : corners) box.extend(face.a).extend(face.b).extend(face.c);
   // Unscaled so far: choose the scale, then apply it.
-  choose_frame(box.min(), box.max());
-  if (!moving) facets.reserve(corners.size());
+  scale = unit_scale((box.max() - box.min()).maxCoeff());
+  centre = scale * (0.5 * box.min() + 0.5 * box.max());
+  facets.reserve(corners.size());
   for (Corners& face : corners) {
     face = {scale * face.a, scale * face.b, scale * face.c};
-    if (moving) continue;
     facets.push_back(facet_of({face.a - centre, face.b - centre, face.c - centre}));
   }
-  if (!moving) {
-    cells = FaceCells(corners.size(), [&](std::size_t i) {
-      return std::array{corners[i].a, corners[i].b, corners[i].c};
-    });
-  }
+  cells = FaceCells(corners.size(), [&](std::size_t i) {
+    return std::array{corners[i].a, corners[i].b, corners[i].c};
+  });
 
   device = shared_device();
   scene = rtcNewScene(device.get());
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                          3 * sizeof(float), 3 * corners.size()));
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                3 * sizeof(float), 3 * corners.size()));
   auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), corners.size()));
   if (positions == nullptr || indices == nullptr) {
+    rtcReleaseGeometry(geometry);
     throw Error("Embree cannot hold " + std::to_string(corners.size()) + " faces");
   }
-  place(0, corners.size());
+  for (const Corners& face : corners) {
+    for (const Eigen::Vector3d* corner : {&face.a, &face.b, &face.c}) {
+      const Eigen::Vector3f position = (*corner - centre).cast<float>();
+      positions = std::copy_n(position.data(), 3, positions);
+    }
+  }
   std::iota(indices, indices + 3 * corners.size(), 0U);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);  // the scene keeps it
   rtcCommitScene(scene);
 }
 
@@ -430,7 +411,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   if (corners.empty() || !(max_distance >= 0)) return result;
   Search search;
   search.corners = corners.data();
-  search.facets = facets.empty() ? nullptr : facets.data();
+  search.facets = facets.data();
   search.face_numbers = face_numbers.data();
   search.point = scale * point;
   search.max_distance = scale * max_distance;
@@ -455,7 +436,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
       }
     }
   }
-  if (!any || search.face < 0) walk(scene, centre, slack, search);
+  if (!any || search.face < 0) walk(scene, centre, search);
   if (search.face < 0) return result;
   result.face = search.face;
   if (any) return result;
@@ -534,7 +515,7 @@ SurfaceIndex::SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces)
   for (std::size_t i = 0; i < data.face_numbers.size(); ++i) {
     data.places[static_cast<std::size_t>(data.face_numbers[i])] = static_cast<int>(i);
   }
-  if (!data.corners.empty()) data.build(false);
+  if (!data.corners.empty()) data.build();
 }
 
 SurfaceIndex::SurfaceIndex(std::shared_ptr<Implementation> implementation,
@@ -554,55 +535,6 @@ SurfaceIndex SurfaceIndex::part(const std::vector<int>& faces) const {
   }
   if (count == data.face_numbers.size()) only.reset();
   return {implementation_, std::move(only)};
-}
-
-SurfaceIndex SurfaceIndex::of_moving(const Mesh& mesh) {
-  Mesh none;
-  none.vertices.resize(0, 3);
-  none.faces.resize(0, 3);
-  SurfaceIndex result(none);
-  Implementation& data = *result.implementation_;
-  data.face_numbers.resize(static_cast<std::size_t>(mesh.faces.rows()));
-  std::iota(data.face_numbers.begin(), data.face_numbers.end(), 0);
-  data.take(mesh);
-  if (!data.corners.empty()) data.build(true);
-  return result;
-}
-
-// Embree's tree takes a third of a microsecond a face: it is left as it is while the corners stay near where it has
-// them, and made to cull by so much less.
-void SurfaceIndex::move(const Mesh& mesh, double slack, const RunContext& context) {
-  constexpr std::size_t kLeastShare = 4000;
-  Implementation& data = *implementation_;
-  if (data.corners.empty()) return;
-  const std::size_t count = data.corners.size();
-  std::vector<float> off(1 + count / kLeastShare, 0);
-  parallel_for(context, off.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      for (std::size_t i = block * kLeastShare; i < std::min(count, (block + 1) * kLeastShare); ++i) {
-        const Corners now = corners_of(mesh, data.face_numbers[i]);
-        data.corners[i] = {data.scale * now.a, data.scale * now.b, data.scale * now.c};
-        const float* had = data.positions + 9 * i;
-        for (const Eigen::Vector3d* corner : {&data.corners[i].a, &data.corners[i].b, &data.corners[i].c}) {
-          const Eigen::Vector3f moved = (*corner - data.centre).cast<float>() - Eigen::Map<const Eigen::Vector3f>(had);
-          off[block] = std::max(off[block], moved.squaredNorm());
-          had += 3;
-        }
-      }
-    }
-  });
-  data.slack = std::sqrt(static_cast<double>(*std::ranges::max_element(off)));
-  if (data.slack <= data.scale * slack) return;
-  const double scale = data.scale;
-  data.choose_frame(mesh.vertices.colwise().minCoeff(), mesh.vertices.colwise().maxCoeff());
-  for (Corners& face : data.corners) {  // by a power of two
-    face = {data.scale / scale * face.a, data.scale / scale * face.b, data.scale / scale * face.c};
-  }
-  data.slack = 0;
-  data.place(0, count);
-  rtcUpdateGeometryBuffer(data.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
-  rtcCommitGeometry(data.geometry);
-  rtcCommitScene(data.scene);
 }
 
 SurfaceIndex::~SurfaceIndex() = default;

@@ -427,27 +427,6 @@ TEST(SpaceOrder, IsAPermutationThatKeepsNeighboursTogether) {
   EXPECT_EQ(space_order(Points::Zero(3, 3)), (std::vector{0, 1, 2}));
 }
 
-TEST(MovingSurface, AnswersAsANewIndexDoes) {
-  Random random(21);
-  Mesh mesh = random_soup(random, 400);
-  SurfaceIndex moving = SurfaceIndex::of_moving(mesh);
-  for (const double step : {0.0, 1e-3, 1e-2, 1e-3, 3.0, 1e-4}) {
-    for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices.row(v) += step * random.direction();
-    moving.move(mesh, 0.02, RunContext{});
-    const SurfaceIndex fresh(mesh);
-    for (int k = 0; k < 300; ++k) {
-      const Eigen::Vector3d point = 3 * random.direction() * random.uniform();
-      const Eigen::Vector3d normal = random.direction();
-      const SurfaceIndex::Nearest expected = fresh.nearest(point);
-      EXPECT_EQ(moving.nearest(point).face, expected.face);
-      EXPECT_NEAR(moving.nearest(point).distance, expected.distance, 1e-14);
-      const int likely = static_cast<int>(random.below(400));
-      EXPECT_EQ(moving.nearest_facing(point, normal, 0.5, 1, false, likely).face,
-                fresh.nearest_facing(point, normal, 0.5, 1).face);
-    }
-  }
-}
-
 TEST(NearestOnTriangle, IsNoFurtherThanAnyOtherPoint) {
   Random random(11);
   for (int i = 0; i < 2000; ++i) {

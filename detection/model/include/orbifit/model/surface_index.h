@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/model/run_context.h"
 
 namespace orbifit {
 
@@ -17,20 +16,10 @@ class SurfaceIndex {
   /// \param faces the faces to index; empty means all. The mesh is copied as far as needed.
   explicit SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces = {});
 
-  /// An index of all faces that move() can bring up to date.
-  static SurfaceIndex of_moving(const Mesh& mesh);
-
   /// Of some of the faces: all that this index holds is shared, so that it costs next to nothing, O(#faces + F / 64).
   /// Where many others lie nearer than they, queries take longer. Rays still meet all faces.
   /// \param faces  numbers in the mesh; those that this index does not find are left out
-  /// \pre not made by of_moving()
   SurfaceIndex part(const std::vector<int>& faces) const;
-
-  /// The same faces with their vertices elsewhere, O(F): a tenth of a new index while no vertex is farther than `slack`
-  /// from where it was when the tree was made. Distances stay exact; rays may meet a face that much away.
-  /// \param slack  mesh units, >= 0: less than the distances asked for, so that they cost little more
-  /// \pre made by of_moving() of a mesh with the same faces
-  void move(const Mesh& mesh, double slack, const RunContext& context);
 
   ~SurfaceIndex();
   SurfaceIndex(SurfaceIndex&&) noexcept;
