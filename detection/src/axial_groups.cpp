@@ -25,14 +25,15 @@ constexpr std::size_t kHeights = 2;
 class AxialSearch {
  public:
   AxialSearch(const ScreenedSurface& surface, const Line& axis, int n, const std::vector<int>& samples,
-              double least_share)
+              const std::vector<int>& kept, double least_share)
       : surface_(surface),
         n_(n),
         samples_(samples),
+        kept_(kept),
         least_(least_share * static_cast<double>(surface.samples.faces.size())),
         frame_(frame_about(axis.direction)),
         foot_(axis.point) {
-    for (const int i : samples) {
+    for (const int i : kept) {
       const Vector3d from = surface.samples.points.row(i).transpose() - foot_;
       const double height = from.dot(frame_.col(2));
       low_ = std::min(low_, height);
@@ -46,7 +47,7 @@ class AxialSearch {
     // Mirrors whose planes hold the axis: their angles repeat after half of 1/n of a turn.
     const double period = std::numbers::pi / n_;
     const std::vector<double> angles =
-        best(0, period, true, surface_.tolerance / std::max(reach_, 1e-9), kMostAngles, kAngles,
+        best(samples_, 0, period, true, surface_.tolerance / std::max(reach_, 1e-9), kMostAngles, kAngles,
              [&](double angle) { return Motion::about(mirror(across(angle)), foot_); });
     std::vector<GroupPlacement> placements;
     placements.reserve(angles.size());
@@ -93,13 +94,39 @@ class AxialSearch {
   GroupFrame frame(const Vector3d& first) const { return frame_about(frame_.col(2), first); }
 
   std::vector<double> heights(const Matrix3d& linear) const {
-    return best(low_, high_, false, surface_.tolerance, kMostHeights, kHeights,
-                [&](double height) { return Motion::about(linear, foot_ + height * frame_.col(2)); });
+    constexpr double kSame = 2;  // tolerances
+    const auto motion_at = [&](double height) { return Motion::about(linear, foot_ + height * frame_.col(2)); };
+    std::vector<double> result;
+    const auto add = [&](const std::vector<int>& samples) {
+      for (const double height :
+           best(samples, low_, high_, false, surface_.tolerance, kMostHeights, kHeights, motion_at)) {
+        const bool known = std::ranges::any_of(
+            result, [&](double other) { return std::abs(height - other) < kSame * surface_.tolerance; });
+        if (!known && !mere_plate(height, motion_at(height))) result.push_back(height);
+      }
+    };
+    add(samples_);
+    if (kept_.size() > samples_.size()) add(kept_);
+    return result;
   }
 
   bool holds(int i, const Motion& motion) const {
     const Vector3d normal = surface_.samples.normals.row(i);
     return surface_.grid.holds(motion(Vector3d(surface_.samples.points.row(i))), motion.linear * normal);
+  }
+
+  // Whether most of what the motion keeps lies at that height: any plate is its own mirror image.
+  bool mere_plate(double height, const Motion& motion) const {
+    constexpr double kThin = 1;  // tolerances
+    int kept = 0;
+    int thin = 0;
+    for (const int i : kept_) {
+      if (!holds(i, motion)) continue;
+      ++kept;
+      const Vector3d from = surface_.samples.points.row(i).transpose() - foot_;
+      if (std::abs(from.dot(frame_.col(2)) - height) < kThin * surface_.tolerance) ++thin;
+    }
+    return 2 * thin > kept;
   }
 
   int kept_by(const std::vector<Motion>& motions) const {
@@ -110,22 +137,22 @@ class AxialSearch {
 
   // Parameters at which most samples are kept, the best first, none next to a better one.
   template <typename MotionAt>
-  std::vector<double> best(double from, double to, bool periodic, double step, int most_steps, std::size_t most,
-                           const MotionAt& motion_at) const {
+  std::vector<double> best(const std::vector<int>& samples, double from, double to, bool periodic, double step,
+                           int most_steps, std::size_t most, const MotionAt& motion_at) const {
     const int steps = std::clamp(static_cast<int>(std::ceil((to - from) / step)), 4, most_steps);
-    const std::size_t looks = std::min(samples_.size(), kLooks);
+    const std::size_t looks = std::min(samples.size(), kLooks);
     std::vector<int> counts;
     for (int k = 0; k < steps; ++k) {
       const Motion motion = motion_at(from + (to - from) * k / steps);
       int count = 0;
-      for (std::size_t i = 0; i < looks; ++i) count += holds(samples_[i * samples_.size() / looks], motion) ? 1 : 0;
+      for (std::size_t i = 0; i < looks; ++i) count += holds(samples[i * samples.size() / looks], motion) ? 1 : 0;
       counts.push_back(count);
     }
     const auto at = [&](int k) {
       if (periodic) return counts[static_cast<std::size_t>((k + steps) % steps)];
       return k < 0 || k >= steps ? 0 : counts[static_cast<std::size_t>(k)];
     };
-    const double least = 0.7 * least_ * static_cast<double>(looks) / static_cast<double>(samples_.size());
+    const double least = 0.7 * least_ * static_cast<double>(looks) / static_cast<double>(samples.size());
     std::vector<std::pair<int, double>> peaks;
     for (int k = 0; k < steps; ++k) {
       if (at(k) < least || at(k) < at(k - 1) || at(k) <= at(k + 1)) continue;
@@ -136,7 +163,7 @@ class AxialSearch {
     std::ranges::stable_sort(peaks, std::greater<>(), &std::pair<int, double>::first);
     std::vector<double> result;
     for (const auto& [count, value] : peaks) {
-      if (result.size() < most) result.push_back(centred(value, (to - from) / steps, motion_at));
+      if (result.size() < most) result.push_back(centred(samples, value, (to - from) / steps, motion_at));
     }
     return result;
   }
@@ -144,17 +171,17 @@ class AxialSearch {
   // The middle of where nearly as many samples are kept as at best, near a parameter: what lies across the motion is
   // lost on either side alike. Planes along it, which say nothing of where it is, must not decide alone.
   template <typename MotionAt>
-  double centred(double value, double step, const MotionAt& motion_at) const {
+  double centred(const std::vector<int>& samples, double value, double step, const MotionAt& motion_at) const {
     constexpr int kFine = 4;  // steps in one
     constexpr int kReach = 2 * kFine;
     constexpr std::size_t kFineLooks = 400;
     constexpr double kNearly = 0.985;
-    const std::size_t looks = std::min(samples_.size(), kFineLooks);
+    const std::size_t looks = std::min(samples.size(), kFineLooks);
     std::array<int, 2 * kReach + 1> counts{};
     for (std::size_t at = 0; at < counts.size(); ++at) {
       const Motion motion = motion_at(value + step * (static_cast<double>(at) - kReach) / kFine);
       for (std::size_t i = 0; i < looks; ++i) {
-        counts[at] += holds(samples_[i * samples_.size() / looks], motion) ? 1 : 0;
+        counts[at] += holds(samples[i * samples.size() / looks], motion) ? 1 : 0;
       }
     }
     const auto best = std::ranges::max_element(counts);
@@ -169,6 +196,7 @@ class AxialSearch {
   const ScreenedSurface& surface_;
   int n_;
   const std::vector<int>& samples_;
+  const std::vector<int>& kept_;
   double least_;
   GroupFrame frame_;
   Vector3d foot_;
@@ -178,14 +206,15 @@ class AxialSearch {
 }  // namespace
 
 std::vector<AxialGroup> larger_groups(const ScreenedSurface& surface, const Line& axis, int n,
-                                      const std::vector<int>& samples, double least_share) {
-  return AxialSearch(surface, axis, n, samples, least_share).run();
+                                      const std::vector<int>& samples, const std::vector<int>& kept,
+                                      double least_share) {
+  return AxialSearch(surface, axis, n, samples, kept, least_share).run();
 }
 
 std::vector<GroupPlacement> groups_with_middle(const ScreenedSurface& surface, const Line& axis,
                                                const std::vector<int>& samples, double least_share) {
   std::vector<GroupPlacement> result;
-  for (const Vector3d& middle : AxialSearch(surface, axis, 1, samples, least_share).middles()) {
+  for (const Vector3d& middle : AxialSearch(surface, axis, 1, samples, samples, least_share).middles()) {
     result.push_back({{Family::Dinfh, 1}, frame_about(axis.direction), middle});
   }
   return result;

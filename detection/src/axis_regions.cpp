@@ -49,7 +49,7 @@ class Turns {
       const bool slides = meets(axis, point, surface.samples.normals.row(i));
       if (slides && holds(i, all)) {
         ++turned_of_piece_[piece];
-        if (surface.piece_flat[piece] == 0) turned_.push_back(static_cast<int>(i));
+        (surface.piece_flat[piece] == 0 ? turned_ : discs_).push_back(static_cast<int>(i));
         continue;
       }
       open_.push_back({static_cast<int>(i), radius, slides});
@@ -75,6 +75,14 @@ class Turns {
 
   // Samples that all rotations keep, without those of planes: a disc of a plane is no part of anything.
   const std::vector<int>& turned() const { return turned_; }
+
+  // Some samples with all that any rotation keeps.
+  std::vector<int> with_turned(std::vector<int> samples) const {
+    samples.insert(samples.end(), turned_.begin(), turned_.end());
+    samples.insert(samples.end(), discs_.begin(), discs_.end());
+    std::ranges::sort(samples);  // a few then stand for all
+    return samples;
+  }
 
   std::vector<std::size_t> all() const {
     std::vector<std::size_t> result(open_.size());
@@ -157,6 +165,7 @@ class Turns {
   Line axis_;
   std::vector<Open> open_;  // samples off the axis that some rotation may not keep
   std::vector<int> turned_;
+  std::vector<int> discs_;  // likewise, of planes
   std::vector<int> turned_of_piece_, samples_of_piece_;
 };
 
@@ -283,7 +292,8 @@ class AxisSearch {
         context_.progress("axes", 0.5 + 0.5 * static_cast<double>(place.order) / static_cast<double>(orders_.size()));
         tried_.resize(place.order);
         tried_.emplace_back();
-        if (order.evidence < least(order) || !fresh(place.order, turn, order.kept)) continue;
+        if (order.evidence < least(order)) continue;
+        // What is known to turn may have parts with more mirrors.
         place.larger = larger(order);
       }
       while (place.group < place.larger.size()) {
@@ -308,7 +318,8 @@ class AxisSearch {
     if (order.n <= 2) return result;
     const Turns& turns = *turns_[order.axis];
     const std::vector<int> spoken = turns.samples(turns.speaking(order.kept));
-    for (const AxialGroup& group : larger_groups(surface_, axes_[order.axis], order.n, spoken, least(order))) {
+    for (const AxialGroup& group : larger_groups(surface_, axes_[order.axis], order.n, spoken,
+                                                 turns.with_turned(turns.samples(order.kept)), least(order))) {
       result.push_back(group.placement);
     }
     return result;

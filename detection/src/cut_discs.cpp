@@ -68,6 +68,11 @@ std::vector<int> CutDiscs::without(const FoundRegion& region) {
   return rest == region.faces ? rest : without_specks(prepared_, sides_, rest);
 }
 
+bool CutDiscs::little_else(const FoundRegion& region, const std::vector<int>& rest) const {
+  constexpr double kLeast = 0.3;
+  return region.placement.group.continuous() && area_of(prepared_, rest) < kLeast * region.area;
+}
+
 // Whether the edge lies along a circle about the axis, as facets do.
 bool CutDiscs::round(const FaceSide& side, const GroupPlacement& placement) const {
   constexpr double kOff = 0.1;  // of the edge's length: a chord of at most an eighth of a turn
@@ -86,7 +91,6 @@ bool CutDiscs::round(const FaceSide& side, const GroupPlacement& placement) cons
 
 void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunContext& context,
                     std::vector<FoundRegion>& regions, Explanation* explanation) {
-  constexpr double kLeast = 0.3;      // of a turned region
   constexpr double kLeastKept = 0.8;  // of its samples: it was verified with the discs, and is not to fail for borders
   constexpr double kMostOfFinite = 0.5;  // with less beside the discs, a region of a finite group is about the rest
   constexpr double kLeastShare = 0.002;  // of the mesh's area: a smaller rest says little
@@ -99,7 +103,7 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
     const bool turned = region.placement.group.continuous();
     const double area = area_of(prepared, faces);
     const double share = area / region.area;
-    bool drop = turned && share < kLeast;
+    bool drop = discs.little_else(region, faces);
     if (!drop) {
       if (!turned && (share > kMostOfFinite || area < kLeastShare * prepared.area)) return false;
       const SurfacePatch patch = make_patch(prepared, faces, kDiscSamples, tolerance, context, "discs");

@@ -24,6 +24,14 @@ class CutDiscs {
   /// axis. O(#faces of the region and of those planes)
   std::vector<int> without(const FoundRegion& region);
 
+  /// Whether a turned region is little else than such discs.
+  bool little_else(const FoundRegion& region) { return little_else(region, without(region)); }
+  /// \param rest what without() gives
+  bool little_else(const FoundRegion& region, const std::vector<int>& rest) const;
+
+  /// Of all faces.
+  const std::vector<std::array<FaceSide, 3>>& sides() const { return sides_; }
+
  private:
   bool round(const FaceSide& side, const GroupPlacement& placement) const;
 

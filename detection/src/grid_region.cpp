@@ -132,7 +132,10 @@ std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int
 
 ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_tolerance, int sample_count,
                                  const RunContext& context)
-    : prepared(mesh), tolerance(detector_tolerance), grid(mesh, with_area(mesh), detector_tolerance) {
+    : prepared(mesh),
+      tolerance(detector_tolerance),
+      grid(mesh, with_area(mesh), detector_tolerance),
+      balls(find_balls(mesh, detector_tolerance)) {
   faces = with_area(mesh);
   Random random(context.seed, "screen");
   samples = sample_surface(mesh.mesh, sample_count, random, faces);

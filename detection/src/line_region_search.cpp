@@ -55,6 +55,14 @@ std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) c
     if (!contains_group(region.placement, placement, moments.centroid, moments.radius, near)) continue;
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] != 0 || said_[r].holds[i] != 0 ? 1 : 0;
   }
+  const Balls& balls = surface_.balls;
+  for (std::size_t b = 0; b < balls.all.size(); ++b) {
+    if (!fixes(placement, balls.all[b], surface_.tolerance)) continue;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const int ball = balls.ball_of_piece[static_cast<std::size_t>(surface_.piece_of_sample[i])];
+      if (ball == static_cast<int>(b)) result[i] = 1;
+    }
+  }
   for (const TurningAxis& axis : turning_) {
     if (!leaves(placement, axis.line)) continue;
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] != 0 || axis.slides[i] != 0 ? 1 : 0;
@@ -106,6 +114,7 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   };
   if (!measure()) return judged(false, "too small");
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
+  if (mere_balls(region)) return judged(false, "little but balls that it fixes");
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
   if (hopeless(patch, start, context)) return judged(false, "not verified: a first look keeps too little");
   region.placement = refine(patch, start, context);
@@ -169,6 +178,17 @@ bool LineRegionSearch::accept(Judgement judgement) {
     std::ranges::move(judgement.notes, std::back_inserter(options_.explanation->notes));
   }
   if (!judgement.region) return false;
+  if (judgement.region->placement.group.continuous()) {
+    if (!discs_) discs_.emplace(surface_.prepared);
+    if (discs_->little_else(*judgement.region)) {
+      if (options_.explanation != nullptr) {
+        Explanation::Note& note = options_.explanation->notes.back();
+        note.kept = false;
+        note.reason = "little but discs that end within planes";
+      }
+      return false;
+    }
+  }
   said_.push_back(said_of(*judgement.region));
   found_.push_back(std::move(*judgement.region));
   return true;
@@ -200,6 +220,10 @@ bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
     if (pieces.size() >= kMany) return false;
   }
   return true;
+}
+
+bool LineRegionSearch::mere_balls(const FoundRegion& region) const {
+  return little_but_cut_balls(surface_.prepared, surface_.balls, region.faces, region.placement, surface_.tolerance);
 }
 
 bool LineRegionSearch::says_nothing_new(const FoundRegion& region) const {

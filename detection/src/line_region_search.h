@@ -10,6 +10,8 @@
 #include "orbifit/detection/axis_regions.h"
 #include "orbifit/detection/explanation.h"
 
+#include "cut_discs.h"
+
 namespace orbifit {
 
 /// Makes verified regions of groups about lines and planes that the screen suggests, each but once.
@@ -82,6 +84,7 @@ class LineRegionSearch {
   bool leaves(const GroupPlacement& placement, const Line& axis) const;
   bool hopeless(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context) const;
   bool mere_plates(const std::vector<int>& faces) const;
+  bool mere_balls(const FoundRegion& region) const;
   bool says_nothing_new(const FoundRegion& region) const;
 
   const ScreenedSurface& surface_;
@@ -90,6 +93,7 @@ class LineRegionSearch {
   const LineRegionOptions& options_;
   const RunContext& context_;
   std::vector<FoundRegion> found_;
+  std::optional<CutDiscs> discs_;  // made once there is a turned region
   struct TurningAxis {
     Line line;
     std::vector<char> slides;  // by sample: the normal meets the axis

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/region_growth.h"
 
 namespace orbifit {
 
@@ -22,6 +23,7 @@ constexpr double kScreenShare = 0.80;  // of the samples, likewise
 constexpr int kGroupSamples = 96;
 constexpr double kSameDirection = 0.03;     // radians
 constexpr std::size_t kMostRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
+constexpr int kMostFailures = 40;           // to fit a rotation: so many look right on nearly a ball only
 constexpr double kClassifyTolerance = 0.02;
 constexpr double kNothing = 0.02;  // tolerances: misfits below are none
 
@@ -91,7 +93,8 @@ class GroupSearch {
     if (!try_sphere(candidates)) {
       collect(candidates, hints);
       for (const Vector3d& axis : axes_) {
-        if (!continuous() && rotations_.size() < kMostRotations) find_rotations(axis);
+        if (continuous() || rotations_.size() >= kMostRotations || failures_ >= kMostFailures) break;
+        find_rotations(axis);
       }
       if (!continuous()) {
         try_polyhedral();
@@ -212,7 +215,10 @@ class GroupSearch {
     context_.check();
     if (best_ && size_of(best_->placement.group) >= size_of(group)) return false;
     const GroupPlacement placement = fitted(group, frame);
-    if (!check(placement)) return false;
+    if (!check(placement)) {
+      ++failures_;
+      return false;
+    }
     best_ = OwnGroup{placement, {}};
     return true;
   }
@@ -291,7 +297,10 @@ class GroupSearch {
     const bool known =
         std::ranges::any_of(rotations_, [&](const Rotation& r) { return r.order >= n && same_line(r.axis, better); });
     if (known) return true;
-    if (!check(placement)) return false;
+    if (!check(placement)) {
+      ++failures_;
+      return false;
+    }
     rotations_.push_back({better, n});
     if (!best_ || size_of(best_->placement.group) < n) best_ = OwnGroup{placement, {}};
     return true;
@@ -331,6 +340,16 @@ class GroupSearch {
 
   // Two rotation axes that are neither parallel nor perpendicular generate T, O or I, or nothing finite.
   void try_polyhedral() {
+    std::vector<GroupPlacement> failed;  // many pairs say the same
+    const auto attempt_once = [&](Family family, const GroupFrame& frame) {
+      constexpr int kTries = 3;  // from other pairs the fit begins elsewhere
+      const GroupPlacement placement{{family, 1}, frame, Vector3d::Zero()};
+      const auto same = [&](const GroupPlacement& other) {
+        return other.group.family == family && contains_group(other, placement, Vector3d::Zero(), 1, kSameDirection);
+      };
+      if (std::ranges::count_if(failed, same) >= kTries) return;
+      if (!attempt(placement.group, frame)) failed.push_back(placement);
+    };
     for (std::size_t i = 0; i < rotations_.size(); ++i) {
       for (std::size_t j = i + 1; j < rotations_.size(); ++j) {
         const Rotation& a = rotations_[i];
@@ -341,27 +360,24 @@ class GroupSearch {
         if (!known) continue;
         const Family family = known->group.family;
         if (family == Family::I) {
-          attempt({Family::Ih, 1}, known->frame);
-          attempt({Family::I, 1}, known->frame);
+          attempt_once(Family::Ih, known->frame);
+          attempt_once(Family::I, known->frame);
         }
         if (family != Family::T && family != Family::O) continue;
         for (const Family larger : {Family::Oh, Family::O, Family::Td, Family::Th, Family::T}) {
-          attempt({larger, 1}, known->frame);
+          attempt_once(larger, known->frame);
         }
-        if (family == Family::T) try_icosahedral(known->frame);
+        if (family != Family::T) continue;
+        // T sits in I in two ways.
+        GroupFrame turned = known->frame;
+        turned.col(0) = known->frame.col(1);
+        turned.col(1) = -known->frame.col(0);
+        for (const GroupFrame& each : {known->frame, turned}) {
+          if (!screen_passes(generators({Family::I, 1}, each)[2])) continue;
+          attempt_once(Family::Ih, each);
+          attempt_once(Family::I, each);
+        }
       }
-    }
-  }
-
-  // T sits in I in two ways.
-  void try_icosahedral(const GroupFrame& frame) {
-    GroupFrame turned = frame;
-    turned.col(0) = frame.col(1);
-    turned.col(1) = -frame.col(0);
-    for (const GroupFrame& each : {frame, turned}) {
-      if (!screen_passes(generators({Family::I, 1}, each)[2])) continue;
-      attempt({Family::Ih, 1}, each);
-      attempt({Family::I, 1}, each);
     }
   }
 
@@ -410,6 +426,7 @@ class GroupSearch {
   bool thorough_;
   bool finite_;
   Vector3d centre_;
+  int failures_ = 0;  // fits of rotations that did not hold
   std::vector<Vector3d> mirrors_;
   std::vector<Vector3d> axes_;
   std::vector<Rotation> rotations_;

@@ -35,7 +35,7 @@ class Mirrored {
     const Vector3d point = surface_.samples.points.row(i);
     const Vector3d normal = surface_.samples.normals.row(i);
     const double across = plane.direction.dot(normal);
-    slides = std::abs(across) <= kSlides;
+    slides = std::abs(across) <= kSlides || holds_ball_of(i, plane);
     const Vector3d image = point - 2 * plane.direction.dot(point - plane.point) * plane.direction;
     return surface_.grid.holds(image, normal - 2 * across * plane.direction);
   }
@@ -63,6 +63,19 @@ class Mirrored {
       result += keeps(k * count / looks, plane, slides) ? 1 : 0;
     }
     return result;
+  }
+
+  // Whether the sample is one of a ball that the mirror keeps anyhow.
+  bool holds_ball_of(Eigen::Index i, const Line& plane) const {
+    constexpr double kNear = 2;  // tolerances
+    const Ball* ball = ball_of(i);
+    return ball != nullptr && std::abs(plane.direction.dot(ball->centre - plane.point)) < kNear * surface_.tolerance;
+  }
+
+  const Ball* ball_of(Eigen::Index i) const {
+    const auto piece = static_cast<std::size_t>(surface_.piece_of_sample[static_cast<std::size_t>(i)]);
+    const int ball = surface_.balls.ball_of_piece[piece];
+    return ball < 0 ? nullptr : &surface_.balls.all[static_cast<std::size_t>(ball)];
   }
 
  private:
@@ -127,6 +140,7 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
       const Vector3d other = surface.samples.normals.row(b * count / voters);
       if ((m - 2 * across * normal - other).squaredNorm() > kNormals * kNormals) continue;
       const Line plane{p + 0.5 * apart, normal};
+      if (mirrored.holds_ball_of(a * count / voters, plane)) continue;
       if (std::ranges::any_of(turning, [&](const Line& axis) { return holds(plane, axis, m, p, surface.tolerance); })) {
         continue;
       }

@@ -10,11 +10,13 @@
 #include <Eigen/Geometry>
 
 #include "orbifit/detection/axis_orders.h"
+#include "orbifit/detection/balls.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/verification.h"
 
+#include "cut_discs.h"
 #include "face_points.h"
 #include "face_sides.h"
 #include "thresholds.h"
@@ -76,7 +78,8 @@ class RevolutionSearch {
         known_(known),
         options_(options),
         context_(context),
-        sides_(face_sides(prepared)) {
+        discs_(prepared),
+        balls_(find_balls(prepared, options.tolerance)) {
     for (const std::vector<int>& faces : prepared.components.faces) {
       areas_.push_back(area_of(prepared, faces));
       flat_.push_back(flat_piece(prepared, faces) ? 1 : 0);
@@ -100,7 +103,7 @@ class RevolutionSearch {
       region.placement = refine(patch, region.placement, context_);
       const Verification verification = verify_group(patch, region.placement, context_);
       reason = objection(verification);
-      if (reason.empty()) return add(patch, std::move(region));
+      if (reason.empty()) return take_out_discs(patch, std::move(region));
       if (!options_.fine) break;
       const Line better{region.placement.centre, region.placement.frame.col(2)};
       std::vector<int> fewer =
@@ -114,12 +117,31 @@ class RevolutionSearch {
   std::vector<FoundRegion> take() { return std::move(found_); }
 
  private:
+  // A region that is little but discs of planes that go on beyond it is what else there is, if that turns as well.
+  void take_out_discs(const SurfacePatch& patch, FoundRegion region) {
+    std::vector<int> rest = discs_.without(region);
+    if (!discs_.little_else(region, rest)) return add(patch, std::move(region));
+    note(region, false, "little but discs that end within planes");
+    region.area = area_of(prepared_, rest);
+    region.faces = std::move(rest);
+    if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
+    const SurfacePatch fewer =
+        make_patch(prepared_, region.faces, kPatchSamples, options_.tolerance, context_, "without discs");
+    region.placement = refine(fewer, region.placement, context_);
+    const std::string reason = objection(verify_group(fewer, region.placement, context_));
+    if (reason.empty()) return add(fewer, std::move(region));
+    note(region, false, reason);
+  }
+
   // With the largest group that the region has.
   void add(const SurfacePatch& patch, FoundRegion region) {
     const std::optional<OwnGroup> group = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context_);
     const bool known = group && group->placement.group.continuous();
     if (known) region.placement = group->placement;
     if (!known && !options_.fine) return note(region, false, "only a finite group holds");
+    if (little_but_cut_balls(prepared_, balls_, region.faces, region.placement, options_.tolerance)) {
+      return note(region, false, "little but balls about whose centres it turns");
+    }
     if (says_nothing_new(region)) return;
     note(region, true, "verified");
     found_.push_back(std::move(region));
@@ -199,7 +221,7 @@ class RevolutionSearch {
     double border = 0;
     double inside = 0;
     for (const int face : prepared_.components.faces[s]) {
-      for (const FaceSide& side : sides_[static_cast<std::size_t>(face)]) {
+      for (const FaceSide& side : discs_.sides()[static_cast<std::size_t>(face)]) {
         if (side.face < 0) continue;
         const auto other = static_cast<std::size_t>(side.face);
         if (prepared_.components.component_of_face[other] == static_cast<int>(s)) continue;
@@ -227,7 +249,8 @@ class RevolutionSearch {
   const RunContext& context_;
   std::vector<double> areas_;
   std::vector<char> flat_;
-  std::vector<std::array<FaceSide, 3>> sides_;
+  CutDiscs discs_;
+  Balls balls_;
   std::vector<FoundRegion> found_;
 };
 

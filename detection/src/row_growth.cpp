@@ -14,6 +14,7 @@
 
 #include "face_points.h"
 #include "face_sides.h"
+#include "row_step.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -24,56 +25,24 @@ using Eigen::Vector3d;
 
 constexpr int kMostPlaces = 200;
 
-/// A motion as its share of itself: a translation, or a turn about an axis with a shift along it.
-class Step {
- public:
-  explicit Step(const Motion& motion) : motion_(motion), turn_(axis_angle(motion.linear)) {
-    if (!turns()) return;
-    pitch_ = turn_.axis.dot(motion.translation);
-    // A point of the axis: (I - R) c = t across it.
-    const Vector3d across = motion.translation - pitch_ * turn_.axis;
-    const double cotangent = 1 / std::tan(turn_.angle / 2);
-    point_ = 0.5 * (across + cotangent * turn_.axis.cross(across));
-  }
-
-  bool proper() const { return turn_.determinant > 0; }
-
-  // As many places as there are before a turn without shift comes back.
-  int places() const {
-    constexpr double kLevel = 1e-3;
-    if (!turns() || std::abs(pitch_) > kLevel) return kMostPlaces;
-    return static_cast<int>(std::lround(2 * std::numbers::pi / turn_.angle));
-  }
-
-  Motion times(double share) const {
-    if (!turns()) return {Eigen::Matrix3d::Identity(), share * motion_.translation};
-    Motion result = Motion::rotation(turn_.axis, share * turn_.angle, point_);
-    result.translation += share * pitch_ * turn_.axis;
-    return result;
-  }
-
- private:
-  bool turns() const { return turn_.angle > 1e-9; }
-
-  Motion motion_;
-  AxisAngle turn_;
-  double pitch_ = 0;
-  Vector3d point_ = Vector3d::Zero();
-};
-
 /// Parts that a step repeats.
 class RowSearch {
  public:
-  RowSearch(const PreparedMesh& prepared, const Motion& step, double tolerance, const RunContext& context)
+  RowSearch(const PreparedMesh& prepared, const RowStep& step, double tolerance, const RunContext& context)
       : prepared_(prepared),
         tolerance_(tolerance),
         context_(context),
         step_(step),
-        most_(std::min(kMostPlaces, step_.places())),
+        most_(step_.places(kMostPlaces)),
         lengths_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0) {}
 
-  // The instances of the part that covers most, by their faces; none where nothing repeats often enough.
-  std::vector<std::vector<int>> run() {
+  // The part that covers most, at its first place, and its number of places; none where nothing repeats often enough.
+  struct Part {
+    std::vector<int> faces;
+    int places = 0;
+    double area = 0;  // of all places
+  };
+  Part part() {
     if (!step_.proper()) return {};
     parallel_for(context_, lengths_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
@@ -81,21 +50,40 @@ class RowSearch {
         lengths_[f] = length(static_cast<int>(f));
       }
     });
-    std::vector<int> best;
-    int places = 0;
-    double most = 0;
+    Part best;
     for (const std::vector<int>& part : first_parts()) {
       const int count = common_length(part);
       std::vector<int> unit;
       std::ranges::copy_if(part, std::back_inserter(unit), [&](int f) { return lengths_[number(f)] >= count; });
       const double area = count * area_of(prepared_, unit);
-      if (area <= most) continue;
-      most = area;
-      places = count;
-      best = std::move(unit);
+      if (area > best.area) best = {std::move(unit), count, area};
     }
-    if (best.empty()) return {};
-    return instances(best, places);
+    return best;
+  }
+
+  // The faces of the part at each of its places.
+  std::vector<std::vector<int>> instances(const Part& part) const {
+    const std::vector<int>& unit = part.faces;
+    const SurfaceIndex surface(prepared_.mesh, unit);
+    const SurfaceMoments moments = surface_moments(prepared_, unit);
+    std::vector<Motion> back;
+    back.reserve(static_cast<std::size_t>(part.places));
+    for (int k = 0; k < part.places; ++k) back.push_back(inverse(step_.times(k)));
+    std::vector<std::vector<int>> faces(back.size());
+    for (int f = 0; f < static_cast<int>(lengths_.size()); ++f) {
+      if (prepared_.areas[f] <= 0) continue;
+      if (f % 256 == 0) context_.check();
+      const Vector3d centroid = face_centroid(prepared_, f);
+      for (std::size_t k = 0; k < back.size(); ++k) {
+        const Vector3d at = back[k](centroid);
+        if ((at - moments.centroid).norm() > moments.radius + tolerance_) continue;
+        const Vector3d normal = back[k].linear * prepared_.normals.row(f).transpose();
+        if (!surface.within_facing(at, normal, kAlikeNormals, tolerance_)) continue;
+        faces[k].push_back(f);
+        break;
+      }
+    }
+    return faces;
   }
 
  private:
@@ -165,41 +153,18 @@ class RowSearch {
     return 0;
   }
 
-  std::vector<std::vector<int>> instances(const std::vector<int>& unit, int places) const {
-    const SurfaceIndex surface(prepared_.mesh, unit);
-    const SurfaceMoments moments = surface_moments(prepared_, unit);
-    std::vector<Motion> back;
-    back.reserve(static_cast<std::size_t>(places));
-    for (int k = 0; k < places; ++k) back.push_back(inverse(step_.times(k)));
-    std::vector<std::vector<int>> faces(back.size());
-    for (int f = 0; f < static_cast<int>(lengths_.size()); ++f) {
-      if (prepared_.areas[f] <= 0) continue;
-      if (f % 256 == 0) context_.check();
-      const Vector3d centroid = face_centroid(prepared_, f);
-      for (std::size_t k = 0; k < back.size(); ++k) {
-        const Vector3d at = back[k](centroid);
-        if ((at - moments.centroid).norm() > moments.radius + tolerance_) continue;
-        const Vector3d normal = back[k].linear * prepared_.normals.row(f).transpose();
-        if (!surface.within_facing(at, normal, kAlikeNormals, tolerance_)) continue;
-        faces[k].push_back(f);
-        break;
-      }
-    }
-    return faces;
-  }
-
   static constexpr int kFewest = 3;  // places
 
   const PreparedMesh& prepared_;
   double tolerance_;
   const RunContext& context_;
-  Step step_;
+  RowStep step_;
   int most_;
   std::vector<int> lengths_;  // by face, see length()
 };
 
 // The pattern of these instances, the first of them the first; nothing where one is no copy of it.
-std::optional<Pattern> judged(const PreparedMesh& prepared, const Pattern& pattern, const Step& step,
+std::optional<Pattern> judged(const PreparedMesh& prepared, const Pattern& pattern, const RowStep& step,
                               std::vector<std::vector<int>> faces, double tolerance, const RunContext& context) {
   constexpr int kSamples = 300;
   constexpr double kAlike = 0.15;  // of the area
@@ -229,16 +194,31 @@ std::optional<Pattern> judged(const PreparedMesh& prepared, const Pattern& patte
 std::optional<Pattern> grown_row(const PreparedMesh& prepared, const Pattern& pattern, double tolerance,
                                  const RunContext& context) {
   constexpr double kGain = 1.1;
+  constexpr int kRounds = 4;
   if (pattern.generators.size() != 1 || pattern.instances.size() < 3) return std::nullopt;
-  const Motion step = conjugate(inverse(prepared.input_of_normalised), pattern.generators.front());
-  std::vector<std::vector<int>> faces = RowSearch(prepared, step, tolerance, context).run();
+  RowStep step(conjugate(inverse(prepared.input_of_normalised), pattern.generators.front()));
+  double area = 0;
+  std::vector<std::vector<int>> faces;
+  // A step known better reaches farther, and what it reaches says better what it is.
+  for (int round = 0; round < kRounds; ++round) {
+    const RowStep better =
+        round == 0 ? step : refined_step(prepared, step, faces.front(), static_cast<int>(faces.size()), tolerance);
+    RowSearch search(prepared, better, tolerance, context);
+    const RowSearch::Part part = search.part();
+    if (part.area <= area) break;
+    area = part.area;
+    step = better;
+    faces = search.instances(part);
+  }
   if (faces.empty()) return std::nullopt;
   double before = 0;
   double after = 0;
   for (const PatternInstance& instance : pattern.instances) before += area_of(prepared, instance.faces);
   for (const std::vector<int>& each : faces) after += area_of(prepared, each);
   if (after < kGain * before) return std::nullopt;
-  return judged(prepared, pattern, Step(step), std::move(faces), tolerance, context);
+  Pattern result = pattern;
+  result.generators.front() = conjugate(prepared.input_of_normalised, step.times(1));
+  return judged(prepared, result, step, std::move(faces), tolerance, context);
 }
 
 }  // namespace orbifit

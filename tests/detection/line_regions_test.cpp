@@ -12,6 +12,7 @@
 #include "orbifit/detection/axis_regions.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/plane_regions.h"
+#include "orbifit/detection/revolution_regions.h"
 #include "orbifit/detection/segments.h"
 #include "orbifit/detection/wider_subgroups.h"
 
@@ -60,6 +61,7 @@ class Screened {
   }
 
   const ScreenedSurface& surface() const { return surface_; }
+  const SurfaceIndex& whole() const { return whole_; }
 
  private:
   static PreparedMesh cut(const Mesh& mesh) {
@@ -109,6 +111,51 @@ TEST(AxisRegions, LeaveOutWhatDoesNotTurn) {
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().placement.group.symbol(), "D6h");
   EXPECT_EQ(found.front().faces.size(), static_cast<std::size_t>(post.faces.rows()));
+}
+
+TEST(AxisRegions, HaveMirrorsThatTheWholeHasNot) {
+  // A table with its group: the top is its own mirror image across its middle, which its large faces tell of.
+  const Mesh top = test::subdivided(test::box(2, 2, 0.3), 4);
+  std::vector<Mesh> parts{top};
+  for (const double x : {-0.8, 0.8}) {
+    for (const double y : {-0.8, 0.8}) {
+      parts.push_back(test::moved(test::subdivided(test::box(0.2, 0.2, 1.5), 3), test::shift(x, y, -0.9)));
+    }
+  }
+  const Screened table(test::joined(parts));
+  const FoundRegion whole{table.placement("C4v"), table.surface().faces, table.surface().prepared.area, "whole"};
+  const std::vector<FoundRegion> found = table.turning(Vector3d::Zero(), {whole});
+  const auto of_top =
+      std::ranges::find_if(found, [](const FoundRegion& region) { return region.placement.group.symbol() == "D4h"; });
+  ASSERT_NE(of_top, found.end());
+  EXPECT_EQ(of_top->faces.size(), static_cast<std::size_t>(top.faces.rows()));
+}
+
+TEST(GroupsWithMiddle, AreNotOfPlatesInTheirOwnPlane) {
+  // The mirror in its plane keeps every plate.
+  for (const double height : {0.01, 0.5}) {
+    const Screened plate(test::prism(48, 1, height));
+    std::vector<int> samples(plate.surface().samples.faces.size());
+    std::iota(samples.begin(), samples.end(), 0);
+    const Line axis{plate.placement("C2").centre, Vector3d::UnitZ()};
+    EXPECT_EQ(groups_with_middle(plate.surface(), axis, samples, 0.1).empty(), height < 0.1) << height;
+  }
+}
+
+TEST(RevolutionRegions, AreWithoutDiscsOfAPlateAroundThem) {
+  // Most of the plate turns, but it ends in corners.
+  const Mesh plate = test::subdivided(test::prism(6, 1, 0.2), 5);
+  const Mesh collar = test::prism(60, 0.3, 0.5);
+  const Screened both(test::joined({plate, collar}));
+  const Line axis{both.placement("C2").centre, Vector3d::UnitZ()};
+  RevolutionRegionOptions options;
+  options.fine = true;
+  const std::vector<FoundRegion> found =
+      find_revolution_regions(both.surface().prepared, both.whole(), {axis}, {}, options, {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found.front().placement.group.continuous());
+  EXPECT_EQ(found.front().faces.size(), static_cast<std::size_t>(collar.faces.rows()));
+  EXPECT_GE(found.front().faces.front(), plate.faces.rows());
 }
 
 // A disc with bolts about its axis, of which one may be missing.
@@ -208,7 +255,7 @@ TEST_P(PrismAbout, HasItsMirrorsWhereTheyAre) {
   std::vector<int> samples(screened.surface().samples.faces.size());
   std::iota(samples.begin(), samples.end(), 0);
   const Line axis{screened.placement("C2").centre, Vector3d::UnitZ()};
-  const std::vector<AxialGroup> groups = larger_groups(screened.surface(), axis, n, samples, 0.5);
+  const std::vector<AxialGroup> groups = larger_groups(screened.surface(), axis, n, samples, samples, 0.5);
   ASSERT_FALSE(groups.empty());
   EXPECT_EQ(groups.front().placement.group, (PointGroup{PointGroup::Family::Dnh, n}));
   const Vector3d first = groups.front().placement.frame.col(0);

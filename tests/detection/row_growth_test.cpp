@@ -98,6 +98,24 @@ INSTANTIATE_TEST_SUITE_P(Tops, RowOf,
                                          Given{"but_the_first", {1, 2, 3, 4}, 1}, Given{"some", {3, 0, 2}, 1}),
                          [](const testing::TestParamInfo<Given>& of) { return of.param.name; });
 
+TEST(Row, IsFoundByAStepThatIsALittleOff) {
+  // By what would be more than the tolerance at the last place.
+  const Mesh mesh = ridges();
+  const PreparedMesh prepared = prepare(mesh);
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::translation_1d;
+  const double step = 0.15 + 0.4 * test::kTolerance * prepared.input_of_normalised.scale;
+  pattern.generators = {test::shift(step, 0, 0)};
+  for (int ridge = 0; ridge < 3; ++ridge) {
+    pattern.instances.push_back({test::shift(step * ridge, 0, 0), top_of(mesh, ridge)});
+  }
+  const auto grown = grown_row(prepared, pattern, test::kTolerance, {});
+  ASSERT_TRUE(grown);
+  EXPECT_EQ(grown->instances.size(), static_cast<std::size_t>(kRidges));
+  EXPECT_LT((grown->generators[0].translation - Eigen::Vector3d(0.15, 0, 0)).norm(), 1e-6);
+  EXPECT_LT(grown->residual.max, 1e-5);
+}
+
 TEST(Row, StaysWhereNothingMoreRepeats) {
   const Mesh mesh = ridges();
   const PreparedMesh prepared = prepare(mesh);

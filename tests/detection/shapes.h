@@ -49,6 +49,35 @@ inline Mesh prism(int n, double radius, double height) {
   return mesh;
 }
 
+// A ball about the origin: n meridians, n / 2 bands.
+inline Mesh ball(int n, double radius) {
+  const int bands = n / 2;
+  Mesh mesh;
+  mesh.vertices.resize(Eigen::Index{2} + (bands - 1) * n, 3);
+  mesh.vertices.row(0) << 0, 0, radius;
+  mesh.vertices.row(1) << 0, 0, -radius;
+  const auto vertex = [&](int band, int k) { return 2 + (band - 1) * n + k % n; };
+  for (int band = 1; band < bands; ++band) {
+    const double polar = std::numbers::pi * band / bands;
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2 * std::numbers::pi * k / n;
+      mesh.vertices.row(vertex(band, k)) << radius * std::sin(polar) * std::cos(angle),
+          radius * std::sin(polar) * std::sin(angle), radius * std::cos(polar);
+    }
+  }
+  mesh.faces.resize(2 * n * (bands - 1), 3);
+  Eigen::Index f = 0;
+  for (int k = 0; k < n; ++k) {
+    mesh.faces.row(f++) << 0, vertex(1, k), vertex(1, k + 1);
+    mesh.faces.row(f++) << 1, vertex(bands - 1, k + 1), vertex(bands - 1, k);
+    for (int band = 1; band < bands - 1; ++band) {
+      mesh.faces.row(f++) << vertex(band, k), vertex(band + 1, k), vertex(band + 1, k + 1);
+      mesh.faces.row(f++) << vertex(band, k), vertex(band + 1, k + 1), vertex(band, k + 1);
+    }
+  }
+  return mesh;
+}
+
 // A sheet of some height over a square of side 1 about the origin, of n by n cells, each of two triangles, in columns
 // along y.
 template <typename Height>

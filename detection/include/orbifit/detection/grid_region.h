@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "orbifit/detection/balls.h"
 #include "orbifit/detection/refinement.h"
 #include "orbifit/detection/surface_grid.h"
 #include "orbifit/detection/surface_patch.h"
@@ -30,6 +31,7 @@ struct ScreenedSurface {
   };
   std::vector<FlatEdge> flat_edges;
   std::vector<char> piece_flat;  ///< by piece: a part of one plane
+  Balls balls;
 };
 
 /// The maximal region of a group, S(G) = {x : g x is on the surface for all g in G}, roughly: by the grid, so to a
