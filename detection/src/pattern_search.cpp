@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "orbifit/detection/completion.h"
 #include "orbifit/detection/patterns.h"
 #include "orbifit/detection/verification.h"
 
@@ -64,15 +65,13 @@ class PatternSearch {
   bool is_used(int part) const { return used_[static_cast<std::size_t>(part)] != 0; }
 
   void look_at(std::size_t number) {
-    const CongruenceClass& kind = classes()[number];
-    const int first = kind.members.front();
+    CongruenceClass kind = classes()[number];
     if (kind.members.size() < 2 || std::ranges::any_of(kind.members, [&](int c) { return is_used(c); })) return;
-    const double all = moments(first).area * static_cast<double>(kind.members.size());
+    const double all = moments(kind.members.front()).area * static_cast<double>(kind.members.size());
     if (all < options_.least_share * prepared_.area) return;
-    Instances instances{
-        arrange(kind.motions, own_group(number), moments(first).centroid, moments(first).radius, tolerance_of(first)),
-        {}};
+    Instances instances{arranged(number, kind), {}};
     const Arrangement& arrangement = instances.arrangement;
+    if (arrangement.kind == Pattern::Kind::congruent) leave_one_out(number, kind, instances.arrangement);
     // A group says more than a pattern, unless the pattern is a true row or grid.
     const bool ordered = arrangement.kind != Pattern::Kind::congruent;
     const bool lattice = ordered && arrangement.kind != Pattern::Kind::rotation &&
@@ -85,6 +84,43 @@ class PatternSearch {
     if (arrangement.generators.size() == 1) continue_row(instances);
     if (!options_.pieces) grow(instances);
     add(instances);
+  }
+
+  Arrangement arranged(std::size_t number, const CongruenceClass& kind) const {
+    const int first = kind.members.front();
+    std::optional<GroupPlacement> own = parts_.own_groups[number];
+    const int of_class = classes()[number].members.front();
+    if (own && first != of_class) own = carried(*own, motion_to(number, first));
+    return arrange(kind.motions, own ? &*own : nullptr, moments(first).centroid, moments(first).radius,
+                   tolerance_of(first));
+  }
+
+  const Motion& motion_to(std::size_t number, int member) const {
+    const CongruenceClass& kind = classes()[number];
+    return kind.motions[static_cast<std::size_t>(std::ranges::find(kind.members, member) - kind.members.begin())];
+  }
+
+  // Where all copies but one are in order, leaves that one out: one of many may be out of place.
+  void leave_one_out(std::size_t number, CongruenceClass& kind, Arrangement& arrangement) const {
+    constexpr std::size_t kLeast = 6;  // any few are in some order
+    constexpr std::size_t kMost = 40;
+    if (kind.members.size() < kLeast || kind.members.size() > kMost) return;
+    for (std::size_t out = 0; out < kind.members.size(); ++out) {
+      context_.check();
+      CongruenceClass others = kind;
+      others.members.erase(others.members.begin() + static_cast<std::ptrdiff_t>(out));
+      others.motions.erase(others.motions.begin() + static_cast<std::ptrdiff_t>(out));
+      if (out == 0) {
+        const Motion back = inverse(others.motions.front());
+        for (Motion& motion : others.motions) motion = motion * back;
+        others.motions.front() = {};
+      }
+      Arrangement found = arranged(number, others);
+      if (found.kind == Pattern::Kind::congruent) continue;
+      kind = std::move(others);
+      arrangement = std::move(found);
+      return;
+    }
   }
 
   // Adds copies at the row's next places and in its gaps that the survey did not take for copies: surfaces may differ

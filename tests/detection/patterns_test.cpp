@@ -1,6 +1,13 @@
 #include "orbifit/detection/patterns.h"
 
+#include <algorithm>
+#include <ostream>
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include "orbifit/detection/pattern_search.h"
+#include "orbifit/detection/verification.h"
 
 #include "shapes.h"
 
@@ -98,6 +105,49 @@ TEST(Arrange, TheOwnGroupStraightensACopy) {
   EXPECT_EQ(named(motions, &round).kind, Pattern::Kind::translation_1d);
   EXPECT_NE(named(motions).kind, Pattern::Kind::translation_1d);
 }
+
+// Places along an arc, of which some hold blocks that are off by a third of a step.
+struct Misplaced {
+  int count;
+  std::vector<int> off;
+  std::size_t found;  // blocks in order, none where that is 0
+
+  friend void PrintTo(const Misplaced& of, std::ostream* out) { *out << of.off.size() << " of " << of.count; }
+};
+
+class Arc : public testing::TestWithParam<Misplaced> {};
+
+TEST_P(Arc, IsFoundButForOneOutOfPlace) {
+  const auto& [count, off, expected] = GetParam();
+  std::vector<Mesh> blocks;
+  for (int i = 0; i < count; ++i) {
+    const double place = std::ranges::find(off, i) == off.end() ? i : i + 0.35;
+    const Motion turn = Motion::rotation(Vector3d::UnitZ(), 0.37 * place, Vector3d::Zero());
+    blocks.push_back(test::moved(test::moved(test::box(0.5, 0.3, 0.4), test::shift(3, 0, 0)), turn));
+  }
+  const PreparedMesh prepared = prepare(test::joined(blocks));
+  const RunContext context;
+  const PartRegionOptions options;
+  const PartRegions parts =
+      find_part_regions(prepared, survey_components(prepared, options.tolerance, options.least_share, context),
+                        SurfaceIndex(prepared.mesh), {}, hemisphere_directions(500), options, context);
+  const std::vector<Pattern> found = find_patterns(prepared, parts, {}, options, context);
+  const auto arc = std::ranges::find(found, Pattern::Kind::rotation, &Pattern::kind);
+  ASSERT_EQ(arc != found.end(), expected > 0);
+  if (expected == 0) return;
+  EXPECT_EQ(arc->instances.size(), expected);
+  EXPECT_NEAR(axis_angle(arc->generators.at(0).linear).angle, 0.37, 1e-9);
+  EXPECT_LT(arc->residual.max, 1e-9);
+  for (const PatternInstance& instance : arc->instances) {
+    const int block = instance.faces.front() / 12;
+    EXPECT_EQ(std::ranges::find(off, block), off.end()) << block;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Blocks, Arc,
+                         testing::Values(Misplaced{8, {}, 8}, Misplaced{8, {3}, 7}, Misplaced{8, {0}, 7},
+                                         Misplaced{8, {7}, 7}, Misplaced{8, {2, 5}, 0}, Misplaced{5, {2}, 0}),
+                         [](const auto& of) { return "Arc" + std::to_string(of.index); });
 
 }  // namespace
 }  // namespace orbifit
