@@ -4,11 +4,10 @@
 #include <vector>
 
 #include "orbifit/detection/explanation.h"
+#include "orbifit/detection/face_sides.h"
 #include "orbifit/detection/found_region.h"
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/model/run_context.h"
-
-#include "face_sides.h"
 
 namespace orbifit {
 

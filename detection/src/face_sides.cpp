@@ -1,4 +1,4 @@
-#include "face_sides.h"
+#include "orbifit/detection/face_sides.h"
 
 #include <algorithm>
 

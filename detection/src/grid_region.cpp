@@ -135,7 +135,8 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
     : prepared(mesh),
       tolerance(detector_tolerance),
       grid(mesh, with_area(mesh), detector_tolerance),
-      balls(find_balls(mesh, detector_tolerance)) {
+      balls(find_balls(mesh, detector_tolerance)),
+      sides(face_sides(mesh)) {
   faces = with_area(mesh);
   Random random(context.seed, "screen");
   samples = sample_surface(mesh.mesh, sample_count, random, faces);

@@ -15,6 +15,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "chance_symmetry.h"
+#include "smooth_border.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -147,6 +148,7 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   if (region.area < kNearlyWhole * surface_.prepared.area && fades(patch, region.placement, context)) {
     return judged(false, "fades as the tolerance shrinks");
   }
+  if (ends_anywhere(region)) return judged(false, "ends within planes and curves, in what has a larger group");
   // What slides is turned or straight, and was looked for as such: no larger group is.
   const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context); };
   if (slides()) return judged(false, "other motions keep it as well");
@@ -220,6 +222,27 @@ bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
     if (pieces.size() >= kMany) return false;
   }
   return true;
+}
+
+// Whether the region, of few motions, ends where no part does, within a larger one of as many: chance keeps something
+// under any of them. Of many motions it keeps little.
+bool LineRegionSearch::ends_anywhere(const FoundRegion& region) const {
+  constexpr double kMostSmooth = 0.2;  // of the border
+  constexpr double kWithin = 0.9;      // of the region's area
+  constexpr int kFew = 8;              // motions
+  constexpr int kSeveral = 16;
+  constexpr double kMuchOfSeveral = 0.75;  // of the mesh's area
+  const PointGroup& group = region.placement.group;
+  if (group.continuous() || group.order() >= kSeveral) return false;
+  const PreparedMesh& prepared = surface_.prepared;
+  if (region.area >= (group.order() < kFew ? kNearlyWhole : kMuchOfSeveral) * prepared.area) return false;
+  const auto holds = [&](const FoundRegion& other) {
+    const PointGroup& larger = other.placement.group;
+    return (larger.continuous() || larger.order() >= group.order()) && other.area > region.area &&
+           area_outside(prepared, region.faces, other.faces) < (1 - kWithin) * region.area;
+  };
+  if (std::ranges::none_of(known_, holds) && std::ranges::none_of(found_, holds)) return false;
+  return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) > kMostSmooth;
 }
 
 bool LineRegionSearch::mere_balls(const FoundRegion& region) const {

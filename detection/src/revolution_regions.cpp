@@ -11,6 +11,7 @@
 
 #include "orbifit/detection/axis_orders.h"
 #include "orbifit/detection/balls.h"
+#include "orbifit/detection/face_sides.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/region_growth.h"
 #include "orbifit/detection/segments.h"
@@ -18,7 +19,6 @@
 
 #include "cut_discs.h"
 #include "face_points.h"
-#include "face_sides.h"
 #include "thresholds.h"
 
 namespace orbifit {

@@ -10,10 +10,10 @@
 
 #include <Eigen/Geometry>
 
+#include "orbifit/detection/face_sides.h"
 #include "orbifit/detection/patterns.h"
 
 #include "face_points.h"
-#include "face_sides.h"
 #include "row_step.h"
 #include "thresholds.h"
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "orbifit/detection/balls.h"
+#include "orbifit/detection/face_sides.h"
 #include "orbifit/detection/refinement.h"
 #include "orbifit/detection/surface_grid.h"
 #include "orbifit/detection/surface_patch.h"
@@ -32,6 +34,7 @@ struct ScreenedSurface {
   std::vector<FlatEdge> flat_edges;
   std::vector<char> piece_flat;  ///< by piece: a part of one plane
   Balls balls;
+  std::vector<std::array<FaceSide, 3>> sides;  ///< of all faces
 };
 
 /// The maximal region of a group, S(G) = {x : g x is on the surface for all g in G}, roughly: by the grid, so to a
