@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,37 +12,50 @@
 namespace orbifit {
 
 /// Displacements of vertices as linear forms in a basis' coordinates, kept once they were asked for: a fit asks for
-/// those of much the same vertices in each iteration.
+/// those of much the same vertices in each iteration. u(vertex) = along * own(representative) + shift() + more, so that
+/// images of one another share what is kept of their representative, and what one word carries is kept once.
 class VertexRows {
  public:
-  /// References are kept.
-  VertexRows(const Subspace& subspace, const CarriedBasis& basis)
-      : subspace_(subspace), basis_(basis), rows_(subspace.orbits.followers.size()), known_(rows_.size(), 0) {}
+  /// Three linear forms, on the columns where they are not zero.
+  struct Rows {
+    std::vector<int> columns;  ///< ascending
+    std::vector<Eigen::Vector3d> factors;
 
-  /// u(vertex) = sum over the entries of q[column] * factor.
-  struct Entry {
-    int column;
-    Eigen::Vector3d factor;
+    /// Calls visit(column, direction . factor) for each.
+    template <class Visit>
+    void visit(const Eigen::Vector3d& direction, const Visit& visit) const {
+      for (std::size_t i = 0; i < columns.size(); ++i) visit(columns[i], direction.dot(factors[i]));
+    }
   };
+  struct Way {
+    int representative = 0;
+    int shift = 0;  ///< what it is carried by, which many vertices share
+    Eigen::Matrix3d along;
+    Rows more;  ///< extend()
+  };
+
+  /// References are kept.
+  VertexRows(const Subspace& subspace, const CarriedBasis& basis);
 
   /// Makes the rows of these vertices, in parallel. \param vertices  any order, repeated ones too
   void prepare(const std::vector<int>& vertices, const RunContext& context);
 
-  /// Adds columns after those there are to a row, once. \pre prepared
-  void extend(int vertex, int first_column, const Eigen::Matrix<double, 3, Eigen::Dynamic>& factors) {
-    for (Eigen::Index k = 0; k < factors.cols(); ++k) {
-      rows_[static_cast<std::size_t>(vertex)].push_back({first_column + static_cast<int>(k), factors.col(k)});
-    }
-  }
+  /// Adds columns after those there are to a vertex, once. \pre prepared
+  void extend(int vertex, int first_column, const Eigen::Matrix<double, 3, Eigen::Dynamic>& factors);
 
-  /// Entries by ascending column. \pre prepared
-  const std::vector<Entry>& of(int vertex) const { return rows_[static_cast<std::size_t>(vertex)]; }
+  /// \pre prepared
+  const Way& way(int vertex) const { return ways_[static_cast<std::size_t>(vertex)]; }
+  const Rows& own(int representative) const { return own_[static_cast<std::size_t>(representative)]; }
+  const Rows& shift(int number) const { return shifts_[static_cast<std::size_t>(number)]; }
+  std::size_t representatives() const { return own_.size(); }
 
  private:
   const Subspace& subspace_;
   const CarriedBasis& basis_;
-  std::vector<std::vector<Entry>> rows_;
-  std::vector<char> known_;
+  std::vector<Rows> own_, shifts_;
+  std::vector<Way> ways_;
+  std::vector<char> known_, own_known_;
+  std::map<std::array<int, 3>, int> shift_of_;  // word, binding, turn
 };
 
 }  // namespace orbifit

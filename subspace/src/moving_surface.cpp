@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
-
-#include "orbifit/model/space_order.h"
 
 namespace orbifit {
 
@@ -35,6 +34,38 @@ Vector3d offset_to(const Vector3d& p, const Vector3d& a, const Vector3d& b, cons
   if (weights[1] == 1) return b - p;
   if (weights[2] == 1) return c - p;
   return (a - p) + (weights[1] * (b - a) + weights[2] * (c - a));
+}
+
+struct Middle {
+  std::array<float, 3> at;
+  int face;
+};
+
+// Halves the faces, across the longest side of the box around their middles, until so many blocks of four, sixteen ...
+// are left that one box holds four at most: those of one box lie as close together as may be.
+void order_in_fours(Middle* begin, Middle* end) {
+  const auto count = end - begin;
+  if (count <= 4) return;
+  std::ptrdiff_t block = 4;
+  while (4 * block < count) block *= 4;
+  Middle* const middle = begin + block * ((count + block - 1) / block / 2);
+  std::array<float, 3> low = begin->at;
+  std::array<float, 3> high = low;
+  for (const Middle* each = begin; each != end; ++each) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], each->at[k]);
+      high[k] = std::max(high[k], each->at[k]);
+    }
+  }
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  }
+  std::nth_element(begin, middle, end, [&](const Middle& a, const Middle& b) {
+    return a.at[axis] < b.at[axis] || (a.at[axis] == b.at[axis] && a.face < b.face);
+  });
+  order_in_fours(begin, middle);
+  order_in_fours(middle, end);
 }
 
 }  // namespace
@@ -77,14 +108,31 @@ MovingSurface::MovingSurface(const Mesh& mesh, const std::vector<int>& faces) : 
     face_numbers_.resize(static_cast<std::size_t>(mesh.faces.rows()));
     std::iota(face_numbers_.begin(), face_numbers_.end(), 0);
   }
-  Points middles(static_cast<Eigen::Index>(face_numbers_.size()), 3);
-  for (std::size_t place = 0; place < face_numbers_.size(); ++place) {
-    middles.row(static_cast<Eigen::Index>(place)) = (corner(place, 0) + corner(place, 1) + corner(place, 2)) / 3;
+  std::vector<char> used(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  for (const int face : face_numbers_) {
+    for (const int vertex : mesh.faces.row(face)) used[static_cast<std::size_t>(vertex)] = 1;
   }
-  std::vector<int> ordered;
-  ordered.reserve(face_numbers_.size());
-  for (const int place : space_order(middles)) ordered.push_back(face_numbers_[static_cast<std::size_t>(place)]);
-  face_numbers_ = std::move(ordered);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] != 0) vertices_.push_back(static_cast<int>(v));
+  }
+  frame();
+  std::vector<Middle> middles;
+  middles.reserve(face_numbers_.size());
+  for (const int face : face_numbers_) {
+    const Vector3d middle = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
+    Middle& added = middles.emplace_back(Middle{{}, face});
+    if (!middle.allFinite()) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      added.at[k] = static_cast<float>(scale_ * (middle[axis] - centre_[axis]));
+    }
+  }
+  order_in_fours(middles.data(), middles.data() + middles.size());
+  corners_.reserve(middles.size());
+  for (std::size_t place = 0; place < middles.size(); ++place) {
+    const int face = face_numbers_[place] = middles[place].face;
+    corners_.push_back({mesh.faces(face, 0), mesh.faces(face, 1), mesh.faces(face, 2)});
+  }
   std::size_t boxes = face_numbers_.size();
   do {
     boxes = (boxes + 3) / 4;
@@ -93,30 +141,44 @@ MovingSurface::MovingSurface(const Mesh& mesh, const std::vector<int>& faces) : 
   move(mesh, RunContext{});
 }
 
+void MovingSurface::frame() {
+  Eigen::AlignedBox3d box;
+  for (const int vertex : vertices_) box.extend(Vector3d(mesh_->vertices.row(vertex)));
+  const double extent = box.isEmpty() ? 0 : box.diagonal().norm();
+  centre_.setZero();
+  if (!box.isEmpty()) centre_ = box.center();
+  scale_ = extent > 0 && std::isfinite(extent) ? 1 / extent : 1;
+}
+
 void MovingSurface::move(const Mesh& mesh, const RunContext& context) {
   constexpr std::size_t kLeastShare = 8000;
   mesh_ = &mesh;
-  const double extent = diagonal(mesh.vertices);
-  centre_ = bounding_box_centre(mesh.vertices);
-  scale_ = extent > 0 && std::isfinite(extent) ? 1 / extent : 1;
+  frame();
+  // Rounding keeps the order of numbers, so boxes may be those of rounded vertices.
+  const std::unique_ptr<float[]> rounded(new float[4 * static_cast<std::size_t>(mesh.vertices.rows())]);
+  for (const int vertex : vertices_) {
+    const Eigen::Vector3f local = (scale_ * (mesh.vertices.row(vertex).transpose() - centre_)).cast<float>();
+    Eigen::Map<Four>(rounded.get() + 4 * static_cast<std::size_t>(vertex)) << local[0], local[1], local[2], 0;
+  }
   parallel_for(
-      context, levels_.front().size(), [&](std::size_t begin, std::size_t end) { fit_faces(begin, end); }, kLeastShare);
+      context, levels_.front().size(),
+      [&](std::size_t begin, std::size_t end) { fit_faces(rounded.get(), begin, end); }, kLeastShare);
   for (std::size_t level = 1; level < levels_.size(); ++level) fit_nodes(level, 0, levels_[level].size());
 }
 
-void MovingSurface::fit_faces(std::size_t begin, std::size_t end) {
+void MovingSurface::fit_faces(const float* vertices, std::size_t begin, std::size_t end) {
   for (std::size_t g = begin; g < end; ++g) {
     Group& group = levels_.front()[g];
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const std::size_t place = 4 * g + lane;
-      Eigen::Array3f low = Eigen::Array3f::Constant(kNothing);
-      Eigen::Array3f high = -low;
-      if (place < face_numbers_.size()) {
-        const Vector3d a = corner(place, 0);
-        const Vector3d b = corner(place, 1);
-        const Vector3d c = corner(place, 2);
-        low = (scale_ * (a.cwiseMin(b).cwiseMin(c) - centre_)).cast<float>();
-        high = (scale_ * (a.cwiseMax(b).cwiseMax(c) - centre_)).cast<float>();
+      Four low = Four::Constant(kNothing);
+      Four high = -low;
+      if (place < corners_.size()) {
+        const auto at = [&](std::size_t k) {
+          return Four(Eigen::Map<const Four>(vertices + 4 * static_cast<std::size_t>(corners_[place][k])));
+        };
+        low = at(0).min(at(1)).min(at(2));
+        high = at(0).max(at(1)).max(at(2));
       }
       for (std::size_t k = 0; k < 3; ++k) {
         group.low[k][lane] = low[static_cast<Eigen::Index>(k)];

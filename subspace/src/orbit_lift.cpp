@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <unordered_map>
 
@@ -178,6 +179,37 @@ void append_block(Block& block, OrbitLift& lift) {
   lift.first.push_back(static_cast<std::int64_t>(lift.atom.size()));
 }
 
+// Where words take places: for each word and place the one of which that is the image, -1 where none is known.
+class PlacesBefore {
+ public:
+  PlacesBefore(const RegionMap& regions, const GroupWords& words)
+      : places_(static_cast<std::size_t>(regions.places())) {
+    std::vector<int> image(places_);
+    std::iota(image.begin(), image.end(), 0);
+    images_ = before_ = image;
+    std::map<std::pair<int, int>, std::vector<int>> by_step;
+    for (int word = 1; word < words.count(); ++word) {
+      const GroupWords::Step& step = words.step(word);
+      const auto [entry, added] = by_step.try_emplace({step.place, step.element});
+      if (added) entry->second = regions.exact_images(step.place, step.element);
+      std::vector<int> before(places_, -1);
+      for (std::size_t place = 0; place < places_; ++place) {
+        const int parent = images_[static_cast<std::size_t>(step.parent) * places_ + place];
+        image[place] = parent >= 0 ? entry->second[static_cast<std::size_t>(parent)] : -1;
+        if (image[place] >= 0) before[static_cast<std::size_t>(image[place])] = static_cast<int>(place);
+      }
+      images_.insert(images_.end(), image.begin(), image.end());
+      before_.insert(before_.end(), before.begin(), before.end());
+    }
+  }
+
+  const int* of(int word) const { return before_.data() + static_cast<std::size_t>(word) * places_; }
+
+ private:
+  std::size_t places_;
+  std::vector<int> images_, before_;  // by word and place
+};
+
 struct RawTerm {
   LiftTerm term;
   int word;
@@ -190,6 +222,7 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
                      const RunContext& context) {
   const PlainLift plain(sampling, regions, options.averaged);
   if (options.averaged) regions.prepare();
+  const PlacesBefore places(regions, words);
   AtomTable table(sampling, regions, words, basis);
   OrbitLift lift;
   const auto count = static_cast<std::size_t>(vertices.representatives());
@@ -214,10 +247,13 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
         const std::size_t r = begin + i;
         const Vector3d position = vertices.positions.row(static_cast<Eigen::Index>(r)).transpose();
         const std::int64_t points = vertices.first_point[r + 1] - vertices.first_point[r];
+        PlainLift::begin_orbit(scratch);
         for (std::int64_t k = 0; k < points; ++k) {
           const auto at = static_cast<std::size_t>(vertices.first_point[r] + k);
           const int word = vertices.point_words[at];
-          plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch, static_cast<std::size_t>(k));
+          const PlainLift::Origin origin{position, places.of(word)};
+          plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch, static_cast<std::size_t>(k),
+                      &origin);
           for (LiftTerm term : scratch.terms) {
             term.weight /= static_cast<double>(points);
             terms[i].push_back({term, word});

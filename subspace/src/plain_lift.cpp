@@ -75,7 +75,8 @@ int PlainLift::continuous_place(int set) const {
   return chosen;
 }
 
-void PlainLift::find_near(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot) const {
+void PlainLift::find_near(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot,
+                          const Origin* origin) const {
   scratch.near.clear();
   scratch.blended = false;
   if (!faded_) return;
@@ -87,9 +88,23 @@ void PlainLift::find_near(const Eigen::Vector3d& point, int set, Scratch& scratc
   const auto places = static_cast<std::size_t>(regions_.places());
   if (scratch.likely.empty()) scratch.likely.assign(kSlots * places, -1);
   int* const likely = scratch.likely.data() + slot % kSlots * places;
+  if (scratch.asked.empty()) {
+    scratch.asked.assign(places, 0);
+    scratch.distances.resize(places);
+  }
+  const auto distance_of_first = [&](int place) {
+    const auto p = static_cast<std::size_t>(place);
+    if (scratch.asked[p] != scratch.orbit) {
+      scratch.asked[p] = scratch.orbit;
+      scratch.distances[p] = regions_.distance(origin->point, place, band, scratch.likely.data() + place);
+    }
+    return scratch.distances[p];
+  };
   for (const int place : partial_places_) {
     if (regions_.holds(set, place)) continue;
-    const double distance = regions_.distance(point, place, band, likely + place);
+    const int first = origin != nullptr ? origin->places[place] : -1;
+    const double distance =
+        first >= 0 ? distance_of_first(first) : regions_.distance(point, place, band, likely + place);
     if (!(distance < band)) continue;
     scratch.near.emplace_back(place, std::max(kOutside, smooth_step(distance / band)));
     scratch.blended = true;
@@ -114,10 +129,11 @@ double PlainLift::factor(int sample, Scratch& scratch) const {
   return scratch.factors[set];
 }
 
-void PlainLift::terms(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot) const {
+void PlainLift::terms(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot,
+                      const Origin* origin) const {
   ++scratch.stamp;
   scratch.terms.clear();
-  find_near(point, set, scratch, slot);
+  find_near(point, set, scratch, slot, origin);
   const int place = faded_ ? continuous_place(set) : -1;
   if (place >= 0) {
     ring_terms(point, place, scratch);

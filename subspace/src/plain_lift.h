@@ -37,21 +37,34 @@ class PlainLift {
     std::vector<int> stamps;                   // by set
     std::vector<std::pair<int, double>> near;  // places at hand and what they leave of samples outside
     std::vector<LiftTerm> terms;
-    std::vector<int> likely;  // by slot and place: see RegionMap::distance()
+    std::vector<int> likely;        // by slot and place: see RegionMap::distance()
+    std::vector<double> distances;  // by place: of Origin::point, where `asked` says that they are known
+    std::vector<int> asked;         // by place
     int stamp = 0;
+    int orbit = 0;
     bool blended = false;  ///< the last point lies in the fading band of a place
   };
+
+  /// Where a point is an image: of `point`, places[i] being the place of which place i is the image; -1: not known.
+  /// Distances to places are then those of the first point, which are looked up once an orbit: call begin_orbit()
+  /// before an orbit's points.
+  struct Origin {
+    Eigen::Vector3d point;
+    const int* places;
+  };
+  static void begin_orbit(Scratch& scratch) { ++scratch.orbit; }
 
   /// The terms for a point of a set, normalised so that those of kind full and centre sum to 1; in scratch.terms.
   /// A point under a continuous group must be in its canonical place. O(samples within 3.7 radii).
   /// \param slot  any number: points of the same one, asked for one after another, are mostly near one another
-  void terms(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot = 0) const;
+  void terms(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot = 0,
+             const Origin* origin = nullptr) const;
 
   /// The place whose continuum acts on points of the set; -1: none.
   int continuous_place(int set) const;
 
  private:
-  void find_near(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot) const;
+  void find_near(const Eigen::Vector3d& point, int set, Scratch& scratch, std::size_t slot, const Origin* origin) const;
   double factor(int sample, Scratch& scratch) const;
   void gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) const;
   void ring_terms(const Eigen::Vector3d& point, int place, Scratch& scratch) const;

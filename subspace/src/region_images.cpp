@@ -1,6 +1,7 @@
 // Where the motions of places take other places.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "orbifit/subspace/region_map.h"
@@ -33,6 +34,11 @@ bool RegionMap::around(int outer, int inner) const {
   return true;
 }
 
+// As the moments have it.
+Motion RegionMap::told_from_origin(const Motion& motion) const {
+  return Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
+}
+
 RegionMap::Images RegionMap::find_images(int place, int element) const {
   Images result;
   const int arrival = this->arrival(place, element);
@@ -45,9 +51,7 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
     result.all = true;
     return result;
   }
-  // Told from the moments' origin.
-  const Motion told =
-      Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
+  const Motion told = told_from_origin(motion);
   std::vector<PieceMoments> common;
   common.reserve(there.size());
   for (const int q : there) common.push_back(common_moments(arrival, q));
@@ -87,6 +91,22 @@ RegionMap::Images& RegionMap::images(int place, int element) const {
   auto& entry = images[static_cast<std::size_t>(element)];
   if (!entry) entry = std::make_unique<Images>(find_images(place, element));
   return *entry;
+}
+
+std::vector<int> RegionMap::exact_images(int place, int element) const {
+  constexpr double kExact = 1e-9;  // of the diagonal, and of the area
+  constexpr int kNone = -1;
+  std::vector<int> result(static_cast<std::size_t>(places()), kNone);
+  if (element < 0) return result;
+  const Motion told = told_from_origin(at(place).motions[static_cast<std::size_t>(element)]);
+  for (const auto& [from, to] : images(place, element).pairs) {
+    if (!around(place, from) || !around(arrival(place, element), to)) continue;
+    const PieceMoments here = common_moments(place, from);
+    const PieceMoments there = common_moments(arrival(place, element), to);
+    if (std::abs(here.area - there.area) > kExact * here.area || mismatch(here, told, there, size_) > kExact) continue;
+    result[static_cast<std::size_t>(from)] = to;
+  }
+  return result;
 }
 
 std::vector<int> RegionMap::images_of(int other, int place, int element) const {

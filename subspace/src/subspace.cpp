@@ -208,14 +208,12 @@ Points vertex_displacements(const Subspace& subspace, const Eigen::VectorXd& q) 
   return vertex_displacements(subspace, SubspaceState{q, nullptr});
 }
 
-void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
-                     Eigen::Ref<Eigen::Matrix3Xd> rows) {
+VertexWay vertex_way(const Subspace& subspace, const CarriedBasis& basis, int vertex) {
   const VertexOrbits::Follower& follower = subspace.orbits.followers[static_cast<std::size_t>(vertex)];
-  Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
-  const auto add_carried = [&](const Carried& carried) {
-    for (const auto& [carrier, matrix] : carried) {
-      rows.noalias() += Eigen::Matrix3d(along * matrix) * basis.carried.middleRows<3>(3 * carrier);
-    }
+  VertexWay way{follower.representative, Matrix3d::Identity(), {}};
+  const auto go_on = [&](const Carried& carried, const Matrix3d& frame) {
+    way.carried = carried_sum(way.carried, way.along, carried);
+    way.along = way.along * frame;
   };
   if (follower.turn >= 0) {
     const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
@@ -223,28 +221,39 @@ void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int ve
     const Transport step = basis.rotations.empty() ? step_transport(*subspace.regions, place, -1, motion, floating)
                                                    : step_transport(*subspace.regions, place, -1, motion, floating,
                                                                     basis.rotations[static_cast<std::size_t>(place)]);
-    add_carried(step.carried);
-    along = along * step.frame;
+    go_on(step.carried, step.frame);
   }
   const Transport& word = basis.transports.words[static_cast<std::size_t>(follower.word)];
-  add_carried(word.carried);
-  along = along * word.frame;
-  const auto r = static_cast<std::size_t>(follower.representative);
-  if (subspace.orbits.bound[r] >= 0) {
-    const Binding& binding = basis.bindings[static_cast<std::size_t>(subspace.orbits.bound[r])];
-    add_carried(binding.bound);
-    along = along * binding.kept;
+  go_on(word.carried, word.frame);
+  const int bound = subspace.orbits.bound[static_cast<std::size_t>(follower.representative)];
+  if (bound >= 0) {
+    const Binding& binding = basis.bindings[static_cast<std::size_t>(bound)];
+    go_on(binding.bound, binding.kept);
   }
-  Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, rows.cols());
-  subspace.lift.visit(follower.representative, [&](int atom, double weight) {
+  return way;
+}
+
+void add_representative_rows(const Subspace& subspace, const CarriedBasis& basis, int representative,
+                             Eigen::Ref<Eigen::Matrix3Xd> rows) {
+  subspace.lift.visit(representative, [&](int atom, double weight) {
     for (int c = 0; c < 3; ++c) {
       for (decltype(basis.atoms)::InnerIterator it(basis.atoms, 3 * Eigen::Index{atom} + c); it; ++it) {
-        own(c, it.col()) += weight * it.value();
+        rows(c, it.col()) += weight * it.value();
       }
     }
   });
+}
+
+void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
+                     Eigen::Ref<Eigen::Matrix3Xd> rows) {
+  const VertexWay way = vertex_way(subspace, basis, vertex);
+  for (const auto& [carrier, matrix] : way.carried) {
+    rows.noalias() += matrix * basis.carried.middleRows<3>(3 * carrier);
+  }
+  Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, rows.cols());
+  add_representative_rows(subspace, basis, way.representative, own);
   for (Eigen::Index j = 0; j < own.cols(); ++j) {
-    if (!own.col(j).isZero(0)) rows.col(j) += along * own.col(j);
+    if (!own.col(j).isZero(0)) rows.col(j) += way.along * own.col(j);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "vertex_rows.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -28,13 +29,16 @@ TEST_P(Rows, TimesTheCoordinatesAreTheDisplacements) {
   const Points expected = vertex_displacements(subspace, q);
   double worst = 0;
   for (const int vertex : vertices) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    int last = -1;
-    for (const VertexRows::Entry& entry : rows.of(vertex)) {
-      EXPECT_GT(entry.column, last);
-      last = entry.column;
-      sum += q[entry.column] * entry.factor;
-    }
+    const VertexRows::Way& way = rows.way(vertex);
+    const auto at = [&](const VertexRows::Rows& some) {
+      EXPECT_TRUE(std::ranges::is_sorted(some.columns));
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (int c = 0; c < 3; ++c) {
+        some.visit(Eigen::Vector3d::Unit(c), [&](int column, double factor) { sum[c] += q[column] * factor; });
+      }
+      return sum;
+    };
+    const Eigen::Vector3d sum = way.along * at(rows.own(way.representative)) + at(rows.shift(way.shift)) + at(way.more);
     worst = std::max(worst, (sum - expected.row(vertex).transpose()).norm());
   }
   EXPECT_LT(worst, 1e-12);

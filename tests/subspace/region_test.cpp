@@ -120,6 +120,32 @@ TEST_P(EveryRegion, LiftCommutesWithTheGroups) {
 }
 
 // A large drag, then the files as users get them.
+// As the lift takes distances for: those of an image from images of places.
+TEST_P(EveryRegion, ExactImagesLieOnThePlacesThatTheyAre) {
+  const RegionMap& regions = *subspace_.regions;
+  const VertexGrid grid(model_.mesh.vertices, 1e-9 * subspace_.diagonal);
+  int others = 0;
+  for (int place = 0; place < regions.count(); ++place) {
+    EXPECT_EQ(regions.exact_images(place, -1), std::vector<int>(static_cast<std::size_t>(regions.places()), -1));
+    for (std::size_t e = 0; e < regions.elements(place).size(); ++e) {
+      const std::vector<int> images = regions.exact_images(place, static_cast<int>(e));
+      for (int from = 0; from < regions.count(); ++from) {
+        const int to = images[static_cast<std::size_t>(from)];
+        if (to < 0) continue;
+        others += from != place;
+        const std::vector<int> there = vertices_of_faces(model_.mesh, model_.truth.regions[std::size_t(to)].faces);
+        for (const int vertex : vertices_of_faces(model_.mesh, model_.truth.regions[std::size_t(from)].faces)) {
+          bool met = false;
+          grid.visit(regions.elements(place)[e](model_.mesh.vertices.row(vertex).transpose()),
+                     [&](int other) { met = met || std::ranges::binary_search(there, other); });
+          EXPECT_TRUE(met) << regions.name(from) << " to " << regions.name(to);
+        }
+      }
+    }
+  }
+  if (case_.name == "car") EXPECT_GT(others, 200);
+}
+
 TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
   const Mesh& mesh = model_.mesh;
   const double size = subspace_.diagonal;
@@ -184,6 +210,20 @@ INSTANTIATE_TEST_SUITE_P(Models, BetweenVertices,
                          region_case_name);
 
 // What the comparison of the two lifts shows: the paper's breaks regions that the samples keep.
+// Distances of a place that is nearly an image are asked for themselves.
+TEST(ExactImages, AreNoneOfNearlySymmetricPlaces) {
+  GeneratedModel model = generate("wheel", {{"detail", 1}});
+  Random random(5);
+  for (double& coordinate : model.mesh.vertices.reshaped()) coordinate += 1e-5 * random.normal();
+  const RegionMap regions(model.mesh, model.truth, RunContext{});
+  for (int place = 0; place < regions.count(); ++place) {
+    for (std::size_t e = 1; e < regions.elements(place).size(); ++e) {
+      EXPECT_EQ(regions.exact_images(place, static_cast<int>(e)),
+                std::vector<int>(static_cast<std::size_t>(regions.places()), -1));
+    }
+  }
+}
+
 TEST(PaperLift, BreaksPartialRegions) {
   const GeneratedModel model = generate("table");
   for (const GroupMode mode : {GroupMode::fixed, GroupMode::floating, GroupMode::moving}) {

@@ -1,6 +1,7 @@
 #include "orbifit/fitting/fit.h"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -129,14 +130,18 @@ CommandBody fit(CLI::App& app) {
         arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
                                       : read_annotation(arguments->annotation, mesh);
     if (!arguments->without.empty()) annotation = without(arguments->without, mesh, annotation, context.run);
+    using Clock = std::chrono::steady_clock;
+    const auto began = Clock::now();
     const auto subspace = std::make_shared<Subspace>(build_closable(mesh, annotation, chosen.subspace, context.run));
+    const StageTime building{"subspace", std::chrono::duration<double>(Clock::now() - began).count()};
     chosen.judge_groups = !arguments->report.empty() || !arguments->html.empty() || context.json;
     FitInput input{mesh, annotation, scan, Similarity{}};
     input.subspace = subspace;
     if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
     if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;
 
-    const FitResult result = orbifit::fit(input, chosen, context.run);
+    FitResult result = orbifit::fit(input, chosen, context.run);
+    result.times.insert(result.times.begin(), building);
     const SymmetryReport symmetry =
         symmetry_residual(mesh, result.rest_annotation, &result.fitted, CarriedMotions::moving, context.run);
     context.run.check();

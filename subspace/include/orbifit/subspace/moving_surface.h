@@ -53,7 +53,9 @@ class MovingSurface {
   struct Query;
   struct Ray;
 
-  void fit_faces(std::size_t begin, std::size_t end);  // groups of the lowest level
+  void frame();  // of the boxes
+  // Groups of the lowest level. \param vertices  in the boxes' frame, four numbers each
+  void fit_faces(const float* vertices, std::size_t begin, std::size_t end);
   void fit_nodes(std::size_t level, std::size_t begin, std::size_t end);
   void search(std::size_t level, std::size_t group, Query& query) const;
   void trace(std::size_t level, std::size_t group, Ray& ray) const;
@@ -61,13 +63,13 @@ class MovingSurface {
   void meet(std::size_t place, Ray& ray) const;
   void measure(std::size_t place, Query& query) const;
   Nearest answer(Query& query, int likely) const;
-  Eigen::Vector3d corner(std::size_t place, int k) const {
-    return mesh_->vertices.row(mesh_->faces(face_numbers_[place], k));
-  }
+  Eigen::Vector3d corner(std::size_t place, std::size_t k) const { return mesh_->vertices.row(corners_[place][k]); }
 
   const Mesh* mesh_;
-  std::vector<int> face_numbers_;           // by place: neighbours in space, at first, have neighbouring places
-  std::vector<std::vector<Group>> levels_;  // group g of the next level has the boxes of groups 4 g ... 4 g + 3
+  std::vector<int> face_numbers_;            // by place: neighbours in space, at first, have neighbouring places
+  std::vector<std::array<int, 3>> corners_;  // of those faces: vertices
+  std::vector<int> vertices_;                // of all those faces, ascending
+  std::vector<std::vector<Group>> levels_;   // group g of the next level has the boxes of groups 4 g ... 4 g + 3
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double scale_ = 1;
 };

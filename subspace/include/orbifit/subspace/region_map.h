@@ -114,6 +114,10 @@ class RegionMap {
   /// has no such place.
   std::vector<int> images_of(int other, int place, int element) const;
 
+  /// By place, the one that is its image by element number `element` of `place`, to rounding: for places that lie in
+  /// `place`, where their moments leave no doubt; -1 for others.
+  std::vector<int> exact_images(int place, int element) const;
+
   /// As carried_set(), and of places to which the motion takes no place as a whole those near `image`, as by
   /// set_near().
   int set_of_image(int set, int place, int element, const Eigen::Vector3d& image,
@@ -159,6 +163,7 @@ class RegionMap {
   int intern(const std::vector<int>& places) const;
   PieceMoments common_moments(int a, int b) const;
   bool around(int outer, int inner) const;  // whether outer holds all faces of inner
+  Motion told_from_origin(const Motion& motion) const;
   Images find_images(int place, int element) const;
   Images& images(int place, int element) const;
   void add_region(const Mesh& mesh, const Region& region);

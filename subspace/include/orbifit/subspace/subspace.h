@@ -109,6 +109,20 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
                             const RunContext& context = RunContext{});
 Points vertex_displacements(const Subspace& subspace, const Eigen::VectorXd& q);
 
+/// How a vertex follows its representative (VertexOrbits): u(vertex) = along * u + the carried translations, where u is
+/// what representative_rows() say of it. What turned groups add whatever the coordinates are, is left out.
+struct VertexWay {
+  int representative = 0;
+  Eigen::Matrix3d along;
+  Carried carried;
+};
+VertexWay vertex_way(const Subspace& subspace, const CarriedBasis& basis, int vertex);
+
+/// Adds what the lift makes of a representative, before anything binds it, to three linear forms in a basis'
+/// coordinates. \param rows  3 by DoF
+void add_representative_rows(const Subspace& subspace, const CarriedBasis& basis, int representative,
+                             Eigen::Ref<Eigen::Matrix3Xd> rows);
+
 /// Adds u(vertex) to three linear forms in a basis' coordinates; what turned groups add whatever the coordinates are,
 /// is left out. \param rows  3 by DoF
 void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
