@@ -98,13 +98,19 @@ std::vector<BorderPoint> AbuttingPlaces::points(double spacing) const {
 }
 
 int AbuttingPlaces::set_at(const Eigen::Vector3d& image, int carried, double tolerance) const {
+  enum class Answer : char { unknown, no, yes };
+  std::vector<Answer> answers(static_cast<std::size_t>(regions_.places()), Answer::unknown);  // many sets ask the same
+  const auto here = [&](int place) {
+    Answer& answer = answers[static_cast<std::size_t>(place)];
+    if (answer == Answer::unknown) {
+      const bool yes = regions_.whole(place) || regions_.holds(carried, place) ||
+                       regions_.distance(image, place, tolerance) <= tolerance;
+      answer = yes ? Answer::yes : Answer::no;
+    }
+    return answer == Answer::yes;
+  };
   for (const int set : sets_) {
-    if (!regions_.contains(set, carried)) continue;
-    const auto here = [&](int place) {
-      return regions_.whole(place) || regions_.holds(carried, place) ||
-             regions_.distance(image, place, tolerance) <= tolerance;
-    };
-    if (std::ranges::all_of(regions_.set_places(set), here)) return set;
+    if (std::ranges::all_of(regions_.set_places(set), here) && regions_.contains(set, carried)) return set;
   }
   return -1;
 }
