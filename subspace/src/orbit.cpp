@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t kFewPoints = 48;
 constexpr double kTurnOfOneRadian = 1;
 
-// Finds points closer than the doublet distance: few are searched one by one; many by cells as wide as that distance,
-// so that neighbours lie in 27 cells. Of points of other places, as where parts touch, none is meant: those of the very
-// same places come first, then those that lack some or have others besides.
+// Finds points closer than the doublet distance: few are searched one by one; many by cells many times as wide as
+// that distance, so that neighbours mostly lie in one. Of points of other places, as where parts touch, none is meant:
+// those of the very same places come first, then those that lack some or have others besides.
 class Doublets {
  public:
   Doublets(double distance, const std::vector<OrbitPoint>& points, const RegionMap& regions)
@@ -45,17 +45,28 @@ class Doublets {
       return best;
     }
     for (; filed_ < points_.size(); ++filed_) {
-      cells_.emplace(hash((points_[filed_].position / distance_).array().floor()), static_cast<int>(filed_));
+      cells_.emplace(hash(cell_of(points_[filed_].position)), static_cast<int>(filed_));
     }
-    const Eigen::Vector3d cell = (position / distance_).array().floor();
-    for (int k = 0; k < 27; ++k) {
-      const auto [begin, end] = cells_.equal_range(hash(cell + Eigen::Vector3d(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-      for (auto entry = begin; entry != end; ++entry) consider(entry->second);
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(1.01 * distance_);
+    const Eigen::Vector3d low = cell_of(position - reach);
+    const Eigen::Vector3i more = (cell_of(position + reach) - low).cast<int>();
+    for (int x = 0; x <= more[0]; ++x) {
+      for (int y = 0; y <= more[1]; ++y) {
+        for (int z = 0; z <= more[2]; ++z) {
+          const auto [begin, end] = cells_.equal_range(hash(low + Eigen::Vector3d(x, y, z)));
+          for (auto entry = begin; entry != end; ++entry) consider(entry->second);
+        }
+      }
     }
     return best;
   }
 
  private:
+  Eigen::Vector3d cell_of(const Eigen::Vector3d& position) const {
+    constexpr double kWidth = 20;  // of the distance
+    return (position / (kWidth * distance_)).array().floor();
+  }
+
   static std::size_t hash(const Eigen::Vector3d& cell) {
     std::size_t value = 0;
     for (int k = 0; k < 3; ++k) {
