@@ -23,8 +23,8 @@ namespace {
 // onto which the template was put as well as can be, leaves more.
 constexpr double kLeastOfPlaced = 0.8;
 constexpr double kLeastSeen = 0.04;    // of the fitted surface: an edge lies along any line
-constexpr double kWell = 0.995;        // confidence from which another scale is not tried,
-constexpr double kWorthwhile = 0.005;  // which must explain so much more
+constexpr double kWell = 0.995;        // confidence from which another scale is not tried
+constexpr double kWorthwhile = 0.005;  // what another scale, or a place that suits the template less, must explain more
 
 }  // namespace
 
@@ -117,7 +117,7 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
   for (PlacedScan& start : starts) {
     FitResult found = fit_from(input, start, system, options, context);
     iterations += found.iterations_in_all;
-    if (!best || worth(found) > worth(best->result)) best = Best{std::move(found), std::move(start)};
+    if (!best || worth(found) > worth(best->result) + kWorthwhile) best = Best{std::move(found), std::move(start)};
   }
   best->result.iterations_in_all = iterations;
   if (best->result.confidence * (1 - best->result.cut_off) < kWell && input.landmarks.empty() &&
