@@ -186,7 +186,8 @@ class PlacesBefore {
       : places_(static_cast<std::size_t>(regions.places())) {
     std::vector<int> image(places_);
     std::iota(image.begin(), image.end(), 0);
-    images_ = before_ = image;
+    before_ = image;
+    std::vector<int> images = image;  // by word and place
     std::map<std::pair<int, int>, std::vector<int>> by_step;
     for (int word = 1; word < words.count(); ++word) {
       const GroupWords::Step& step = words.step(word);
@@ -194,11 +195,11 @@ class PlacesBefore {
       if (added) entry->second = regions.exact_images(step.place, step.element);
       std::vector<int> before(places_, -1);
       for (std::size_t place = 0; place < places_; ++place) {
-        const int parent = images_[static_cast<std::size_t>(step.parent) * places_ + place];
+        const int parent = images[static_cast<std::size_t>(step.parent) * places_ + place];
         image[place] = parent >= 0 ? entry->second[static_cast<std::size_t>(parent)] : -1;
         if (image[place] >= 0) before[static_cast<std::size_t>(image[place])] = static_cast<int>(place);
       }
-      images_.insert(images_.end(), image.begin(), image.end());
+      images.insert(images.end(), image.begin(), image.end());
       before_.insert(before_.end(), before.begin(), before.end());
     }
   }
@@ -207,7 +208,7 @@ class PlacesBefore {
 
  private:
   std::size_t places_;
-  std::vector<int> images_, before_;  // by word and place
+  std::vector<int> before_;  // by word and place
 };
 
 struct RawTerm {

@@ -12,9 +12,9 @@ namespace orbifit {
 
 /// Nearest points and rays on a triangle mesh whose vertices move, or that is asked too little to be worth a
 /// SurfaceIndex, which answers the same several times sooner but takes ten times as long to be made. A tree of boxes
-/// whose shape follows from the faces' order in space as it was first made, and never changes: after a move only the
-/// boxes do, in a hundredth of the time that a tree of its own would take. Distances are exact in double
-/// precision; among faces at the same distance the lowest number wins. Const calls may run on several threads.
+/// that halves the faces by where they are as it is made, and then never changes: after a move only the boxes do, in a
+/// hundredth of the time that a tree of its own would take. Distances are exact in double precision; among faces at the
+/// same distance the lowest number wins. Const calls may run on several threads.
 class MovingSurface {
  public:
   using Nearest = SurfaceIndex::Nearest;
