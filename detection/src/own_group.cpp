@@ -286,24 +286,43 @@ class GroupSearch {
       chosen = axis;
     }
     constexpr std::size_t kMostTries = 6;
-    for (std::size_t i = 0; i < std::min(kMostTries, ranking.size()); ++i) {
-      if (add_rotation(chosen, ranking[i].order)) return;
+    if (ranking.size() > kMostTries) ranking.resize(kMostTries);
+    for (const RankedOrder& order : ranking) {
+      if (add_rotation(chosen, order.order, ranking)) return;
     }
   }
 
-  bool add_rotation(const Vector3d& axis, int n) {
-    const GroupPlacement placement = fitted({Family::Cn, n}, frame_about(axis));
-    const Vector3d better = placement.frame.col(2);
-    const bool known =
-        std::ranges::any_of(rotations_, [&](const Rotation& r) { return r.order >= n && same_line(r.axis, better); });
+  // \param others  orders that may hold as well
+  bool add_rotation(const Vector3d& axis, int n, const std::vector<RankedOrder>& others) {
+    GroupPlacement placement = fitted({Family::Cn, n}, frame_about(axis));
+    const bool known = std::ranges::any_of(
+        rotations_, [&](const Rotation& r) { return r.order >= n && same_line(r.axis, placement.frame.col(2)); });
     if (known) return true;
     if (!check(placement)) {
       ++failures_;
       return false;
     }
-    rotations_.push_back({better, n});
-    if (!best_ || size_of(best_->placement.group) < n) best_ = OwnGroup{placement, {}};
+    placement = far_more_exact(placement, others);
+    const int order = placement.group.order();
+    rotations_.push_back({placement.frame.col(2), order});
+    if (!best_ || size_of(best_->placement.group) < order) best_ = OwnGroup{placement, {}};
     return true;
+  }
+
+  // Of what is so small that a hexagon turns by ninths to the tolerance, the order that it has.
+  GroupPlacement far_more_exact(const GroupPlacement& placement, const std::vector<RankedOrder>& others) const {
+    constexpr double kFarLess = 0.1;
+    const int n = placement.group.order();
+    const auto may_be = [&](int order) { return order < n && n % order != 0; };
+    if (std::ranges::none_of(others, may_be, &RankedOrder::order)) return placement;
+    const double off = misfit(patch_, placement, context_);
+    if (off < kNothing * patch_.tolerance) return placement;
+    for (const RankedOrder& other : others) {
+      if (!may_be(other.order)) continue;
+      const GroupPlacement lower = fitted({Family::Cn, other.order}, frame_about(placement.frame.col(2)));
+      if (misfit(patch_, lower, context_) < kFarLess * off && check(lower)) return lower;
+    }
+    return placement;
   }
 
   void try_axial(const Rotation& rotation) {

@@ -39,6 +39,13 @@ TEST(OwnGroup, TheToleranceDecidesWhatIsRound) {
   EXPECT_EQ(symbol_of(test::prism(24, 1, 1), 0.0005), "D24h");
 }
 
+TEST(OwnGroup, IsTheExactOneWhereOthersHoldToTheTolerance) {
+  // By ninths and elevenths of a turn as well.
+  EXPECT_EQ(symbol_of(test::prism(6, 1, 2), 0.035), "D6h");
+  EXPECT_EQ(symbol_of(test::prism(7, 1, 2), 0.035), "D7h");
+  EXPECT_EQ(symbol_of(test::prism(7, 1, 4), 0.0225), "D7h");
+}
+
 TEST(OwnGroup, ATreadIsNoFacet) {
   // A drum of 120 sides, round to the tolerance, of which every fourth to sixth corner lies a little lower.
   constexpr int kSides = 120;
