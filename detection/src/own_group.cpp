@@ -319,7 +319,7 @@ class GroupSearch {
     if (off < kNothing * patch_.tolerance) return placement;
     for (const RankedOrder& other : others) {
       if (!may_be(other.order)) continue;
-      const GroupPlacement lower = fitted({Family::Cn, other.order}, frame_about(placement.frame.col(2)));
+      GroupPlacement lower = fitted({Family::Cn, other.order}, frame_about(placement.frame.col(2)));
       if (misfit(patch_, lower, context_) < kFarLess * off && check(lower)) return lower;
     }
     return placement;
