@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 
 #include "orbifit/detection/verification.h"
@@ -33,12 +34,9 @@ class AxialSearch {
         least_(least_share * static_cast<double>(surface.samples.faces.size())),
         frame_(frame_about(axis.direction)),
         foot_(axis.point) {
-    for (const int i : kept) {
+    for (const int i : samples) {
       const Vector3d from = surface.samples.points.row(i).transpose() - foot_;
-      const double height = from.dot(frame_.col(2));
-      low_ = std::min(low_, height);
-      high_ = std::max(high_, height);
-      reach_ = std::max(reach_, (from - height * frame_.col(2)).norm());
+      reach_ = std::max(reach_, (from - from.dot(frame_.col(2)) * frame_.col(2)).norm());
     }
   }
 
@@ -98,17 +96,26 @@ class AxialSearch {
     const auto motion_at = [&](double height) { return Motion::about(linear, foot_ + height * frame_.col(2)); };
     std::vector<double> result;
     const auto add = [&](const std::vector<int>& samples) {
+      double low = std::numeric_limits<double>::infinity();
+      double high = -low;
+      for (const int i : samples) {
+        const double at = height_of(i);
+        low = std::min(low, at);
+        high = std::max(high, at);
+      }
       for (const double height :
-           best(samples, low_, high_, false, surface_.tolerance, kMostHeights, kHeights, motion_at)) {
+           best(samples, low, high, false, surface_.tolerance, kMostHeights, kHeights, motion_at)) {
         const bool known = std::ranges::any_of(
             result, [&](double other) { return std::abs(height - other) < kSame * surface_.tolerance; });
         if (!known && !mere_plate(height, motion_at(height))) result.push_back(height);
       }
     };
-    add(samples_);
+    if (!samples_.empty()) add(samples_);
     if (kept_.size() > samples_.size()) add(kept_);
     return result;
   }
+
+  double height_of(int i) const { return frame_.col(2).dot(surface_.samples.points.row(i).transpose() - foot_); }
 
   bool holds(int i, const Motion& motion) const {
     const Vector3d normal = surface_.samples.normals.row(i);
@@ -123,8 +130,7 @@ class AxialSearch {
     for (const int i : kept_) {
       if (!holds(i, motion)) continue;
       ++kept;
-      const Vector3d from = surface_.samples.points.row(i).transpose() - foot_;
-      if (std::abs(from.dot(frame_.col(2)) - height) < kThin * surface_.tolerance) ++thin;
+      if (std::abs(height_of(i) - height) < kThin * surface_.tolerance) ++thin;
     }
     return 2 * thin > kept;
   }
@@ -200,7 +206,7 @@ class AxialSearch {
   double least_;
   GroupFrame frame_;
   Vector3d foot_;
-  double low_ = 1e9, high_ = -1e9, reach_ = 0;
+  double reach_ = 0;
 };
 
 }  // namespace

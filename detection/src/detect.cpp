@@ -330,7 +330,10 @@ class Detector {
     const std::vector<Line> distinct = distinct_lines(axes);
     RevolutionRegionOptions turned{options_.tolerance, kLeastShare, fine, options_.explanation,
                                    [this] { return late(); }};
-    add_of_pieces(find_revolution_regions(partition, *prepared_.index, distinct, regions_, turned, limited_));
+    RevolutionRegions found =
+        find_revolution_regions(partition, *prepared_.index, distinct, regions_, turned, limited_);
+    add_of_pieces(std::move(found.regions));
+    fitted_axes_.insert(fitted_axes_.begin(), found.axes.begin(), found.axes.end());
   }
 
   void add_patterns(const PreparedMesh& partition, const PartRegions& parts, bool pieces) {

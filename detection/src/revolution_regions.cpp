@@ -114,7 +114,7 @@ class RevolutionSearch {
     note(region, false, reason);
   }
 
-  std::vector<FoundRegion> take() { return std::move(found_); }
+  RevolutionRegions take() { return {std::move(found_), std::move(axes_)}; }
 
  private:
   // A region that is little but discs of planes that go on beyond it is what else there is, if that turns as well.
@@ -122,6 +122,7 @@ class RevolutionSearch {
     std::vector<int> rest = discs_.without(region);
     if (!discs_.little_else(region, rest)) return add(patch, std::move(region));
     note(region, false, "little but discs that end within planes");
+    axes_.push_back({region.placement.centre, region.placement.frame.col(2)});
     region.area = area_of(prepared_, rest);
     region.faces = std::move(rest);
     if (region.area < options_.least_share * prepared_.area || says_nothing_new(region)) return;
@@ -252,6 +253,7 @@ class RevolutionSearch {
   CutDiscs discs_;
   Balls balls_;
   std::vector<FoundRegion> found_;
+  std::vector<Line> axes_;
 };
 
 // Centroids, normals and areas of at most `most` of the faces.
@@ -322,9 +324,9 @@ std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance
   return result;
 }
 
-std::vector<FoundRegion> find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
-                                                 const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
-                                                 const RevolutionRegionOptions& options, const RunContext& context) {
+RevolutionRegions find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                                          const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
+                                          const RevolutionRegionOptions& options, const RunContext& context) {
   RevolutionSearch search(prepared, whole, known, options, context);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (options.late && options.late()) break;

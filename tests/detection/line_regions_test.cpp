@@ -150,8 +150,8 @@ TEST(RevolutionRegions, AreWithoutDiscsOfAPlateAroundThem) {
   const Line axis{both.placement("C2").centre, Vector3d::UnitZ()};
   RevolutionRegionOptions options;
   options.fine = true;
-  const std::vector<FoundRegion> found =
-      find_revolution_regions(both.surface().prepared, both.whole(), {axis}, {}, options, {});
+  const auto [found, axes] = find_revolution_regions(both.surface().prepared, both.whole(), {axis}, {}, options, {});
+  EXPECT_EQ(axes.size(), 1U);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_TRUE(found.front().placement.group.continuous());
   EXPECT_EQ(found.front().faces.size(), static_cast<std::size_t>(collar.faces.rows()));

@@ -20,6 +20,11 @@ struct RevolutionRegionOptions {
   std::function<bool()> late;          ///< whether time is up; may be empty
 };
 
+struct RevolutionRegions {
+  std::vector<FoundRegion> regions;
+  std::vector<Line> axes;  ///< of what turned but was little else than discs of planes that go on beyond it
+};
+
 /// Turned regions that end within a piece of surface, where other things are joined to it: for each axis the faces
 /// whose whole circles lie on the surface (the orbit test, method notes 4.1), then the largest group of what they make
 /// up. Of a plane nearly all within its creases is taken, or what turns if the plane ends where the region goes on, or
@@ -27,9 +32,9 @@ struct RevolutionRegionOptions {
 /// queries a face of the region.
 /// \param prepared with pieces of surface between creases for components \param whole index of the whole mesh
 /// \param axes where to look \param known regions found before; what they say is not repeated
-std::vector<FoundRegion> find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
-                                                 const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
-                                                 const RevolutionRegionOptions& options, const RunContext& context);
+RevolutionRegions find_revolution_regions(const PreparedMesh& prepared, const SurfaceIndex& whole,
+                                          const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
+                                          const RevolutionRegionOptions& options, const RunContext& context);
 
 /// Axes about which large parts of the pieces of surface turn: robust fits to each piece, and to surroundings of points
 /// spread over the pieces that no fit explains.
