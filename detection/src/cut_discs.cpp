@@ -21,8 +21,8 @@ bool about_axis(const FoundRegion& region) {
 
 }  // namespace
 
-CutDiscs::CutDiscs(const PreparedMesh& prepared)
-    : prepared_(prepared), sides_(face_sides(prepared)), kinds_(sides_.size(), Kind::outside) {}
+CutDiscs::CutDiscs(const PreparedMesh& prepared, std::vector<std::array<FaceSide, 3>> sides)
+    : prepared_(prepared), sides_(std::move(sides)), kinds_(sides_.size(), Kind::outside) {}
 
 std::vector<int> CutDiscs::without(const FoundRegion& region) {
   constexpr double kMostCut = 0.5;  // of a plane's border

@@ -17,7 +17,9 @@ namespace orbifit {
 class CutDiscs {
  public:
   /// O(F log F). \param prepared kept by reference
-  explicit CutDiscs(const PreparedMesh& prepared);
+  explicit CutDiscs(const PreparedMesh& prepared) : CutDiscs(prepared, face_sides(prepared)) {}
+  /// \param sides of all faces, where they are known
+  CutDiscs(const PreparedMesh& prepared, std::vector<std::array<FaceSide, 3>> sides);
 
   /// The faces of a region without such discs and the specks they leave, ascending; all faces where its group has no
   /// axis. O(#faces of the region and of those planes)

@@ -181,7 +181,7 @@ bool LineRegionSearch::accept(Judgement judgement) {
   }
   if (!judgement.region) return false;
   if (judgement.region->placement.group.continuous()) {
-    if (!discs_) discs_.emplace(surface_.prepared);
+    if (!discs_) discs_.emplace(surface_.prepared, surface_.sides);
     if (discs_->little_else(*judgement.region)) {
       if (options_.explanation != nullptr) {
         Explanation::Note& note = options_.explanation->notes.back();

@@ -213,12 +213,17 @@ TEST(Render, AFrameKeepsTheScale) {
   EXPECT_GT(count_pixels(image_of_two, blueish), 300);
 }
 
-TEST(Render, GlassLetsThroughWhatIsBehind) {
+// A red sphere in a blue one.
+Scene sphere_in_glass(double opacity) {
   Scene scene;
   scene.surfaces.push_back(coloured(sphere({0, 0, 0}, 1), kRed));
-  SurfaceLayer pane = coloured(sphere({0, 0, 0}, 1.5), kBlue);
-  pane.opacity = 0.1;
-  scene.surfaces.push_back(pane);
+  scene.surfaces.push_back(coloured(sphere({0, 0, 0}, 1.5), kBlue));
+  scene.surfaces.back().opacity = opacity;
+  return scene;
+}
+
+TEST(Render, GlassLetsThroughWhatIsBehind) {
+  Scene scene = sphere_in_glass(0.1);
   const Eigen::Vector3i middle = pixel(render(scene, small_view(), {}), 60, 45);
   EXPECT_TRUE(reddish(middle));
   scene.surfaces.pop_back();
@@ -247,11 +252,7 @@ TEST(Render, PointsAndSegmentsAreDrawnInTheirColours) {
 
 TEST(Render, FewRaysSeeWhatManyDo) {
   // Where a mesh's edges are drawn every pixel gets all its rays: behind the eye they change nothing else.
-  Scene scene;
-  scene.surfaces.push_back(coloured(sphere({0, 0, 0}, 1), kRed));
-  SurfaceLayer pane = coloured(sphere({0, 0, 0}, 1.5), kBlue);
-  pane.opacity = 0.2;
-  scene.surfaces.push_back(pane);
+  Scene scene = sphere_in_glass(0.2);
   SegmentLayer lines;
   lines.from = Points::Zero(2, 3);
   lines.to.resize(2, 3);
@@ -259,7 +260,7 @@ TEST(Render, FewRaysSeeWhatManyDo) {
   scene.segments.push_back(lines);
   ViewOptions view = small_view();
   view.ground_shadow = false;
-  view.frame = pane.mesh.vertices;
+  view.frame = scene.surfaces.back().mesh.vertices;
   const Image few = render(scene, view, RunContext{});
   SurfaceLayer behind = coloured(sphere({200, 200, 200}, 0.01), kRed);
   behind.edges = true;

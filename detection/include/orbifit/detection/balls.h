@@ -14,7 +14,7 @@ namespace orbifit {
 struct Ball {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 0;
-  double area = 0;  ///< of the pieces
+  double area = 0;  ///< of the pieces; all in the frame of the normalised mesh
 };
 
 struct Balls {
@@ -23,7 +23,7 @@ struct Balls {
 };
 
 /// The spheres that the mesh's components lie on, large enough to matter. The centre is where the faces' normals meet,
-/// by least squares; of a piece all but a few percent must be as far from it. O(F + P^2) for the pieces' number P.
+/// by least squares; of a piece all but a few percent must be as far from it. O(F + P B) for P pieces and B balls.
 /// \param prepared with pieces of surface between creases for components \param tolerance a length
 Balls find_balls(const PreparedMesh& prepared, double tolerance);
 
