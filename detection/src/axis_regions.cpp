@@ -14,6 +14,7 @@
 #include "orbifit/detection/verification.h"
 
 #include "axial_groups.h"
+#include "line_orbits.h"
 #include "line_region_search.h"
 #include "thresholds.h"
 
@@ -69,6 +70,23 @@ class Turns {
       if (holds(open_[i].sample, motions)) result.push_back(i);
     }
     return result;
+  }
+
+  // How far the rotation by 1/n of a turn and the next carry a few of the samples off the surface, rms.
+  double misfit(const std::vector<std::size_t>& of, int n, const SurfaceIndex& whole) const {
+    constexpr std::size_t kMost = 100;
+    const std::vector<Motion> motions = rotations_by(n > 2 ? std::vector{1.0 / n, 2.0 / n} : std::vector{0.5});
+    const double most = 2 * surface_.tolerance;
+    const std::size_t count = std::min(of.size(), kMost);
+    double square = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vector3d point = surface_.samples.points.row(open_[of[k * of.size() / count]].sample);
+      for (const Motion& motion : motions) {
+        const double off = std::min(most, whole.nearest(motion(point), most).distance);
+        square += off * off;
+      }
+    }
+    return std::sqrt(square / std::max(1.0, static_cast<double>(count * motions.size())));
   }
 
   const Line& axis() const { return axis_; }
@@ -175,6 +193,7 @@ struct Order {
   int n;
   std::vector<std::size_t> kept;  // of the axis's open samples
   double evidence = 0;
+  double misfit = 0;  // rms, of a few of them
 };
 
 class AxisSearch {
@@ -182,10 +201,12 @@ class AxisSearch {
   AxisSearch(const ScreenedSurface& surface, const SurfaceIndex& whole, const std::vector<Line>& axes,
              const std::vector<FoundRegion>& known, const LineRegionOptions& options, const RunContext& context)
       : surface_(surface),
+        whole_(whole),
         axes_(axes),
         options_(options),
         context_(context),
-        search_(surface, whole, known, options, context) {}
+        search_(surface, whole, known, options, context),
+        few_(few_of_each_orbit(axes, options.of_whole, surface.tolerance)) {}
 
   AxisRegions run() {
     AxisRegions result;
@@ -193,12 +214,16 @@ class AxisSearch {
     for (const Line& axis : result.turning) search_.add_turning_axis(axis);
     for (std::size_t a = 0; a < turns_.size() && !late(); ++a) {
       context_.progress("axes", 0.5 * static_cast<double>(a) / static_cast<double>(axes_.size()));
-      if (turns_[a]) look_for_middle(*turns_[a]);
+      if (turns_[a] && few_[a] != 0) look_for_middle(*turns_[a]);
     }
     climb();
-    // High orders first: what they explain, such as the half-turns of a dihedral group, is not looked at again.
-    std::ranges::stable_sort(orders_, [](const Order& x, const Order& y) {
-      return (x.n > 2) != (y.n > 2) ? x.n > 2 : x.n * x.evidence > y.n * y.evidence;
+    // High orders first: what they explain, such as the half-turns of a dihedral group, is not looked at again. What is
+    // small turns by any angle to the tolerance: the order that it has fits best.
+    const auto weight = [&](const Order& order) {
+      return order.n * order.evidence / (kNoMisfit * surface_.tolerance + order.misfit);
+    };
+    std::ranges::stable_sort(orders_, [&](const Order& x, const Order& y) {
+      return (x.n > 2) != (y.n > 2) ? x.n > 2 : weight(x) > weight(y);
     });
     const auto halves = std::ranges::find(orders_, 2, &Order::n);
     // A row of n things has 2 n half-turns; the strongest will do.
@@ -232,7 +257,7 @@ class AxisSearch {
     std::vector<std::vector<Order>> found(turns_.size());
     parallel_for(context_, turns_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t a = begin; a < end && !late(); ++a) {
-        if (turns_[a]) found[a] = orders_about(a);
+        if (turns_[a] && few_[a] != 0) found[a] = orders_about(a);
       }
     });
     for (std::vector<Order>& orders : found) {
@@ -255,7 +280,7 @@ class AxisSearch {
         std::vector<std::size_t> stay = turns.kept(samples, n, m);
         const double evidence = turns.evidence(stay, none);
         if (evidence < options_.least_share) continue;
-        result.push_back({axis, n, stay, evidence});
+        result.push_back({axis, n, stay, evidence, turns.misfit(turns.speaking(stay), n, whole_)});
         kept.emplace(n, std::move(stay));
       }
     }
@@ -337,14 +362,17 @@ class AxisSearch {
     return turns_[order.axis]->evidence(kept, explained) >= least(order);
   }
 
+  static constexpr double kNoMisfit = 0.1;  // tolerances
   static constexpr std::ptrdiff_t kMostHalfTurns = 12;
   static constexpr double kLeastOfHalfTurns = 0.03;  // of the surface: any few things have one
 
   const ScreenedSurface& surface_;
+  const SurfaceIndex& whole_;
   const std::vector<Line>& axes_;
   const LineRegionOptions& options_;
   const RunContext& context_;
   LineRegionSearch search_;
+  std::vector<char> few_;                      // by axis: whether to look for regions about it
   std::vector<std::unique_ptr<Turns>> turns_;  // of the axes, none where time was up
   std::vector<Order> orders_;
   std::vector<std::vector<int>> tried_;  // by order: the samples that it keeps, where it was looked at

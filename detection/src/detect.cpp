@@ -57,6 +57,7 @@ constexpr int kScreenDirections = 2500;
 constexpr double kLongest = 1e8;     // seconds, which a clock can add
 constexpr double kLeastSeconds = 1;  // for the whole
 constexpr int kDetectSamples = 6000;
+constexpr double kOfWhole = 0.999;           // of the area: the whole but for specks
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
 std::string number(double value) {
@@ -163,11 +164,10 @@ class Detector {
 
   // The largest group found for all faces, or all but specks.
   std::optional<PointGroup> group_of_whole() const {
-    constexpr double kAll = 0.999;  // of the area
     std::optional<PointGroup> result;
     for (const FoundRegion& region : regions_) {
       const PointGroup& group = region.placement.group;
-      if (region.area < kAll * prepared_.area || (result && result->continuous())) continue;
+      if (region.area < kOfWhole * prepared_.area || (result && result->continuous())) continue;
       if (!result || group.continuous() || group.order() > result->order()) result = group;
     }
     return result;
@@ -191,7 +191,20 @@ class Detector {
   }
 
   PartRegionOptions part_options(bool pieces) const {
-    return {options_.tolerance, kLeastShare, pieces, options_.explanation, [this] { return late(); }};
+    return {options_.tolerance,        kLeastShare,       pieces, options_.explanation,
+            [this] { return late(); }, motions_of_whole()};
+  }
+
+  // The elements of its largest group, if that is finite.
+  std::vector<Motion> motions_of_whole() const {
+    std::optional<GroupPlacement> largest;
+    for (const FoundRegion& region : regions_) {
+      const PointGroup& group = region.placement.group;
+      if (region.area < kOfWhole * prepared_.area || group.continuous()) continue;
+      if (!largest || group.order() > largest->group.order()) largest = region.placement;
+    }
+    if (!largest) return {};
+    return judged_motions(largest->group, largest->frame, largest->centre);
   }
 
   ComponentSurvey survey_of(const PreparedMesh& partition) const {
@@ -282,7 +295,7 @@ class Detector {
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
-    LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }};
+    LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }, motions_of_whole()};
     axes = distinct_lines(axes);
     AxisRegions about = find_axis_regions(surface, *prepared_.index, axes, regions_, options, limited_);
     add_of_pieces(std::move(about.regions));
@@ -328,8 +341,8 @@ class Detector {
     fitted_axes_ = revolution_axes(partition, options_.tolerance, limited_);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
-    RevolutionRegionOptions turned{options_.tolerance, kLeastShare, fine, options_.explanation,
-                                   [this] { return late(); }};
+    RevolutionRegionOptions turned{options_.tolerance,        kLeastShare,       fine, options_.explanation,
+                                   [this] { return late(); }, motions_of_whole()};
     RevolutionRegions found =
         find_revolution_regions(partition, *prepared_.index, distinct, regions_, turned, limited_);
     add_of_pieces(std::move(found.regions));
@@ -445,7 +458,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
   const auto late = [&] { return spent(options, start, 1); };
   if (!late()) {
-    const PartRegionOptions parts{options.tolerance, kLeastShare, false, options.explanation, late};
+    const PartRegionOptions parts{options.tolerance, kLeastShare, false, options.explanation, late, {}};
     std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),
                       std::back_inserter(found.patterns));
   }

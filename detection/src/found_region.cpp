@@ -135,12 +135,16 @@ bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundR
 
 bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<FoundRegion>& others,
                              const FoundRegion& region, double tolerance, double outside) {
-  const SurfaceMoments moments = surface_moments(prepared, region.faces);
-  const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
+  std::optional<SurfaceMoments> moments;  // few ask
   return std::ranges::any_of(others, [&](const FoundRegion& other) {
     const double share = share_by_chance(outside, other.placement.group, region.placement.group);
-    return area_outside(prepared, region.faces, other.faces) <= share * region.area &&
-           contains_group(other.placement, region.placement, moments.centroid, moments.radius, 2 * reach);
+    if (other.area < (1 - share) * region.area ||
+        area_outside(prepared, region.faces, other.faces) > share * region.area) {
+      return false;
+    }
+    if (!moments) moments = surface_moments(prepared, region.faces);
+    const double reach = tolerance * std::min(1.0, 4 * moments->diagonal);
+    return contains_group(other.placement, region.placement, moments->centroid, moments->radius, 2 * reach);
   });
 }
 

@@ -28,6 +28,24 @@ constexpr double kOfTurned = 0.98;    // of the samples of a turned surface that
 constexpr int kRounds = 2;            // of thinning out what does not verify
 constexpr double kNothingNew = 0.05;  // of the region's area outside of one that says the same
 
+// Of the rotations about its axis; 1 for none.
+int order_of_turns(const PointGroup& group) {
+  if (group.continuous() || !group.has_axis()) return 1;
+  return group.family == PointGroup::Family::Sn ? group.n / 2 : group.n;
+}
+
+// Whether what has the group would be turned about its axis if it had the other, about the same axis, as well: by
+// fifths and by sixths. It is not, or was found as such; the other keeps it to the tolerance only.
+bool turns_otherwise(const GroupPlacement& has, const GroupPlacement& other, double radius, double near) {
+  constexpr int kFew = 2;
+  const int order = order_of_turns(has.group);
+  const int turns = order_of_turns(other.group);
+  if (order <= kFew || turns <= 1 || turns % order == 0 || order % turns == 0) return false;
+  const Eigen::Vector3d axis = has.frame.col(2);
+  return radius * axis.cross(other.frame.col(2)).norm() < near &&
+         axis.cross(other.centre - has.centre).norm() < near;
+}
+
 }  // namespace
 
 LineRegionSearch::LineRegionSearch(const ScreenedSurface& surface, const SurfaceIndex& whole,
@@ -53,7 +71,10 @@ std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) c
   for (std::size_t r = 0; r < said_.size(); ++r) {
     const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
     const SurfaceMoments& moments = said_[r].moments;
-    if (!contains_group(region.placement, placement, moments.centroid, moments.radius, near)) continue;
+    if (!contains_group(region.placement, placement, moments.centroid, moments.radius, near) &&
+        !turns_otherwise(region.placement, placement, moments.radius, near)) {
+      continue;
+    }
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = result[i] != 0 || said_[r].holds[i] != 0 ? 1 : 0;
   }
   const Balls& balls = surface_.balls;
@@ -96,7 +117,7 @@ bool LineRegionSearch::leaves(const GroupPlacement& placement, const Line& axis)
 
 LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, const RunContext& context) const {
   const GroupPlacement& start = candidate.start;
-  FoundRegion region{start, grid_region(surface_, start, context), 0, "turns or mirrors into itself"};
+  FoundRegion region{start, {}, 0, "turns or mirrors into itself"};
   const auto judged = [&](bool kept, std::string_view reason) {
     Judgement result;
     if (options_.explanation != nullptr) {
@@ -107,6 +128,8 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
     if (kept) result.region = std::move(region);
     return result;
   };
+  if (of_whole(start)) return judged(false, "known of the whole");
+  region.faces = grid_region(surface_, start, context);
   const double least = options_.least_share * surface_.prepared.area;
   const auto measure = [&] {
     region.area = 0;
@@ -116,6 +139,7 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   if (!measure()) return judged(false, "too small");
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
   if (mere_balls(region)) return judged(false, "little but balls that it fixes");
+  if (says_nothing_new(region)) return judged(false, "known from a larger region");
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
   if (hopeless(patch, start, context)) return judged(false, "not verified: a first look keeps too little");
   region.placement = refine(patch, start, context);
@@ -243,6 +267,20 @@ bool LineRegionSearch::ends_anywhere(const FoundRegion& region) const {
   };
   if (std::ranges::none_of(known_, holds) && std::ranges::none_of(found_, holds)) return false;
   return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) > kMostSmooth;
+}
+
+// Whether what is known to keep all of the surface holds the group.
+bool LineRegionSearch::of_whole(const GroupPlacement& placement) const {
+  constexpr double kAll = 0.999;  // of the area
+  for (std::size_t r = 0; r < said_.size(); ++r) {
+    const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
+    const SurfaceMoments& moments = said_[r].moments;
+    if (region.area >= kAll * surface_.prepared.area &&
+        contains_group(region.placement, placement, moments.centroid, moments.radius, 2 * surface_.tolerance)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool LineRegionSearch::mere_balls(const FoundRegion& region) const {

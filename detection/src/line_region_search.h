@@ -85,6 +85,7 @@ class LineRegionSearch {
   bool hopeless(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context) const;
   bool mere_plates(const std::vector<int>& faces) const;
   bool ends_anywhere(const FoundRegion& region) const;
+  bool of_whole(const GroupPlacement& placement) const;
   bool mere_balls(const FoundRegion& region) const;
   bool says_nothing_new(const FoundRegion& region) const;
 

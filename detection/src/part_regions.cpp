@@ -20,6 +20,7 @@
 
 #include "chance_symmetry.h"
 #include "face_points.h"
+#include "line_orbits.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -420,8 +421,15 @@ class PartSearch {
     const SymmetryLines lines = find_symmetry_lines(prepared_, survey(), options_.tolerance);
     std::size_t done = 0;
     const auto total = static_cast<double>(lines.axes.size() + lines.planes.size());
+    std::vector<Line> axes;
+    for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
+    const std::vector<char> few = few_of_each_orbit(axes, options_.of_whole, options_.tolerance);
     for (const CandidateLine& axis : lines.axes) {
       if (late()) return;
+      if (few[done] == 0) {
+        ++done;
+        continue;
+      }
       context_.progress("axes", static_cast<double>(done++) / total);
       find_axis_regions(axis.line);
     }

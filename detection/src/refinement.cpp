@@ -144,19 +144,23 @@ struct Pairs {
 
 GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context,
                       const RefinementOptions& options) {
+  constexpr double kStays = 0.02;    // tolerances
+  constexpr double kSettled = 1e-4;  // tolerances
   GroupPlacement placement = start;
   const double scale = std::max(patch.moments.radius, 1e-9);
   const Eigen::Index count = std::min<Eigen::Index>(patch.samples.points.rows(), options.samples);
   std::vector<int> likely;
+  bool stays = false;  // a narrower reach will hardly move it
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    const double progress = std::min(1.0, iteration / std::max(1.0, 0.6 * options.iterations));
+    const double progress = stays ? 1 : std::min(1.0, iteration / std::max(1.0, 0.6 * options.iterations));
     const double width = patch.tolerance * std::exp((1 - progress) * std::log(options.first_width) +
                                                     progress * std::log(options.last_width));
     const Pairs pairs{patch, placement, width, scale, count, likely};
     const NormalEquations equations = pairs.sum(fitted_motions(placement), context);
     if (equations.weight < 20) break;
     const double moved = apply(equations, scale, placement);
-    if (progress >= 1 && moved < 1e-7 * scale) break;
+    if (progress >= 1 && moved < kSettled * patch.tolerance) break;
+    stays = stays || moved < kStays * patch.tolerance;
   }
   return placement;
 }

@@ -19,6 +19,7 @@
 
 #include "cut_discs.h"
 #include "face_points.h"
+#include "line_orbits.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -90,6 +91,9 @@ class RevolutionSearch {
   // within what was collected, until what is left turns.
   void look_at(const Line& axis) {
     constexpr int kRounds = 6;
+    RefinementOptions quick;  // all rotations move the axis together: few samples of each will do
+    quick.samples = 160;
+    quick.iterations = 6;
     GroupPlacement turn{{Family::Cinfv, 1}, frame_about(axis.direction), axis.point};
     FoundRegion region{turn, faces_about(axis, whole_, kFacesSlack * options_.tolerance, kFirstAngles), 0,
                        "turned about an axis"};
@@ -100,7 +104,7 @@ class RevolutionSearch {
       const SurfacePatch patch =
           make_patch(prepared_, region.faces, kPatchSamples, options_.tolerance, context_, "turned");
       if (round == 0 && !continuous_about(patch, axis.direction, axis.point)) break;
-      region.placement = refine(patch, region.placement, context_);
+      region.placement = refine(patch, region.placement, context_, quick);
       const Verification verification = verify_group(patch, region.placement, context_);
       reason = objection(verification);
       if (reason.empty()) return take_out_discs(patch, std::move(region));
@@ -328,8 +332,10 @@ RevolutionRegions find_revolution_regions(const PreparedMesh& prepared, const Su
                                           const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
                                           const RevolutionRegionOptions& options, const RunContext& context) {
   RevolutionSearch search(prepared, whole, known, options, context);
+  const std::vector<char> few = few_of_each_orbit(axes, options.of_whole, options.tolerance);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (options.late && options.late()) break;
+    if (few[i] == 0) continue;
     context.check();
     context.progress("turned regions", static_cast<double>(i) / static_cast<double>(axes.size()));
     search.look_at(axes[i]);

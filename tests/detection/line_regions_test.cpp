@@ -14,6 +14,7 @@
 #include "orbifit/detection/plane_regions.h"
 #include "orbifit/detection/revolution_regions.h"
 #include "orbifit/detection/segments.h"
+#include "orbifit/detection/verification.h"
 #include "orbifit/detection/wider_subgroups.h"
 
 #include "axial_groups.h"
@@ -129,6 +130,45 @@ TEST(AxisRegions, HaveMirrorsThatTheWholeHasNot) {
       std::ranges::find_if(found, [](const FoundRegion& region) { return region.placement.group.symbol() == "D4h"; });
   ASSERT_NE(of_top, found.end());
   EXPECT_EQ(of_top->faces.size(), static_cast<std::size_t>(top.faces.rows()));
+}
+
+TEST(AxisRegions, AreAskedForTheOrderThatFitsBestFirst) {
+  // A post with ten ridges so low that the tolerance hides by how much of a turn it turns.
+  constexpr int kSides = 120;
+  Mesh post = test::prism(kSides, 0.3, 0.5);
+  for (int i = 0; i < 2 * kSides; ++i) {
+    post.vertices.row(i).head<2>() *= 1 + 0.03 * std::cos(10 * 2 * std::numbers::pi * i / kSides);
+  }
+  const Mesh block = test::moved(test::box(2, 2.4, 0.3), test::shift(0.7, 0.6, -1));
+  const Screened both(test::joined({test::subdivided(post, 2), block}));
+  Explanation explanation;
+  LineRegionOptions options;
+  options.explanation = &explanation;
+  const Line axis{both.placement("C2").centre, Vector3d::UnitZ()};
+  const std::vector<FoundRegion> found =
+      find_axis_regions(both.surface(), both.whole(), {axis}, {}, options, {}).regions;
+  EXPECT_EQ(symbols(found), std::vector<std::string>{"D10h"});
+  ASSERT_FALSE(explanation.notes.empty());
+  EXPECT_TRUE(explanation.notes.front().kept) << explanation.notes.front().subject;
+}
+
+TEST(AxisRegions, AreLookedForAtAFewOfThePlacesThatAreImages) {
+  std::vector<Mesh> posts;
+  std::vector<Line> axes;
+  for (int i = 0; i < 6; ++i) {
+    const Motion turn = Motion::rotation(Vector3d::UnitZ(), i * std::numbers::pi / 3, Vector3d::Zero());
+    posts.push_back(test::moved(test::moved(test::prism(5, 0.3, 0.8), test::shift(1, 0, 0)), turn));
+  }
+  const Screened screened(test::joined(posts));
+  for (int i = 0; i < 6; ++i) {
+    const Motion turn = Motion::rotation(Vector3d::UnitZ(), i * std::numbers::pi / 3, Vector3d::Zero());
+    axes.push_back({screened.placement("C2", turn({1, 0, 0})).centre, Vector3d::UnitZ()});
+  }
+  LineRegionOptions options;
+  EXPECT_EQ(find_axis_regions(screened.surface(), screened.whole(), axes, {}, options, {}).regions.size(), 6U);
+  const GroupPlacement whole = screened.placement("C6");
+  options.of_whole = judged_motions(whole.group, whole.frame, whole.centre);
+  EXPECT_EQ(find_axis_regions(screened.surface(), screened.whole(), axes, {}, options, {}).regions.size(), 3U);
 }
 
 TEST(GroupsWithMiddle, AreNotOfPlatesInTheirOwnPlane) {

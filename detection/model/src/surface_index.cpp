@@ -429,7 +429,8 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
   search.facet_margin = kFacetMargin * (1 + static_cast<float>(local.cwiseAbs().maxCoeff()));
   if (likely >= 0 && likely < static_cast<int>(face_numbers.size())) is_nearest(search, static_cast<unsigned>(likely));
 
-  if (any) {
+  // Of those in the same cell one is near, if not the nearest: the tree then looks at little beyond it.
+  if (search.face < 0) {
     if (const FaceCells::Faces* near = cells.at(search.point)) {
       for (std::size_t k = 0; k < near->size() && (*near)[k] >= 0 && search.face < 0; ++k) {
         is_nearest(search, static_cast<unsigned>((*near)[k]));

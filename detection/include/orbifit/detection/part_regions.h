@@ -20,6 +20,7 @@ struct PartRegionOptions {
   bool pieces = false;
   Explanation* explanation = nullptr;  ///< notes are added to it; may be null
   std::function<bool()> late;          ///< whether time is up; may be empty
+  std::vector<Motion> of_whole = {};   ///< that keep the whole mesh: what is found at one place has images at others
 };
 
 struct PartRegions {

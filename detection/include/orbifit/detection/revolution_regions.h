@@ -18,6 +18,7 @@ struct RevolutionRegionOptions {
   bool fine = false;
   Explanation* explanation = nullptr;  ///< may be null
   std::function<bool()> late;          ///< whether time is up; may be empty
+  std::vector<Motion> of_whole = {};   ///< that keep the whole mesh: what is found at one place has images at others
 };
 
 struct RevolutionRegions {
