@@ -289,13 +289,14 @@ void FullSystem::normal_of(const std::vector<Correspondence>& pairs, double shar
 FullSystem::Solution FullSystem::solve(const std::vector<Correspondence>& pairs, double share,
                                        const Points& scan_points, const std::vector<Pull>& pulls, const Hold& hold,
                                        const RunContext&) {
+  constexpr double kPreferRest = 1e-6;  // of |u|^2, against one sample's share of the data
   const auto all_samples = static_cast<double>(samples());
   couple(pairs, pulls);
   Normal normal{data_, Eigen::MatrixXd::Zero(unknowns_, 6), Eigen::MatrixXd::Zero(6, 6), VectorXd::Zero(unknowns_ + 6)};
   normal_of(pairs, share, scan_points, pulls, normal);
   normal.sparse += hold.stiffness * stiffness_;
   if (soft_weight_ > 0) normal.sparse += penalty_;
-  normal.sparse.diagonal() += (kPreferPose * all_samples + hold.damping) * metric_;
+  normal.sparse.diagonal() += (kPreferRest * all_samples + hold.damping) * metric_;
   normal.corner.diagonal().array() += kHoldPose * all_samples + hold.damping;
   normal.side.head(3 * samples()) += hold.stiffness * stacked(energy_.pull());
   if (hold.damping > 0) normal.side.head(unknowns_) += hold.damping * metric_.cwiseProduct(hold.around);
