@@ -12,9 +12,12 @@ Points stretch_pull(const Corotation& corotation, const std::vector<Eigen::Matri
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     for (const int j : corotation.neighbours[i]) {
+      if (j <= static_cast<int>(i)) continue;
       const Eigen::Vector3d edge = (corotation.rest.row(row) - corotation.rest.row(j)).transpose();
       const Eigen::Matrix3d mean = 0.5 * (rotations[i] + rotations[static_cast<std::size_t>(j)]);
-      pull.row(row) += (mean * edge - edge).transpose();
+      const Eigen::Vector3d turned = mean * edge - edge;
+      pull.row(row) += turned.transpose();
+      pull.row(j) -= turned.transpose();
     }
   }
   return pull;

@@ -42,8 +42,8 @@ class DeformationSystem {
   /// Minimises stiffness (regularity(q) + growth_cost(grown + gamma)) + symmetry_energy(q)
   ///           + sum of w <n, x + gamma (x - c) + u - (s + omega x (s - c) + tau)>^2 + pulls
   ///           + damping (|q - around|^2 + |(gamma, omega, tau)|^2)
-  ///           + a millionth of all samples' share of |q|^2, which prefers the pose to a deformation that does the
-  ///           same.
+  ///           + a millionth of the rigid part of all samples' displacements, squared, which prefers the pose to a
+  ///           deformation that does the same.
   /// \param share of a pair: factor of its weight
   /// \throw NoResultError where there is no finite solution
   virtual Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
@@ -81,8 +81,11 @@ class DeformationSystem {
   CorotatedEnergy energy_;
 };
 
-/// Of |q|^2, relative to one sample's share of the data: see DeformationSystem::solve().
+/// Of the squared rigid part of the samples' displacements, relative to one sample's share of the data: see
+/// DeformationSystem::solve(). Not of all of them: what no data hold would stay with the pose where the rest leaves it.
 constexpr double kPreferPose = 1e-6;
+/// Of all samples' share of |q|^2, likewise: coordinates that move nothing stay.
+constexpr double kHoldStill = 1e-10;
 /// Holds what of the pose the data do not determine, likewise.
 constexpr double kHoldPose = 1e-9;
 

@@ -9,6 +9,7 @@
 
 #include "condition.h"
 #include "data_normal.h"
+#include "rigid_modes.h"
 
 namespace orbifit {
 
@@ -24,7 +25,11 @@ FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
       rows_(subspace, subspace.basis),
       mesh_(mesh),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)},
-      stiffness_matrix_(restricted(subspace.basis.columns, energy_.matrix())) {}
+      stiffness_matrix_(restricted(subspace.basis.columns, energy_.matrix())) {
+  const Eigen::MatrixXd rigid = subspace.basis.columns.transpose() * rigid_modes(subspace.sampling.points);
+  hold_matrix_ = kPreferPose * rigid * rigid.transpose();
+  hold_matrix_.diagonal().array() += kHoldStill * static_cast<double>(samples());
+}
 
 Points FitSystem::samples_at(const Eigen::VectorXd& q) const {
   return sample_displacements(subspace_, q);
@@ -41,8 +46,9 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   rows_.prepare(touched_vertices(mesh_, pairs, pulls), context);
   step_.grows = hold.scale_open;
   DataNormal normal = data_normal(rows_, dof, mesh_, step_, pairs, share, scan_points, pulls, context);
-  normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() += hold.stiffness * stiffness_matrix_;
-  normal.matrix.diagonal().head(dof).array() += kPreferPose * all_samples + hold.damping;
+  normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() +=
+      hold.stiffness * stiffness_matrix_ + hold_matrix_;
+  normal.matrix.diagonal().head(dof).array() += hold.damping;
   normal.matrix.diagonal().tail(step_.unknowns()).array() += kHoldPose * all_samples + hold.damping;
   if (step_.grows) {
     const double cost = hold.stiffness * growth_cost(1) / (step_.length * step_.length);

@@ -37,7 +37,8 @@ class FitSystem final : public DeformationSystem {
   const Mesh& mesh_;
   ScanStep step_;
   Eigen::MatrixXd stiffness_matrix_;
-  Eigen::MatrixXd matrix_;  // of the last system, lower half
+  Eigen::MatrixXd hold_matrix_;  // what prefers the pose
+  Eigen::MatrixXd matrix_;       // of the last system, lower half
   Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
 };
 

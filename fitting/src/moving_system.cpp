@@ -9,6 +9,7 @@
 #include "orbifit/subspace/corotation.h"
 
 #include "condition.h"
+#include "rigid_modes.h"
 #include "vertex_rows.h"
 
 namespace orbifit {
@@ -47,6 +48,7 @@ MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double st
       mesh_(mesh),
       regions_(subspace),
       stiffness_(energy_.matrix()),
+      rigid_(rigid_modes(subspace.sampling.points)),
       spread_(lift_weights(mesh.vertices, subspace.sampling.points, subspace.sampling.radius, RunContext{})),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)} {}
 
@@ -147,9 +149,13 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   normal.matrix.block(dof, dof, ways, ways) += turn_columns.transpose() * bent;
   normal.side.head(dof) += hold.stiffness * (columns.transpose() * stacked(pull));
   normal.side.segment(dof, ways) += hold.stiffness * (turn_columns.transpose() * stacked(pull));
-  const double prefer = kPreferPose * all_samples;
-  normal.matrix.diagonal().head(dof).array() += prefer + hold.damping;
-  normal.side.head(dof) -= prefer * now.q;
+  MatrixXd rigid(dof + ways, rigid_.cols());
+  rigid << columns.transpose() * rigid_, turn_columns.transpose() * rigid_;
+  const double still = kHoldStill * all_samples;
+  normal.matrix.topLeftCorner(dof + ways, dof + ways) += kPreferPose * rigid * rigid.transpose();
+  normal.side.head(dof + ways) -= kPreferPose * rigid * (rigid_.transpose() * stacked(moved));
+  normal.matrix.diagonal().head(dof).array() += still + hold.damping;
+  normal.side.head(dof) -= still * now.q;
   normal.matrix.diagonal().segment(dof, ways) +=
       (kHoldTurns + hold.damping) * turn_columns.colwise().squaredNorm().transpose();
   normal.matrix.diagonal().tail<6>().array() += kHoldPose * all_samples + hold.damping;

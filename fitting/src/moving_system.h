@@ -52,6 +52,7 @@ class MovingSystem final : public DeformationSystem {
   const Mesh& mesh_;
   CarriedRegions regions_;
   Eigen::SparseMatrix<double> stiffness_;  // K, of the samples
+  Eigen::MatrixXd rigid_;                  // rigid_modes() of the samples
   LiftWeights spread_;                     // samples -> vertices
   ScanStep step_;
   struct KnownBasis {

@@ -16,7 +16,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kDefaultSamples = 1200;
+// Where groups make many samples of few degrees of freedom, thin parts need them; searched for from fewer.
+constexpr int kMostDefaultSamples = 2400;
+constexpr int kFirstSamples = 1200;
 constexpr int kDefaultDegreesOfFreedom = 200;
 constexpr int kSearchRounds = 6;
 
@@ -58,8 +60,9 @@ SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, Gr
   if (options.radius > 0) {
     return sample_symmetrically(mesh, regions, words, sampling_options(mesh, options, options.radius), context);
   }
-  const double target = options.samples > 0 ? options.samples : kDefaultSamples;
-  double radius = std::sqrt(face_areas(mesh).sum() / (0.7 * target));
+  const double target = options.samples > 0 ? options.samples : kMostDefaultSamples;
+  const double first = options.samples > 0 ? options.samples : kFirstSamples;
+  double radius = std::sqrt(face_areas(mesh).sum() / (0.7 * first));
   SymmetricSampling best;
   double best_error = 0;
   for (int round = 0; round < kSearchRounds; ++round) {

@@ -1,8 +1,12 @@
 #include "orbifit/subspace/corotation.h"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 
 #include "orbifit/model/dense.h"
+
+#include "kernels.h"
 
 namespace orbifit {
 
@@ -16,6 +20,33 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& covariance) {
   Eigen::Matrix3d u = svd.matrixU();
   if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
   return u * svd.matrixV().transpose();
+}
+
+// The rotations nearest to the covariances, numbered by `held`, from those before; four at a time, the last few filled
+// up with repetitions.
+void turn_to(const std::vector<Eigen::Matrix3d>& covariances, const std::vector<std::size_t>& held,
+             std::vector<Eigen::Matrix3d>& rotations) {
+  constexpr std::size_t kAtATime = 4;
+  double matrices[9 * kAtATime];
+  double found[9 * kAtATime];
+  for (std::size_t begin = 0; begin < held.size(); begin += kAtATime) {
+    for (std::size_t lane = 0; lane < kAtATime; ++lane) {
+      const std::size_t k = std::min(begin + lane, held.size() - 1);
+      for (std::size_t e = 0; e < 9; ++e) {
+        matrices[kAtATime * e + lane] = covariances[k].data()[e];
+        found[kAtATime * e + lane] = rotations[held[k]].data()[e];
+      }
+    }
+    const unsigned missed = kernels().nearest_rotations(matrices, found);
+    for (std::size_t lane = 0; lane < kAtATime && begin + lane < held.size(); ++lane) {
+      Eigen::Matrix3d& rotation = rotations[held[begin + lane]];
+      if ((missed >> lane & 1U) != 0) {
+        rotation = nearest_rotation(covariances[begin + lane]);
+        continue;
+      }
+      for (std::size_t e = 0; e < 9; ++e) rotation.data()[e] = found[kAtATime * e + lane];
+    }
+  }
 }
 
 }  // namespace
@@ -40,7 +71,9 @@ Corotation corotation(const Points& samples, const SampleEdges& edges, const Eig
 
 std::vector<Eigen::Matrix3d> local_rotations(const Corotation& corotation, const Points& deformed,
                                              const std::vector<Eigen::Matrix3d>& previous) {
-  std::vector<Eigen::Matrix3d> rotations(previous.size());
+  std::vector<Eigen::Matrix3d> rotations = previous;
+  std::vector<Eigen::Matrix3d> covariances;
+  std::vector<std::size_t> held;  // samples that have neighbours
   for (std::size_t i = 0; i < previous.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -51,8 +84,11 @@ std::vector<Eigen::Matrix3d> local_rotations(const Corotation& corotation, const
       covariance += now.transpose() * rest;
       size += rest.squaredNorm();
     }
-    rotations[i] = size > 0 ? nearest_rotation(covariance + kAnchor * size * previous[i]) : previous[i];
+    if (!(size > 0)) continue;
+    covariances.emplace_back(covariance + kAnchor * size * previous[i]);
+    held.push_back(i);
   }
+  turn_to(covariances, held, rotations);
   return rotations;
 }
 

@@ -1,6 +1,8 @@
 #include "fit_system.h"
 
+#include <cmath>
 #include <ostream>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -119,6 +121,32 @@ TEST_P(System, SolutionIsTheSameWithTwoThreads) {
   two.threads = 2;
   const FitSystem::Solution one = system_.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, context_);
   EXPECT_EQ(other.solve(data_.pairs, kShare, data_.points, data_.pulls, hold_, two).q, one.q);
+}
+
+// A bar along z whose ends are pulled apart; there is nothing to say of the middle, however soft it is.
+TEST(SoftSystem, WhatNoDataHoldFollowsTheRest) {
+  const RunContext context;
+  const GeneratedModel bar = generate("bar");
+  const Subspace subspace = build_subspace(bar.mesh, bar.truth, {}, context);
+  FitSystem system(subspace, bar.mesh, 0.3);
+  FitSystem::Hold hold;
+  hold.stiffness = 1e-4;
+  hold.around = Eigen::VectorXd::Zero(subspace.degrees_of_freedom());
+  constexpr double kEnd = 3;
+  constexpr double kPulled = 0.2;
+  std::vector<Pull> pulls;
+  for (int v = 0; v < bar.mesh.vertices.rows(); ++v) {
+    const Eigen::Vector3d vertex = bar.mesh.vertices.row(v);
+    if (std::abs(vertex.z()) < kEnd) continue;
+    pulls.push_back({v, vertex + kPulled * Eigen::Vector3d(0, 0, vertex.z() < 0 ? -1 : 1), 1});
+  }
+  const FitSystem::Solution solution = system.solve({}, 1, Points(0, 3), pulls, hold, context);
+  const Points moved = vertex_displacements(subspace, solution.q);
+  for (Eigen::Index v = 0; v < moved.rows(); ++v) {
+    const double z = bar.mesh.vertices(v, 2);
+    if (std::abs(z) >= kEnd) continue;
+    EXPECT_NEAR(moved(v, 2), kPulled * z / kEnd, 0.15 * kPulled) << "at " << z;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, System,

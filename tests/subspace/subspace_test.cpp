@@ -228,6 +228,14 @@ TEST(Subspace, SamplesAskedForAreNearlyGiven) {
   EXPECT_NEAR(static_cast<double>(samples), 400, 60);
 }
 
+// Turned parts make many samples of few degrees of freedom: half as many could not tell a disc's sides apart.
+TEST(Subspace, ShapesOfFewDegreesOfFreedomHaveMoreSamples) {
+  const GeneratedModel model = generate("fan");
+  const Subspace subspace = build_subspace(model.mesh, model.truth, {}, RunContext{});
+  EXPECT_GT(subspace.degrees_of_freedom(), 100);
+  EXPECT_LT(subspace.sampling.points.rows(), 2700);
+}
+
 TEST(Subspace, RefusesOptionsThatMakeNoSense) {
   SubspaceOptions options;
   options.radius = -1;

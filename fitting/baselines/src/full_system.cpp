@@ -11,6 +11,7 @@
 
 #include "for_each_coordinate.h"
 #include "plain_weights.h"
+#include "rigid_modes.h"
 
 namespace orbifit {
 
@@ -75,6 +76,7 @@ FullSystem::FullSystem(const Subspace& subspace, const Mesh& mesh, double stretc
       constraints_(constraints_of(subspace, symmetry)),
       unknowns_(constraints_.cols()),
       metric_(metric_of(subspace.sampling, symmetry != FullSymmetry::none, unknowns_)),
+      rigid_(rigid_modes(subspace.sampling.points)),
       stiffness_(lower_for_each_coordinate(energy_.matrix(), unknowns_)),
       coupled_(static_cast<std::size_t>(samples()), std::vector<bool>(static_cast<std::size_t>(samples()), false)),
       known_(static_cast<std::size_t>(mesh.faces.rows()), 0),
@@ -295,17 +297,27 @@ FullSystem::Solution FullSystem::solve(const std::vector<Correspondence>& pairs,
   normal_of(pairs, share, scan_points, pulls, normal);
   normal.sparse += hold.stiffness * stiffness_;
   if (soft_weight_ > 0) normal.sparse += penalty_;
-  normal.sparse.diagonal() += (kPreferPose * all_samples + hold.damping) * metric_;
+  normal.sparse.diagonal() += (kHoldStill * all_samples + hold.damping) * metric_;
   normal.corner.diagonal().array() += kHoldPose * all_samples + hold.damping;
   normal.side.head(3 * samples()) += hold.stiffness * stacked(energy_.pull());
   if (hold.damping > 0) normal.side.head(unknowns_) += hold.damping * metric_.cwiseProduct(hold.around);
 
-  saddle_.factorise(normal.sparse, normal.border, normal.corner);
-  const VectorXd solved = saddle_.solve(normal.side);
+  // What prefers the pose is not sparse: k |B^T u|^2 is the largest of 2 z^T sqrt(k) B^T u - |z|^2, z unknowns too.
+  const Index all = unknowns_ + 6;
+  Eigen::MatrixXd border = Eigen::MatrixXd::Zero(unknowns_, 6 + rigid_.cols());
+  border.leftCols<6>() = normal.border;
+  border.topRightCorner(rigid_.rows(), rigid_.cols()) = std::sqrt(kPreferPose) * rigid_;
+  Eigen::MatrixXd corner = -Eigen::MatrixXd::Identity(border.cols(), border.cols());
+  corner.topLeftCorner<6, 6>() = normal.corner;
+  VectorXd side = VectorXd::Zero(unknowns_ + border.cols());
+  side.head(all) = normal.side;
+
+  saddle_.factorise(normal.sparse, border, corner);
+  const VectorXd solved = saddle_.solve(side);
   if (!solved.allFinite()) throw NoResultError("the fit's linear system has no finite solution");
   Solution solution;
   solution.q = solved.head(unknowns_);
-  solution.scan_step = small_motion(solved.segment<3>(unknowns_) / diagonal_, solved.tail<3>(), pivot_);
+  solution.scan_step = small_motion(solved.segment<3>(unknowns_) / diagonal_, solved.segment<3>(unknowns_ + 3), pivot_);
   return solution;
 }
 

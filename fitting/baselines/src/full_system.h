@@ -56,6 +56,7 @@ class FullSystem final : public DeformationSystem {
   double soft_weight_ = 0;
   Eigen::Index unknowns_;
   Eigen::VectorXd metric_;                  // of |q|^2
+  Eigen::MatrixXd rigid_;                   // rigid_modes() of the samples
   Sparse stiffness_;                        // lower half
   std::vector<std::vector<bool>> coupled_;  // by pairs of samples, the lower first: which data rows have met
   std::vector<char> known_;                 // faces whose samples are coupled

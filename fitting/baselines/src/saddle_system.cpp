@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <Eigen/CholmodSupport>
+#include <Eigen/LU>
 
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
 
 #include "condition.h"
@@ -97,7 +97,7 @@ VectorXd SaddleSystem::eliminate(const VectorXd& right) const {
   VectorXd result(n + k);
   result.head(n) = factor_->cholesky.solve(VectorXd(right.head(n)));
   if (k == 0) return result;
-  result.tail(k) = solve_semidefinite(reduced_corner_, right.tail(k) - border_.transpose() * result.head(n));
+  result.tail(k) = reduced_corner_.fullPivLu().solve(right.tail(k) - border_.transpose() * result.head(n));
   result.head(n) -= reduced_border_ * result.tail(k);
   return result;
 }

@@ -11,7 +11,7 @@ namespace orbifit {
 /// Linear systems A x = b, or the minimum of x^T A x / 2 - b^T x where C x = 0, by Lagrange multipliers:
 ///     | A  C^T | x |   | b |
 ///     | C   0  | l | = | 0 |.
-/// A is symmetric and positive definite, sparse but for a border of few last rows and columns, which C does not touch.
+/// A is symmetric, sparse and positive definite but for a border of few last rows and columns, which C does not touch.
 /// Rows of C may depend on one another, so the multipliers' block gets a small -1/w. With it they can be eliminated,
 /// which leaves A + w C^T C to factorise, and iterative refinement takes the effect of w out again, to rounding (the
 /// method of multipliers: Hestenes 1969, Powell 1969).

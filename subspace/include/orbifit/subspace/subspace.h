@@ -36,7 +36,8 @@ std::string to_string(LiftKind kind);
 struct SubspaceOptions {
   GroupMode mode = GroupMode::floating;
   LiftKind lift = LiftKind::orbit;
-  /// Sampling radius r in mesh units; 0: chosen for `samples`, or for about 200 degrees of freedom.
+  /// Sampling radius r in mesh units; 0: chosen for `samples`, or for about 200 degrees of freedom, but at most
+  /// about 2400 samples.
   double radius = 0;  // >= 0
   /// Number of samples to aim at when no radius is given; 0: see `radius`.
   int samples = 0;  // 0, or >= 4
