@@ -29,6 +29,8 @@ constexpr int kCopySamples = 300;
 constexpr int kRefined = 800;                 // samples
 constexpr std::size_t kBorderQueries = 3000;  // for a misfit
 constexpr double kExact = 1e-3;               // root mean square distance, tolerances
+constexpr double kToRefine = 0.8;             // of the time; the rest to verify
+constexpr const char* kNoTime = "no time left";
 
 class CarryBack {
  public:
@@ -45,12 +47,17 @@ class CarryBack {
     context_.progress("carrying back", 0);
     std::ranges::stable_sort(found.regions, std::greater<>(), &FoundRegion::area);
     std::vector<FoundRegion> refined(found.regions.size());
-    for_each(refined.size(), [&](std::size_t i) { refined[i] = refined_on_fine(found.regions[i]); });
+    for_each(refined.size(), [&](std::size_t i) {
+      if (i == 0 || !late(kToRefine)) refined[i] = refined_on_fine(found.regions[i]);
+    });
+    drop_unrefined(found.regions, refined);
     context_.progress("carrying back", 0.4);
     const std::vector<GroupPlacement> goals = consistent(found.regions, refined);
     context_.progress("carrying back", 0.5);
-    std::vector<std::string> objections(refined.size());
-    for_each(refined.size(), [&](std::size_t i) { objections[i] = settle(refined[i], goals[i]); });
+    std::vector<std::string> objections(refined.size(), kNoTime);
+    for_each(refined.size(), [&](std::size_t i) {
+      if (i == 0 || !late(1)) objections[i] = settle(refined[i], goals[i]);
+    });
     Findings result;
     for (std::size_t i = 0; i < refined.size(); ++i) {
       if (objections[i].empty()) {
@@ -61,6 +68,10 @@ class CarryBack {
     }
     for (const Pattern& pattern : found.patterns) {
       context_.check();
+      if (late(1)) {
+        note(to_string(pattern.kind) + " of " + pattern.name, kNoTime);
+        continue;
+      }
       if (std::optional<Pattern> carried = carried_pattern(pattern)) {
         carried->id = static_cast<int>(result.patterns.size());
         result.patterns.push_back(std::move(*carried));
@@ -70,10 +81,34 @@ class CarryBack {
   }
 
  private:
+  // On all threads, the first ones first.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& look) const {
-    parallel_for(context_, count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) look(i);
+    constexpr std::size_t kStride = 64;
+    parallel_for(context_, std::min(count, kStride), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = 0; row < count; row += kStride) {
+        for (std::size_t i = row + begin; i < std::min(count, row + end); ++i) look(i);
+      }
     });
+  }
+
+  bool late(double share) const { return options_.late && options_.late(share); }
+
+  // Those that time was not left for: the smallest.
+  void drop_unrefined(std::vector<FoundRegion>& found, std::vector<FoundRegion>& refined) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < refined.size(); ++i) {
+      if (refined[i].faces.empty()) {
+        note(found[i].placement.group.symbol() + " on " + found[i].name, kNoTime);
+        continue;
+      }
+      if (kept != i) {
+        found[kept] = std::move(found[i]);
+        refined[kept] = std::move(refined[i]);
+      }
+      ++kept;
+    }
+    found.resize(kept);
+    refined.resize(kept);
   }
 
   void note(const std::string& subject, const std::string& reason) const {
@@ -122,7 +157,9 @@ class CarryBack {
       regions[i].placement = refined[i].placement;
       regions[i].placement.centre = coarse_of_fine(refined[i].placement.centre);
     }
-    complete_regions(prepared_, *prepared_.index, {options_.tolerance, regions.size(), nullptr, {}}, context_, regions);
+    complete_regions(prepared_, *prepared_.index,
+                     {options_.tolerance, regions.size(), nullptr, [this] { return late(kToRefine); }}, context_,
+                     regions);
     std::vector<GroupPlacement> result;
     for (const FoundRegion& region : regions) {
       result.push_back(region.placement);

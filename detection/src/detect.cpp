@@ -54,8 +54,9 @@ constexpr double kLeastNoise = 3e-4;     // of the diagonal
 constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
 constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
 constexpr int kScreenDirections = 2500;
-constexpr double kLongest = 1e8;     // seconds, which a clock can add
-constexpr double kLeastSeconds = 1;  // for the whole
+constexpr double kLongest = 1e8;      // seconds, which a clock can add
+constexpr double kLeastSeconds = 1;   // for the whole
+constexpr double kOfDetection = 0.6;  // of the time, where what is found is to be carried to a finer mesh
 constexpr int kDetectSamples = 6000;
 constexpr double kOfWhole = 0.999;           // of the area: the whole but for specks
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
@@ -444,9 +445,12 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
     const PreparedMesh stand_in = prepare(coarse->mesh);
     // Where creases end within the surface is known to the fine mesh only.
     Components segments = carried_pieces(smooth_segments(prepared), prepared, *coarse);
-    found = Detector(stand_in, std::move(segments), options, start, context).run();
+    DetectOptions on_coarse = options;
+    on_coarse.max_seconds *= kOfDetection;
+    found = Detector(stand_in, std::move(segments), on_coarse, start, context).run();
+    const auto late = [&](double share) { return spent(options, start, share); };
     found = carried_back(prepared, *coarse, stand_in, std::move(found),
-                         {options.tolerance, options.samples, options.explanation}, context);
+                         {options.tolerance, options.samples, options.explanation, late}, context);
   } else {
     found = Detector(prepared, {}, options, start, context).run();
   }

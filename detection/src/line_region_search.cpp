@@ -42,8 +42,7 @@ bool turns_otherwise(const GroupPlacement& has, const GroupPlacement& other, dou
   const int turns = order_of_turns(other.group);
   if (order <= kFew || turns <= 1 || turns % order == 0 || order % turns == 0) return false;
   const Eigen::Vector3d axis = has.frame.col(2);
-  return radius * axis.cross(other.frame.col(2)).norm() < near &&
-         axis.cross(other.centre - has.centre).norm() < near;
+  return radius * axis.cross(other.frame.col(2)).norm() < near && axis.cross(other.centre - has.centre).norm() < near;
 }
 
 }  // namespace
@@ -81,7 +80,7 @@ std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) c
   for (std::size_t b = 0; b < balls.all.size(); ++b) {
     if (!fixes(placement, balls.all[b], surface_.tolerance)) continue;
     for (std::size_t i = 0; i < result.size(); ++i) {
-      const int ball = balls.ball_of_piece[static_cast<std::size_t>(surface_.piece_of_sample[i])];
+      const int ball = balls.ball_of_face[static_cast<std::size_t>(surface_.samples.faces[i])];
       if (ball == static_cast<int>(b)) result[i] = 1;
     }
   }

@@ -73,8 +73,8 @@ class Mirrored {
   }
 
   const Ball* ball_of(Eigen::Index i) const {
-    const auto piece = static_cast<std::size_t>(surface_.piece_of_sample[static_cast<std::size_t>(i)]);
-    const int ball = surface_.balls.ball_of_piece[piece];
+    const auto face = static_cast<std::size_t>(surface_.samples.faces[static_cast<std::size_t>(i)]);
+    const int ball = surface_.balls.ball_of_face[face];
     return ball < 0 ? nullptr : &surface_.balls.all[static_cast<std::size_t>(ball)];
   }
 

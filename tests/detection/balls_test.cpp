@@ -2,6 +2,8 @@
 
 #include "orbifit/detection/balls.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -44,10 +46,53 @@ TEST(Balls, AreFoundWhereTheyAre) {
   const PreparedMesh prepared = ball_and_box();
   const Balls balls = find_balls(prepared, test::kTolerance);
   ASSERT_EQ(balls.all.size(), 1U);
-  EXPECT_EQ(balls.ball_of_piece, (std::vector<int>{0, -1}));
+  for (std::size_t f = 0; f < balls.ball_of_face.size(); ++f) {
+    EXPECT_EQ(balls.ball_of_face[f], prepared.components.component_of_face[f] == 0 ? 0 : -1);
+  }
   const GroupPlacement there = placed(prepared, "Cs", kCentre);
   EXPECT_LT((balls.all[0].centre - there.centre).norm(), 1e-3);
   EXPECT_NEAR(balls.all[0].area, area_of(prepared, prepared.components.faces[0]), 1e-12);
+}
+
+// A ball that goes over into a bump on its top, all of one piece: up to some angle from the top it is drawn out.
+Mesh drawn_out(double angle) {
+  Mesh mesh = test::ball(60, 1);
+  for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
+    const double from_top = std::acos(std::clamp(mesh.vertices(v, 2), -1.0, 1.0));
+    if (from_top < angle) mesh.vertices.row(v) *= 1.5 - 0.5 * from_top / angle;
+  }
+  return mesh;
+}
+
+TEST(Balls, AreFoundUnderWhatStandsOnThem) {
+  const PreparedMesh prepared = prepare(drawn_out(1.2));
+  const Balls balls = find_balls(prepared, test::kTolerance);
+  ASSERT_EQ(balls.all.size(), 1U);
+  const double size = prepared.input_of_normalised.scale;
+  EXPECT_LT((balls.all[0].centre - placed(prepared, "Cs", Vector3d::Zero()).centre).norm(), test::kTolerance);
+  EXPECT_NEAR(size * balls.all[0].radius, 1, 0.01);
+  for (std::size_t f = 0; f < balls.ball_of_face.size(); ++f) {
+    double far = 0;
+    double near = 10;
+    for (const int vertex : prepared.mesh.faces.row(static_cast<Eigen::Index>(f))) {
+      const double radius = prepared.input_of_normalised(Vector3d(prepared.mesh.vertices.row(vertex))).norm();
+      far = std::max(far, radius);
+      near = std::min(near, radius);
+    }
+    if (far < 1.001) {
+      EXPECT_EQ(balls.ball_of_face[f], 0);
+    }
+    if (near > 1.1) {
+      EXPECT_EQ(balls.ball_of_face[f], -1);
+    }
+  }
+}
+
+TEST(Balls, AreNotFoundInWhatIsRoundButNoBall) {
+  // No sphere holds much of an egg.
+  Mesh egg = test::ball(60, 1);
+  egg.vertices.col(2) *= 1.3;
+  EXPECT_TRUE(find_balls(prepare(egg), test::kTolerance).all.empty());
 }
 
 struct Fixing {

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -123,6 +125,38 @@ TEST(CarryBack, ARowStaysOnItsLattice) {
   const double way = row.generators.front().translation.norm();
   EXPECT_NEAR(way, Eigen::Vector3d(1.5, 0.2, 0).norm(), 1e-9);
   EXPECT_NEAR((row.generators.front().linear - Eigen::Matrix3d::Identity()).norm(), 0, 1e-12);
+}
+
+// C4 and C2 of a table's four legs, as found on a coarse mesh, carried back with or without time left.
+std::vector<std::string> carried_groups(bool time_left, Explanation& explanation) {
+  constexpr double kTolerance = 0.02;
+  const PreparedMesh fine = prepare(four_legs());
+  const std::optional<CoarseMesh> coarse = coarse_mesh(fine, {kTolerance, 0}, {});
+  if (!coarse) return {"no coarse mesh"};
+  const PreparedMesh stand_in = prepare(coarse->mesh);
+  const Eigen::Vector3d centre =
+      inverse(stand_in.input_of_normalised)(inverse(fine.input_of_normalised)(Eigen::Vector3d(0, 0, 0)));
+  Findings found;
+  for (const char* group : {"C4", "C2"}) {
+    const GroupPlacement placement{*PointGroup::parse(group), GroupFrame::Identity(), centre};
+    found.regions.push_back({placement, test::all_faces(coarse->mesh), stand_in.area, group});
+  }
+  const auto late = [&](double) { return !time_left; };
+  std::vector<std::string> groups;
+  for (const FoundRegion& region :
+       carried_back(fine, *coarse, stand_in, std::move(found), {kTolerance, 2000, &explanation, late}, {}).regions) {
+    groups.push_back(region.placement.group.symbol());
+  }
+  return groups;
+}
+
+TEST(CarryBack, LeavesOutWhatThereIsNoTimeForButTheLargest) {
+  Explanation explanation;
+  EXPECT_EQ(carried_groups(true, explanation), (std::vector<std::string>{"C4", "C2"}));
+  EXPECT_TRUE(explanation.notes.empty());
+  EXPECT_EQ(carried_groups(false, explanation), std::vector<std::string>{"C4"});
+  ASSERT_EQ(explanation.notes.size(), 1U);
+  EXPECT_EQ(explanation.notes.front().reason, "no time left");
 }
 
 }  // namespace

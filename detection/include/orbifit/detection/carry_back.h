@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "orbifit/detection/coarse_mesh.h"
@@ -21,6 +22,8 @@ struct CarryBackOptions {
   double tolerance = 0.005;            ///< of the detector, a fraction of the diagonal
   int samples = 4000;                  ///< on which the whole mesh is verified
   Explanation* explanation = nullptr;  ///< may be null
+  /// Whether a share of the time there is has been spent: the smallest regions are then left out. May be empty.
+  std::function<bool(double share)> late = {};
 };
 
 /// What was found on a coarse mesh as it holds on the fine one: faces by their stand-ins, placements and motions
