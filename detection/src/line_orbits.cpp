@@ -7,32 +7,43 @@
 
 namespace orbifit {
 
-std::vector<char> few_of_each_orbit(const std::vector<Line>& lines, const std::vector<Motion>& motions,
-                                    double tolerance) {
-  constexpr int kFew = 3;
+namespace {
+
+constexpr int kLooksOfOrbit = 3;
+
+}  // namespace
+
+LineOrbits::LineOrbits(const std::vector<Line>& lines, const std::vector<Motion>& motions, double tolerance) {
   constexpr double kAngle = 0.03;  // radians
-  std::vector<char> few(lines.size(), 1);
-  if (motions.size() < static_cast<std::size_t>(kFew)) return few;
-  struct Orbit {
-    Line first;
-    int count = 0;
-  };
-  std::vector<Orbit> orbits;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const auto is_image = [&](const Orbit& orbit) {
+  std::vector<Line> firsts;
+  for (const Line& line : lines) {
+    const auto is_image = [&](const Line& first) {
       return std::ranges::any_of(motions, [&](const Motion& motion) {
-        const Eigen::Vector3d direction = motion.linear * lines[i].direction;
-        return direction.cross(orbit.first.direction).norm() < kAngle &&
-               (motion(lines[i].point) - orbit.first.point).cross(orbit.first.direction).norm() < tolerance;
+        const Eigen::Vector3d direction = motion.linear * line.direction;
+        return direction.cross(first.direction).norm() < kAngle &&
+               (motion(line.point) - first.point).cross(first.direction).norm() < tolerance;
       });
     };
-    const auto orbit = std::ranges::find_if(orbits, is_image);
-    if (orbit == orbits.end()) {
-      orbits.push_back({lines[i], 1});
-    } else {
-      few[i] = ++orbit->count <= kFew ? 1 : 0;
-    }
+    const auto orbit = motions.size() < static_cast<std::size_t>(kLooksOfOrbit)
+                           ? firsts.end()
+                           : std::ranges::find_if(firsts, is_image);
+    orbit_of_line_.push_back(static_cast<std::size_t>(orbit - firsts.begin()));
+    if (orbit == firsts.end()) firsts.push_back(line);
   }
+  looks_.assign(firsts.size(), 0);
+  found_.assign(firsts.size(), 0);
+}
+
+bool LineOrbits::worth_a_look(std::size_t line) {
+  const std::size_t orbit = orbit_of_line_[line];
+  return ++looks_[orbit] <= kLooksOfOrbit || found_[orbit] != 0;
+}
+
+std::vector<char> few_of_each_orbit(const std::vector<Line>& lines, const std::vector<Motion>& motions,
+                                    double tolerance) {
+  LineOrbits orbits(lines, motions, tolerance);
+  std::vector<char> few;
+  for (std::size_t i = 0; i < lines.size(); ++i) few.push_back(orbits.worth_a_look(i) ? 1 : 0);
   return few;
 }
 

@@ -423,15 +423,14 @@ class PartSearch {
     const auto total = static_cast<double>(lines.axes.size() + lines.planes.size());
     std::vector<Line> axes;
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
-    const std::vector<char> few = few_of_each_orbit(axes, options_.of_whole, options_.tolerance);
-    for (const CandidateLine& axis : lines.axes) {
+    LineOrbits orbits(axes, options_.of_whole, options_.tolerance);
+    for (; done < axes.size(); ++done) {
       if (late()) return;
-      if (few[done] == 0) {
-        ++done;
-        continue;
-      }
-      context_.progress("axes", static_cast<double>(done++) / total);
-      find_axis_regions(axis.line);
+      if (!orbits.worth_a_look(done)) continue;
+      context_.progress("axes", static_cast<double>(done) / total);
+      const std::size_t before = found_.size();
+      find_axis_regions(axes[done]);
+      if (found_.size() > before) orbits.found(done);
     }
     for (const CandidateLine& plane : lines.planes) {
       if (late() || crowded()) return;

@@ -87,9 +87,19 @@ class RevolutionSearch {
     }
   }
 
+  // Whether a region was found.
+  bool look_at(const Line& axis) {
+    const std::size_t before = found_.size();
+    collect_about(axis);
+    return found_.size() > before;
+  }
+
+  RevolutionRegions take() { return {std::move(found_), std::move(axes_)}; }
+
+ private:
   // Collects faces about the axis and fits it to them; where the surface is fine, again with the better axis, and then
   // within what was collected, until what is left turns.
-  void look_at(const Line& axis) {
+  void collect_about(const Line& axis) {
     constexpr int kRounds = 6;
     RefinementOptions quick;  // all rotations move the axis together: few samples of each will do
     quick.samples = 160;
@@ -118,9 +128,6 @@ class RevolutionSearch {
     note(region, false, reason);
   }
 
-  RevolutionRegions take() { return {std::move(found_), std::move(axes_)}; }
-
- private:
   // A region that is little but discs of planes that go on beyond it is what else there is, if that turns as well.
   void take_out_discs(const SurfacePatch& patch, FoundRegion region) {
     std::vector<int> rest = discs_.without(region);
@@ -332,13 +339,13 @@ RevolutionRegions find_revolution_regions(const PreparedMesh& prepared, const Su
                                           const std::vector<Line>& axes, const std::vector<FoundRegion>& known,
                                           const RevolutionRegionOptions& options, const RunContext& context) {
   RevolutionSearch search(prepared, whole, known, options, context);
-  const std::vector<char> few = few_of_each_orbit(axes, options.of_whole, options.tolerance);
+  LineOrbits orbits(axes, options.of_whole, options.tolerance);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (options.late && options.late()) break;
-    if (few[i] == 0) continue;
+    if (!orbits.worth_a_look(i)) continue;
     context.check();
     context.progress("turned regions", static_cast<double>(i) / static_cast<double>(axes.size()));
-    search.look_at(axes[i]);
+    if (search.look_at(axes[i])) orbits.found(i);
   }
   return search.take();
 }

@@ -34,6 +34,18 @@ TEST(LineOrbits, AreLookedAtThreeTimes) {
   EXPECT_EQ(few_under("C6", ring()), (std::vector<char>{1, 1, 1, 0, 0, 0}));
 }
 
+TEST(LineOrbits, AreLookedAtFurtherWhereSomethingIsFound) {
+  const std::vector<Line> lines = ring();
+  LineOrbits orbits(lines, judged_motions({PointGroup::Family::Cn, 6}, GroupFrame::Identity(), Vector3d::Zero()),
+                    test::kTolerance);
+  std::vector<bool> looked;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    looked.push_back(orbits.worth_a_look(i));
+    if (i == 2) orbits.found(i);
+  }
+  EXPECT_EQ(looked, std::vector<bool>(6, true));
+}
+
 TEST(LineOrbits, AreAsManyAsTheGroupLeaves) {
   // Under C3 every other line is in the same orbit, and there are no more than three in each.
   EXPECT_EQ(std::ranges::count(few_under("C3", ring()), 1), 6);
