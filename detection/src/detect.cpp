@@ -41,6 +41,7 @@
 #include "looser_groups.h"
 #include "region_patterns.h"
 #include "row_growth.h"
+#include "thresholds.h"
 
 namespace orbifit {
 
@@ -58,7 +59,6 @@ constexpr double kLongest = 1e8;      // seconds, which a clock can add
 constexpr double kLeastSeconds = 1;   // for the whole
 constexpr double kOfDetection = 0.6;  // of the time, where what is found is to be carried to a finer mesh
 constexpr int kDetectSamples = 6000;
-constexpr double kOfWhole = 0.999;           // of the area: the whole but for specks
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
 
 std::string number(double value) {
@@ -164,20 +164,28 @@ class Detector {
   }
 
   // The largest group found for all faces, or all but specks.
-  std::optional<PointGroup> group_of_whole() const {
-    std::optional<PointGroup> result;
+  std::optional<GroupPlacement> placement_of_whole() const {
+    std::optional<GroupPlacement> result;
     for (const FoundRegion& region : regions_) {
       const PointGroup& group = region.placement.group;
-      if (region.area < kOfWhole * prepared_.area || (result && result->continuous())) continue;
-      if (!result || group.continuous() || group.order() > result->order()) result = group;
+      if (region.area < kOfWhole * prepared_.area || (result && result->group.continuous())) continue;
+      if (!result || group.continuous() || group.order() > result->group.order()) result = region.placement;
     }
     return result;
+  }
+
+  // The elements of that group; none where it is continuous.
+  std::vector<Motion> motions_of_whole() const {
+    const std::optional<GroupPlacement> whole = placement_of_whole();
+    if (!whole || whole->group.continuous()) return {};
+    return judged_motions(whole->group, whole->frame, whole->centre);
   }
 
   // Who looks at a dented box will miss its group: a message says at which tolerance it is found.
   void tell_of_looser_groups() {
     constexpr int kFew = 4;  // elements: of more there is little to miss
-    const std::optional<PointGroup> has = group_of_whole();
+    const std::optional<GroupPlacement> whole = placement_of_whole();
+    const std::optional<PointGroup> has = whole ? std::optional(whole->group) : std::nullopt;
     if (late() || (has && (has->continuous() || has->order() > kFew))) return;
     limited_.progress("looser", 0);
     const std::vector<LooserGroup> looser = looser_groups(prepared_, has, options_.tolerance, screen_, limited_);
@@ -194,18 +202,6 @@ class Detector {
   PartRegionOptions part_options(bool pieces) const {
     return {options_.tolerance,        kLeastShare,       pieces, options_.explanation,
             [this] { return late(); }, motions_of_whole()};
-  }
-
-  // The elements of its largest group, if that is finite.
-  std::vector<Motion> motions_of_whole() const {
-    std::optional<GroupPlacement> largest;
-    for (const FoundRegion& region : regions_) {
-      const PointGroup& group = region.placement.group;
-      if (region.area < kOfWhole * prepared_.area || group.continuous()) continue;
-      if (!largest || group.order() > largest->group.order()) largest = region.placement;
-    }
-    if (!largest) return {};
-    return judged_motions(largest->group, largest->frame, largest->centre);
   }
 
   ComponentSurvey survey_of(const PreparedMesh& partition) const {

@@ -270,11 +270,10 @@ bool LineRegionSearch::ends_anywhere(const FoundRegion& region) const {
 
 // Whether what is known to keep all of the surface holds the group.
 bool LineRegionSearch::of_whole(const GroupPlacement& placement) const {
-  constexpr double kAll = 0.999;  // of the area
   for (std::size_t r = 0; r < said_.size(); ++r) {
     const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
     const SurfaceMoments& moments = said_[r].moments;
-    if (region.area >= kAll * surface_.prepared.area &&
+    if (region.area >= kOfWhole * surface_.prepared.area &&
         contains_group(region.placement, placement, moments.centroid, moments.radius, 2 * surface_.tolerance)) {
       return true;
     }

@@ -13,25 +13,24 @@ std::vector<LooserGroup> looser_groups(const PreparedMesh& prepared, const std::
   constexpr double kMost = 0.02;  // of the diagonal: beyond, any shape has something
   std::vector<int> all(static_cast<std::size_t>(prepared.mesh.faces.rows()));
   std::iota(all.begin(), all.end(), 0);
-  const auto larger = [&](double looser, const std::optional<PointGroup>& than) -> std::optional<LooserGroup> {
-    if (looser > kMost || (than && than->continuous())) return std::nullopt;
+  const auto group_at = [&](double looser) -> std::optional<PointGroup> {
+    if (looser > kMost) return std::nullopt;
     const SurfacePatch patch = make_patch(prepared, all, kSamples, looser, context, "looser");
     const std::optional<OwnGroup> own = find_own_group(patch, &screen, {}, context);
-    if (!own) return std::nullopt;
-    const PointGroup& group = own->placement.group;
-    if (!group.continuous() && group.order() <= (than ? than->order() : 1)) return std::nullopt;
-    return LooserGroup{group, looser};
+    return own ? std::optional(own->placement.group) : std::nullopt;
   };
-  const auto more_than = [](const PointGroup& a, const PointGroup& b) {
-    return a.continuous() ? !b.continuous() : !b.continuous() && a.order() > b.order();
+  const auto more = [](const std::optional<PointGroup>& a, const std::optional<PointGroup>& b) {
+    if (!a || (b && b->continuous())) return false;
+    return a->continuous() || a->order() > (b ? b->order() : 1);
   };
+  if (has && has->continuous()) return {};
   // What holds at twice the tolerance holds at four times.
-  const std::optional<LooserGroup> at_four = larger(4 * tolerance, has);
-  if (!at_four && 4 * tolerance <= kMost) return {};
-  const std::optional<LooserGroup> at_two = larger(2 * tolerance, has);
+  const std::optional<PointGroup> at_four = group_at(4 * tolerance);
+  if (!more(at_four, has) && 4 * tolerance <= kMost) return {};
+  const std::optional<PointGroup> at_two = group_at(2 * tolerance);
   std::vector<LooserGroup> result;
-  if (at_two) result.push_back(*at_two);
-  if (at_four && (!at_two || more_than(at_four->group, at_two->group))) result.push_back(*at_four);
+  if (more(at_two, has)) result.push_back({*at_two, 2 * tolerance});
+  if (more(at_four, result.empty() ? has : at_two)) result.push_back({*at_four, 4 * tolerance});
   return result;
 }
 

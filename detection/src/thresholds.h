@@ -5,6 +5,7 @@ namespace orbifit {
 /// Cosines of the angles within which the normals of a surface and of its image agree.
 inline constexpr double kAlikeNormals = 0.90630778703665;  ///< 25 degrees: where a symmetry is verified
 inline constexpr double kNearNormals = 0.8;                ///< 37 degrees: the motion may be a little off yet
+inline constexpr double kOfWhole = 0.999;                  ///< of the mesh's area: the whole but for specks
 inline constexpr double kFacetNormals = 0.64;              ///< 50 degrees: between facets of small round parts
 
 /// The highest order of a finite rotation that is looked for; beyond it a shape counts as turned.

@@ -47,7 +47,7 @@ TEST(LineOrbits, AreLookedAtFurtherWhereSomethingIsFound) {
 }
 
 TEST(LineOrbits, AreAsManyAsTheGroupLeaves) {
-  // Under C3 every other line is in the same orbit, and there are no more than three in each.
+  // Under these every other line is in the same orbit, and there are no more than three in each.
   EXPECT_EQ(std::ranges::count(few_under("C3", ring()), 1), 6);
   EXPECT_EQ(std::ranges::count(few_under("D3", ring()), 1), 6);
 }

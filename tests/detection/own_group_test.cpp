@@ -42,7 +42,8 @@ TEST(OwnGroup, TheToleranceDecidesWhatIsRound) {
 TEST(OwnGroup, IsTheExactOneWhereOthersHoldToTheTolerance) {
   // By ninths and elevenths of a turn as well.
   EXPECT_EQ(symbol_of(test::prism(6, 1, 2), 0.035), "D6h");
-  EXPECT_EQ(symbol_of(test::prism(7, 1, 2), 0.032), "D7h");  // round from 0.033 on
+  EXPECT_EQ(symbol_of(test::prism(7, 1, 2), 0.032), "D7h");
+  EXPECT_EQ(symbol_of(test::prism(7, 1, 2), 0.036), "Dinfh") << "round to the tolerance";
   EXPECT_EQ(symbol_of(test::prism(7, 1, 4), 0.0225), "D7h");
 }
 

@@ -15,7 +15,8 @@ struct LineRegionOptions {
   double least_share = 0.002;          ///< of the mesh's area that speaks for a region: less says little
   Explanation* explanation = nullptr;  ///< notes are added to it; may be null
   std::function<bool()> late;          ///< whether time is up; may be empty
-  std::vector<Motion> of_whole = {};   ///< that keep the whole mesh: what is found at one place has images at others
+  /// That keep the whole mesh, in its normalised frame: what is found at one place has images at others. May be empty.
+  std::vector<Motion> of_whole = {};
 };
 
 struct AxisRegions {

@@ -20,7 +20,8 @@ struct PartRegionOptions {
   bool pieces = false;
   Explanation* explanation = nullptr;  ///< notes are added to it; may be null
   std::function<bool()> late;          ///< whether time is up; may be empty
-  std::vector<Motion> of_whole = {};   ///< that keep the whole mesh: what is found at one place has images at others
+  /// That keep the whole mesh, in its normalised frame: what is found at one place has images at others. May be empty.
+  std::vector<Motion> of_whole = {};
 };
 
 struct PartRegions {

@@ -23,7 +23,9 @@ struct RefinementOptions {
 };
 
 /// Moves frame and centre, all elements of the group together, so that the images of the patch's samples come to lie on
-/// the patch: point-to-plane least squares with Tukey's loss, whose reach shrinks. The group itself stays exact.
+/// the patch: point-to-plane least squares with Tukey's loss, whose reach shrinks, at once where a step moves it by
+/// less than a fiftieth of the tolerance; it ends where one moves it by less than a ten thousandth. The group itself
+/// stays exact.
 GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context,
                       const RefinementOptions& options = {});
 

@@ -18,7 +18,8 @@ struct RevolutionRegionOptions {
   bool fine = false;
   Explanation* explanation = nullptr;  ///< may be null
   std::function<bool()> late;          ///< whether time is up; may be empty
-  std::vector<Motion> of_whole = {};   ///< that keep the whole mesh: what is found at one place has images at others
+  /// That keep the whole mesh, in its normalised frame: what is found at one place has images at others. May be empty.
+  std::vector<Motion> of_whole = {};
 };
 
 struct RevolutionRegions {
