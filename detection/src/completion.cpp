@@ -17,6 +17,7 @@
 #include "orbifit/model/point_index.h"
 
 #include "face_points.h"
+#include "near_cells.h"
 #include "thresholds.h"
 
 namespace orbifit {
@@ -78,9 +79,13 @@ class Completion {
     }
   }
 
+  // How far from a region a point may be for an image to hold it.
+  double image_reach(std::size_t region) const { return 1.5 * tolerance_of(region); }
+
   struct Surface {
     SurfacePatch patch;
-    std::optional<double> fit;  // rms distance under the region's group where it is now
+    std::optional<NearCells> cells;  // of its faces, once images are made
+    std::optional<double> fit;       // rms distance under the region's group where it is now
   };
 
   // What is known of a region's image under a motion before anything is changed.
@@ -209,7 +214,7 @@ class Completion {
       image.within = k;
       return image;
     }
-    image.faces = image_of(q, index_of(q), motion);
+    image.faces = image_of(q, motion);
     return image;
   }
 
@@ -231,20 +236,29 @@ class Completion {
     const std::lock_guard lock(surfaces_mutex_);
     if (surfaces_.size() <= region) surfaces_.resize(region + 1);
     if (!surfaces_[region]) {
-      surfaces_[region] = std::make_unique<Surface>(Surface{
-          make_patch(prepared_, regions_[region].faces, kSpreadSamples, options_.tolerance, context_, "completion"),
-          {}});
+      const std::vector<int>& faces = regions_[region].faces;
+      surfaces_[region] = std::make_unique<Surface>(
+          Surface{make_patch(prepared_, faces, kSpreadSamples, options_.tolerance, context_, "completion"), {}, {}});
     }
     return *surfaces_[region];
   }
 
   const SurfaceIndex& index_of(std::size_t region) { return *surface_of(region).patch.index; }
 
+  const NearCells& cells_of(std::size_t region) {
+    std::optional<NearCells>& cells = surface_of(region).cells;
+    const std::lock_guard lock(surfaces_mutex_);
+    if (!cells) cells.emplace(prepared_, regions_[region].faces, image_reach(region));
+    return *cells;
+  }
+
   // The faces that the motion carries the region onto; empty where there is no such surface.
-  std::vector<int> image_of(std::size_t q, const SurfaceIndex& surface, const Motion& motion) const {
+  std::vector<int> image_of(std::size_t q, const Motion& motion) {
     const Motion back = inverse(motion);
     const SurfaceMoments& moments = moments_[q];
-    const double reach = 1.5 * tolerance_of(q);
+    const double reach = image_reach(q);
+    const SurfaceIndex& surface = index_of(q);
+    const NearCells& cells = cells_of(q);
     std::vector<int> faces;
     double area = 0;
     for (const PointIndex::Neighbour& near : near_.within(motion(moments.centroid), moments.radius + reach)) {
@@ -252,7 +266,8 @@ class Completion {
       if (prepared_.areas[face] <= 0) continue;
       const Vector3d normal = back.linear * prepared_.normals.row(face).transpose();
       const bool most = most_of_face(prepared_, face, [&](const Vector3d& point) {
-        return surface.within_facing(back(point), normal, kFacetNormals, reach);
+        const Vector3d origin = back(point);
+        return cells.may_reach(origin) && surface.within_facing(origin, normal, kFacetNormals, reach);
       });
       if (!most) continue;
       faces.push_back(face);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -242,6 +243,49 @@ Motion refined_motion(const SurfacePatch& patch, const PreparedMesh& prepared, c
   return fit_motion(patch, prepared, prepared.index->part(part), start, 0);
 }
 
+namespace {
+
+// Classes of components of alike invariants, of which there may be several: each round peels off the copies of the
+// first.
+std::vector<CongruenceClass> congruent_members(const PreparedMesh& prepared, const std::vector<int>& group,
+                                               const std::vector<SurfaceMoments>& moments, double tolerance,
+                                               const RunContext& context) {
+  constexpr int kMostRounds = 8;
+  const std::vector<std::vector<int>>& faces = prepared.components.faces;
+  std::vector<CongruenceClass> result;
+  std::vector<int> open = group;
+  for (int round = 0; !open.empty() && round < kMostRounds; ++round) {
+    const int first = open.front();
+    CongruenceClass found{{first}, {Motion{}}};
+    std::vector<std::optional<Motion>> motions(open.size());
+    if (open.size() > 1) {
+      const SurfacePatch patch = make_patch(prepared, faces[static_cast<std::size_t>(first)], kRepresentativeSamples,
+                                            tolerance, context, "congruence");
+      parallel_for(context, open.size() - 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin + 1; i < end + 1; ++i) {
+          const auto c = static_cast<std::size_t>(open[i]);
+          motions[i] = align(patch, prepared, faces[c], moments[c], context);
+        }
+      });
+    }
+    std::vector<int> rest;
+    for (std::size_t i = 1; i < open.size(); ++i) {
+      if (motions[i]) {
+        found.members.push_back(open[i]);
+        found.motions.push_back(*motions[i]);
+      } else {
+        rest.push_back(open[i]);
+      }
+    }
+    result.push_back(std::move(found));
+    open = std::move(rest);
+  }
+  for (const int c : open) result.push_back({{c}, {Motion{}}});
+  return result;
+}
+
+}  // namespace
+
 ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance, double least_share,
                                   const RunContext& context) {
   ComponentSurvey result;
@@ -271,38 +315,31 @@ ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance
     }
     if (!placed) groups.push_back({c});
   }
-  std::size_t done = 0;
-  for (std::vector<int>& group : groups) {
-    context.progress("components", static_cast<double>(++done) / static_cast<double>(groups.size()));
+  std::erase_if(groups, [&](const std::vector<int>& group) {
     double area = 0;
     for (const int c : group) area += known[static_cast<std::size_t>(c)].area;
-    if (area < least_share * prepared.area) continue;
-    std::ranges::sort(group);
-    // Within a group of alike invariants several classes may hide: each round peels off the copies of the first.
-    std::vector<int> open = group;
-    for (int round = 0; !open.empty() && round < 8; ++round) {
-      const int first = open.front();
-      CongruenceClass found{{first}, {Motion{}}};
-      std::vector<int> rest;
-      if (open.size() > 1) {
-        const SurfacePatch patch = make_patch(prepared, faces[static_cast<std::size_t>(first)], kRepresentativeSamples,
-                                              tolerance, context, "congruence");
-        for (std::size_t i = 1; i < open.size(); ++i) {
-          const auto c = static_cast<std::size_t>(open[i]);
-          const std::optional<Motion> motion = align(patch, prepared, faces[c], result.moments[c], context);
-          if (motion) {
-            found.members.push_back(open[i]);
-            found.motions.push_back(*motion);
-          } else {
-            rest.push_back(open[i]);
-          }
-        }
-      }
-      result.classes.push_back(std::move(found));
-      open = std::move(rest);
-    }
-    for (const int c : open) result.classes.push_back({{c}, {Motion{}}});
+    return area < least_share * prepared.area;
+  });
+  // Large groups one after the other on all threads, then the small ones side by side.
+  constexpr std::size_t kLarge = 8;
+  std::vector<std::vector<CongruenceClass>> classes(groups.size());
+  const auto split = [&](std::size_t g, const RunContext& how) {
+    std::ranges::sort(groups[g]);
+    classes[g] = congruent_members(prepared, groups[g], result.moments, tolerance, how);
+  };
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    context.progress("components", static_cast<double>(g) / static_cast<double>(groups.size()));
+    if (groups[g].size() >= kLarge) split(g, context);
   }
+  RunContext alone = context;
+  alone.threads = 1;
+  parallel_for(context, groups.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      if (groups[g].size() < kLarge) split(g, alone);
+    }
+  });
+  for (std::vector<CongruenceClass>& of_group : classes)
+    std::ranges::move(of_group, std::back_inserter(result.classes));
   std::ranges::stable_sort(result.classes, std::greater<>(), [&](const CongruenceClass& each) {
     double area = 0;
     for (const int c : each.members) area += known[static_cast<std::size_t>(c)].area;

@@ -133,7 +133,7 @@ bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundR
   return area_apart(prepared, inner.faces, outer.faces) <= most;
 }
 
-bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<FoundRegion>& others,
+bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const FoundRegion> others,
                              const FoundRegion& region, double tolerance, double outside) {
   std::optional<SurfaceMoments> moments;  // few ask
   return std::ranges::any_of(others, [&](const FoundRegion& other) {

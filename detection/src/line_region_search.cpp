@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <ranges>
 #include <set>
+#include <span>
 
 #include <Eigen/Geometry>
 
@@ -45,6 +47,12 @@ bool turns_otherwise(const GroupPlacement& has, const GroupPlacement& other, dou
   return radius * axis.cross(other.frame.col(2)).norm() < near && axis.cross(other.centre - has.centre).norm() < near;
 }
 
+// The very same, of one stage.
+bool same(const LineRegionSearch::Candidate& a, const LineRegionSearch::Candidate& b) {
+  return a.stage == b.stage && a.enlarge == b.enlarge && a.start.group == b.start.group &&
+         a.start.frame == b.start.frame && a.start.centre == b.start.centre;
+}
+
 }  // namespace
 
 LineRegionSearch::LineRegionSearch(const ScreenedSurface& surface, const SurfaceIndex& whole,
@@ -68,7 +76,7 @@ std::vector<char> LineRegionSearch::explained(const GroupPlacement& placement) c
   const bool many = !placement.group.continuous() && placement.group.order() == 2;
   const double near = (many ? 5 : 2) * surface_.tolerance;
   for (std::size_t r = 0; r < said_.size(); ++r) {
-    const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
+    const FoundRegion& region = known_region(r);
     const SurfaceMoments& moments = said_[r].moments;
     if (!contains_group(region.placement, placement, moments.centroid, moments.radius, near) &&
         !turns_otherwise(region.placement, placement, moments.radius, near)) {
@@ -114,20 +122,59 @@ bool LineRegionSearch::leaves(const GroupPlacement& placement, const Line& axis)
   });
 }
 
+Explanation::Note LineRegionSearch::note_of(const Candidate& candidate, const FoundRegion& region, bool kept,
+                                            std::string_view reason) const {
+  return {std::string(candidate.stage),
+          region.placement.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces", kept,
+          std::string(reason)};
+}
+
+// Whether what the regions, the number `first` and those after it, say of this one is enough to turn it away.
+bool LineRegionSearch::answer(Question question, const FoundRegion& region, std::size_t first) const {
+  switch (question) {
+    case Question::kWhole:
+      return of_whole(region.placement, first);
+    case Question::kNothingNew:
+      return says_nothing_new(region, first);
+    case Question::kEndsAnywhere:
+      return ends_anywhere(region, first);
+  }
+  return false;
+}
+
+std::string_view LineRegionSearch::reason_of(Question question) {
+  switch (question) {
+    case Question::kWhole:
+      return "known of the whole";
+    case Question::kNothingNew:
+      return "known from a larger region";
+    case Question::kEndsAnywhere:
+      return "ends within planes and curves, in what has a larger group";
+  }
+  return {};
+}
+
 LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, const RunContext& context) const {
   const GroupPlacement& start = candidate.start;
   FoundRegion region{start, {}, 0, "turns or mirrors into itself"};
+  Judgement result;
+  result.known = said_.size();
   const auto judged = [&](bool kept, std::string_view reason) {
-    Judgement result;
-    if (options_.explanation != nullptr) {
-      result.notes.push_back({std::string(candidate.stage),
-                              region.placement.group.symbol() + " on " + std::to_string(region.faces.size()) + " faces",
-                              kept, std::string(reason)});
-    }
+    if (options_.explanation != nullptr) result.notes.push_back(note_of(candidate, region, kept, reason));
     if (kept) result.region = std::move(region);
-    return result;
+    return std::move(result);
   };
-  if (of_whole(start)) return judged(false, "known of the whole");
+  std::optional<Question> known;
+  const auto is_known = [&](Question question) {
+    if (answer(question, region, 0)) {
+      known = question;
+    } else if (context_.threads > 1) {  // what was found meanwhile will be asked
+      result.asked.push_back({question, region});
+    }
+    return known.has_value();
+  };
+  const auto known_already = [&] { return judged(false, reason_of(*known)); };
+  if (is_known(Question::kWhole)) return known_already();
   region.faces = grid_region(surface_, start, context);
   const double least = options_.least_share * surface_.prepared.area;
   const auto measure = [&] {
@@ -138,11 +185,11 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   if (!measure()) return judged(false, "too small");
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
   if (mere_balls(region)) return judged(false, "little but balls that it fixes");
-  if (says_nothing_new(region)) return judged(false, "known from a larger region");
+  if (is_known(Question::kNothingNew)) return known_already();
   SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
   if (hopeless(patch, start, context)) return judged(false, "not verified: a first look keeps too little");
   region.placement = refine(patch, start, context);
-  if (says_nothing_new(region)) return judged(false, "known from a larger region");
+  if (is_known(Question::kNothingNew)) return known_already();
   std::vector<int> again = grid_region(surface_, region.placement, context);
   if (again != region.faces) {
     region.faces = std::move(again);
@@ -151,7 +198,7 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
     region.placement = refine(patch, region.placement, context);
   }
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
-  if (says_nothing_new(region)) return judged(false, "known from a larger region");
+  if (is_known(Question::kNothingNew)) return known_already();
   for (int round = 0;; ++round) {
     const Verification verification = verify_group(patch, region.placement, context);
     VerificationLimits limits;
@@ -167,11 +214,11 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
     patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
     region.placement = refine(patch, region.placement, context);
   }
-  if (says_nothing_new(region)) return judged(false, "known from a larger region");
+  if (is_known(Question::kNothingNew)) return known_already();
   if (region.area < kNearlyWhole * surface_.prepared.area && fades(patch, region.placement, context)) {
     return judged(false, "fades as the tolerance shrinks");
   }
-  if (ends_anywhere(region)) return judged(false, "ends within planes and curves, in what has a larger group");
+  if (is_known(Question::kEndsAnywhere)) return known_already();
   // What slides is turned or straight, and was looked for as such: no larger group is.
   const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context); };
   if (slides()) return judged(false, "other motions keep it as well");
@@ -180,22 +227,64 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   if (own && contains_group(own->placement, region.placement, patch.moments.centroid, patch.moments.radius,
                             2 * patch.tolerance)) {
     region.placement = own->placement;
-    if (says_nothing_new(region)) return judged(false, "known from a larger region");
+    if (is_known(Question::kNothingNew)) return known_already();
     if (slides()) return judged(false, "other motions keep it as well");
   }
   return judged(true, "verified");
 }
 
-std::vector<LineRegionSearch::Judgement> LineRegionSearch::judge_all(const std::vector<Candidate>& candidates) const {
-  if (candidates.size() == 1) return {judge(candidates.front(), context_)};
-  RunContext alone = context_;
-  alone.threads = 1;
-  alone.on_progress = {};
-  std::vector<Judgement> result(candidates.size());
-  parallel_for(context_, candidates.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) result[i] = judge(candidates[i], alone);
+// Leaves the judgements in ahead_, in the order of the candidates.
+void LineRegionSearch::judge_all(const std::vector<Candidate>& candidates) {
+  std::vector<Judged> before = std::exchange(ahead_, {});
+  std::vector<std::size_t> open;
+  for (const Candidate& candidate : candidates) {
+    const auto known =
+        std::ranges::find_if(before, [&](const Judged& each) { return same(each.candidate, candidate); });
+    if (known == before.end()) {
+      open.push_back(ahead_.size());
+      ahead_.push_back({candidate, {}});
+    } else {
+      ahead_.push_back(std::move(*known));
+      before.erase(known);
+      ask_again(ahead_.back());
+    }
+  }
+  if (open.size() == 1) {
+    Judged& only = ahead_[open.front()];
+    only.judgement = judge(only.candidate, context_);
+    return;
+  }
+  RunContext quiet = context_;
+  quiet.on_progress = {};
+  parallel_for(context_, open.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Judged& each = ahead_[open[i]];
+      each.judgement = judge(each.candidate, quiet);
+    }
   });
-  return result;
+}
+
+// Asks the regions that the judgement does not know what it asked those that it does.
+void LineRegionSearch::ask_again(Judged& judged) const {
+  Judgement& judgement = judged.judgement;
+  const auto turned_away = std::ranges::find_if(
+      judgement.asked, [&](const Asked& each) { return answer(each.question, each.region, judgement.known); });
+  if (turned_away != judgement.asked.end()) {
+    judgement.region.reset();
+    judgement.notes.clear();
+    if (options_.explanation != nullptr) {
+      const std::string_view reason = reason_of(turned_away->question);
+      judgement.notes.push_back(note_of(judged.candidate, turned_away->region, false, reason));
+    }
+    judgement.asked.erase(turned_away, judgement.asked.end());
+  }
+  judgement.known = said_.size();
+}
+
+bool LineRegionSearch::accept_next() {
+  Judgement judgement = std::move(ahead_.front().judgement);
+  ahead_.erase(ahead_.begin());
+  return accept(std::move(judgement));
 }
 
 bool LineRegionSearch::accept(Judgement judgement) {
@@ -249,7 +338,7 @@ bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
 
 // Whether the region, of few motions, ends where no part does, within a larger one of as many: chance keeps something
 // under any of them. Of many motions it keeps little.
-bool LineRegionSearch::ends_anywhere(const FoundRegion& region) const {
+bool LineRegionSearch::ends_anywhere(const FoundRegion& region, std::size_t first) const {
   constexpr double kMostSmooth = 0.2;  // of the border
   constexpr double kWithin = 0.9;      // of the region's area
   constexpr int kFew = 8;              // motions
@@ -259,19 +348,21 @@ bool LineRegionSearch::ends_anywhere(const FoundRegion& region) const {
   if (group.continuous() || group.order() >= kSeveral) return false;
   const PreparedMesh& prepared = surface_.prepared;
   if (region.area >= (group.order() < kFew ? kNearlyWhole : kMuchOfSeveral) * prepared.area) return false;
-  const auto holds = [&](const FoundRegion& other) {
+  const auto holds = [&](std::size_t r) {
+    const FoundRegion& other = known_region(r);
     const PointGroup& larger = other.placement.group;
     return (larger.continuous() || larger.order() >= group.order()) && other.area > region.area &&
            area_outside(prepared, region.faces, other.faces) < (1 - kWithin) * region.area;
   };
-  if (std::ranges::none_of(known_, holds) && std::ranges::none_of(found_, holds)) return false;
+  const auto regions = std::views::iota(first, said_.size());
+  if (std::ranges::none_of(regions, holds)) return false;
   return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) > kMostSmooth;
 }
 
 // Whether what is known to keep all of the surface holds the group.
-bool LineRegionSearch::of_whole(const GroupPlacement& placement) const {
-  for (std::size_t r = 0; r < said_.size(); ++r) {
-    const FoundRegion& region = r < known_.size() ? known_[r] : found_[r - known_.size()];
+bool LineRegionSearch::of_whole(const GroupPlacement& placement, std::size_t first) const {
+  for (std::size_t r = first; r < said_.size(); ++r) {
+    const FoundRegion& region = known_region(r);
     const SurfaceMoments& moments = said_[r].moments;
     if (region.area >= kOfWhole * surface_.prepared.area &&
         contains_group(region.placement, placement, moments.centroid, moments.radius, 2 * surface_.tolerance)) {
@@ -285,9 +376,12 @@ bool LineRegionSearch::mere_balls(const FoundRegion& region) const {
   return little_but_cut_balls(surface_.prepared, surface_.balls, region.faces, region.placement, surface_.tolerance);
 }
 
-bool LineRegionSearch::says_nothing_new(const FoundRegion& region) const {
-  return says_nothing_new_beside(surface_.prepared, known_, region, surface_.tolerance, kNothingNew) ||
-         says_nothing_new_beside(surface_.prepared, found_, region, surface_.tolerance, kNothingNew);
+bool LineRegionSearch::says_nothing_new(const FoundRegion& region, std::size_t first) const {
+  const auto beside = [&](const std::vector<FoundRegion>& all, std::size_t from) {
+    const auto some = std::span(all).subspan(std::min(from, all.size()));
+    return says_nothing_new_beside(surface_.prepared, some, region, surface_.tolerance, kNothingNew);
+  };
+  return beside(known_, first) || beside(found_, first - std::min(first, known_.size()));
 }
 
 }  // namespace orbifit

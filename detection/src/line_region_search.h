@@ -38,8 +38,9 @@ class LineRegionSearch {
   /// Refines the group on the surface it keeps, and adds the region if it holds and says something new.
   void settle(const Candidate& candidate) { accept(judge(candidate, context_)); }
 
-  /// Settles one candidate after the other. Most fail, and leave the search as it was: several are judged at once, and
-  /// those after one that is added once more.
+  /// Settles one candidate after the other. Several are judged at once; once one of them is added, those after it are
+  /// chosen anew, and those chosen again are only asked what that region says of them. So the outcome is that of one
+  /// after the other, with any number of threads.
   /// \param at    where the candidates begin
   /// \param next  gives the candidate at `at` and moves on, as far as what was found tells which; nothing at the end
   template <typename State>
@@ -56,10 +57,10 @@ class LineRegionSearch {
         after.push_back(ahead);
       }
       if (candidates.empty()) return;
-      std::vector<Judgement> judgements = judge_all(candidates);
+      judge_all(candidates);
       for (std::size_t i = 0; i < candidates.size(); ++i) {
         at = after[i];
-        if (accept(std::move(judgements[i]))) break;
+        if (accept_next()) break;
       }
     }
   }
@@ -67,13 +68,36 @@ class LineRegionSearch {
   std::vector<FoundRegion> take() { return std::move(found_); }
 
  private:
+  // What a judgement asked the regions found so far, and would ask those found since.
+  enum class Question { kWhole, kNothingNew, kEndsAnywhere };
+  struct Asked {
+    Question question;
+    FoundRegion region;  // as it was then
+  };
   struct Judgement {
     std::optional<FoundRegion> region;  // where it is to be added
     std::vector<Explanation::Note> notes;
+    std::vector<Asked> asked;  // and answered by no
+    std::size_t known = 0;     // how many of the regions it knows
+  };
+  struct Judged {
+    Candidate candidate;
+    Judgement judgement;
   };
   Judgement judge(const Candidate& candidate, const RunContext& context) const;
-  std::vector<Judgement> judge_all(const std::vector<Candidate>& candidates) const;
-  bool accept(Judgement judgement);  // whether a region was added
+  Explanation::Note note_of(const Candidate& candidate, const FoundRegion& region, bool kept,
+                            std::string_view reason) const;
+  void judge_all(const std::vector<Candidate>& candidates);
+  bool accept_next();
+  void ask_again(Judged& judged) const;  // of the regions that the judgement does not know
+  bool accept(Judgement judgement);      // whether a region was added
+  bool answer(Question question, const FoundRegion& region, std::size_t first) const;
+  static std::string_view reason_of(Question question);
+
+  // Those known before, then those found.
+  const FoundRegion& known_region(std::size_t r) const {
+    return r < known_.size() ? known_[r] : found_[r - known_.size()];
+  }
 
   // What a region says of the samples.
   struct Said {
@@ -84,10 +108,10 @@ class LineRegionSearch {
   bool leaves(const GroupPlacement& placement, const Line& axis) const;
   bool hopeless(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context) const;
   bool mere_plates(const std::vector<int>& faces) const;
-  bool ends_anywhere(const FoundRegion& region) const;
-  bool of_whole(const GroupPlacement& placement) const;
+  bool ends_anywhere(const FoundRegion& region, std::size_t first) const;
+  bool of_whole(const GroupPlacement& placement, std::size_t first) const;
   bool mere_balls(const FoundRegion& region) const;
-  bool says_nothing_new(const FoundRegion& region) const;
+  bool says_nothing_new(const FoundRegion& region, std::size_t first) const;
 
   const ScreenedSurface& surface_;
   const SurfaceIndex& whole_;
@@ -95,6 +119,7 @@ class LineRegionSearch {
   const LineRegionOptions& options_;
   const RunContext& context_;
   std::vector<FoundRegion> found_;
+  std::vector<Judged> ahead_;      // judged before what comes before them was settled
   std::optional<CutDiscs> discs_;  // made once there is a turned region
   struct TurningAxis {
     Line line;

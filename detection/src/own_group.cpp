@@ -92,9 +92,9 @@ class GroupSearch {
     const CandidateDirections candidates = find_candidates(patch_, screen, context_);
     if (!try_sphere(candidates)) {
       collect(candidates, hints);
-      for (const Vector3d& axis : axes_) {
+      for (std::size_t a = 0; a < axes_.size(); ++a) {
         if (continuous() || rotations_.size() >= kMostRotations || failures_ >= kMostFailures) break;
-        find_rotations(axis);
+        find_rotations(axes_[a], look_about(a));
       }
       if (!continuous()) {
         try_polyhedral();
@@ -267,13 +267,38 @@ class GroupSearch {
     return result;
   }
 
-  void find_rotations(const Vector3d& axis) {
+  // What a first look about an axis tells.
+  struct AxisLook {
+    bool continuous = false;
+    std::vector<int> orders;  // where it is not
+  };
+
+  std::vector<int> orders_about(const Vector3d& axis) const {
+    return rotation_orders(patch_, axis, centre_, kGroupSlack);
+  }
+
+  // Of axis number a. Several threads look about those after it as well.
+  const AxisLook& look_about(std::size_t a) {
+    const std::size_t ahead = context_.threads > 1 ? 2 * static_cast<std::size_t>(context_.threads) : 1;
+    const std::size_t first = looks_.size();
+    if (a < first) return looks_[a];
+    looks_.resize(std::min(axes_.size(), a + ahead));
+    parallel_for(context_, looks_.size() - first, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        looks_[i].continuous = !finite_ && continuous_about(patch_, axes_[i], centre_);
+        if (!looks_[i].continuous) looks_[i].orders = orders_about(axes_[i]);
+      }
+    });
+    return looks_[a];
+  }
+
+  void find_rotations(const Vector3d& axis, const AxisLook& look) {
     context_.check();
-    if (!finite_ && continuous_about(patch_, axis, centre_)) {
+    if (look.continuous) {
       const GroupFrame frame = frame_about(axis);
       if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
     }
-    const std::vector<int> orders = rotation_orders(patch_, axis, centre_, kGroupSlack);
+    const std::vector<int> orders = look.continuous ? orders_about(axis) : look.orders;
     if (orders.empty()) return;
     // The axis is better known once the rotations that fit best have been fitted; the orders are then ranked.
     const std::vector<RankedOrder> first = rank_orders(patch_, orders, axis, centre_);
@@ -448,6 +473,7 @@ class GroupSearch {
   int failures_ = 0;  // fits of rotations that did not hold
   std::vector<Vector3d> mirrors_;
   std::vector<Vector3d> axes_;
+  std::vector<AxisLook> looks_;  // about the first of them
   std::vector<Rotation> rotations_;
   std::optional<OwnGroup> best_;
 };

@@ -459,9 +459,14 @@ class PartSearch {
     }
     std::vector<std::pair<int, std::vector<int>>> found;
     const int lowest = crowded() ? 3 : 2;
+    std::vector<std::vector<int>> permuted(static_cast<std::size_t>(kHighestOrder - lowest + 1));
+    for_each(permuted.size(), [&](std::size_t i) {
+      const int n = kHighestOrder - static_cast<int>(i);
+      permuted[i] = mover_->permuted({{Family::Cn, n}, frame, line.point}, round);
+    });
     for (int n = kHighestOrder; n >= lowest; --n) {
       context_.check();
-      std::vector<int> turned = mover_->permuted({{Family::Cn, n}, frame, line.point}, round);
+      std::vector<int>& turned = permuted[static_cast<std::size_t>(kHighestOrder - n)];
       std::vector<std::vector<int>> larger{round};
       for (const auto& [order, parts] : found) {
         if (order % n == 0) larger.push_back(parts);

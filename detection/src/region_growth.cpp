@@ -98,6 +98,19 @@ ComponentMover::ComponentMover(const PreparedMesh& prepared, const ComponentSurv
     centroids.row(static_cast<Eigen::Index>(c)) = survey.moments[c].centroid;
   }
   centroids_ = std::make_unique<PointIndex>(centroids);
+  parallel_for(context, samples_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) samples_[c] = samples_of(c);
+  });
+}
+
+SurfaceSamples ComponentMover::samples_of(std::size_t component) const {
+  if (survey_.moments[component].area <= 0) return {};
+  std::vector<int> visible;
+  for (const int f : prepared_.components.faces[component]) {
+    if (prepared_.areas[f] > 0) visible.push_back(f);
+  }
+  Random random(context_.seed, "growth");
+  return sample_surface(prepared_.mesh, kComponentSamples, random, visible);
 }
 
 void ComponentMover::know(std::size_t number, const GroupPlacement& own) {
@@ -123,7 +136,7 @@ bool ComponentMover::carries(std::size_t component, std::size_t target, const Mo
   });
 }
 
-int ComponentMover::image(std::size_t component, const Motion& motion, double reach, double least_share) {
+int ComponentMover::image(std::size_t component, const Motion& motion, double reach, double least_share) const {
   const SurfaceMoments& mine = survey_.moments[component];
   if (mine.area <= 0) return -1;
   int target = -1;
@@ -136,15 +149,7 @@ int ComponentMover::image(std::size_t component, const Motion& motion, double re
   }
   if (target < 0) return -1;
   if (carries(component, static_cast<std::size_t>(target), motion, reach)) return target;
-  SurfaceSamples& samples = samples_[component];
-  if (samples.faces.empty()) {
-    std::vector<int> visible;
-    for (const int f : prepared_.components.faces[component]) {
-      if (prepared_.areas[f] > 0) visible.push_back(f);
-    }
-    Random random(context_.seed, "growth");
-    samples = sample_surface(prepared_.mesh, kComponentSamples, random, visible);
-  }
+  const SurfaceSamples& samples = samples_[component];
   int hits = 0;
   for (Eigen::Index s = 0; s < samples.points.rows(); ++s) {
     const Vector3d normal = motion.linear * samples.normals.row(s).transpose();
@@ -162,7 +167,7 @@ double ComponentMover::reach_of(std::size_t component, const PointGroup& group) 
 }
 
 std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const std::vector<int>& seed,
-                                          double strictness) {
+                                          double strictness) const {
   const std::size_t count = survey_.moments.size();
   std::vector<char> in(count, 0);
   for (const int c : seed) in[static_cast<std::size_t>(c)] = 1;
@@ -201,7 +206,7 @@ std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const
 }
 
 std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacement& placement,
-                                                             const std::vector<int>& seed) {
+                                                             const std::vector<int>& seed) const {
   std::vector<SubgroupRegion> result;
   if (placement.group.continuous() || placement.group.order() < 4 || placement.group.order() > kMostElements)
     return result;

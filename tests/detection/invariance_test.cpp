@@ -248,6 +248,22 @@ TEST_P(Invariance, ByteForByteAndEverythingExplained) {
   }
 }
 
+// With any number of threads the same is looked at, and kept or dropped for the same reasons.
+TEST_P(Invariance, ExplainedAlikeWithMoreThreads) {
+  Explanation one;
+  regions_of(mesh_, 1, &one);
+  Explanation three;
+  regions_of(mesh_, 3, &three);
+  ASSERT_EQ(one.notes.size(), three.notes.size());
+  for (std::size_t i = 0; i < one.notes.size(); ++i) {
+    const Explanation::Note& a = one.notes[i];
+    const Explanation::Note& b = three.notes[i];
+    EXPECT_EQ(a.stage + ": " + a.subject, b.stage + ": " + b.subject);
+    EXPECT_EQ(a.kept, b.kept) << a.subject;
+    EXPECT_EQ(a.reason, b.reason) << a.subject;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, Invariance,
                          testing::Values(Model{"wheel", wheel}, Model{"table", table}, Model{"bolt", bolt}),
                          [](const auto& each) { return each.param.name; });

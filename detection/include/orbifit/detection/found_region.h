@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ double share_of_few(const PointGroup& larger, const PointGroup& smaller);
 /// Whether one of the others says what the region says: it holds all but `outside` of the region's area, and its group
 /// all elements of the region's, to twice the tolerance. More may be outside by chance, see share_by_chance().
 /// \param tolerance of the detector, a fraction of the diagonal \param outside a fraction of the region's area
-bool says_nothing_new_beside(const PreparedMesh& prepared, const std::vector<FoundRegion>& others,
+bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const FoundRegion> others,
                              const FoundRegion& region, double tolerance, double outside);
 
 /// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the

@@ -31,18 +31,19 @@ class ComponentMover {
 
   /// The components that the group permutes, ascending.
   /// \param seed components known to belong \param strictness how far images may be off, in tolerances
-  std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed, double strictness = 1);
+  std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed, double strictness = 1) const;
 
   /// For subgroups H of a finite group known on `seed`: the components that H permutes where they are more than the
   /// seed, largest subgroup first.
-  std::vector<SubgroupRegion> subgroup_regions(const GroupPlacement& placement, const std::vector<int>& seed);
+  std::vector<SubgroupRegion> subgroup_regions(const GroupPlacement& placement, const std::vector<int>& seed) const;
 
  private:
   // The component onto which the motion carries this one, or that share of it; -1 for none.
-  int image(std::size_t component, const Motion& motion, double reach, double least_share);
+  int image(std::size_t component, const Motion& motion, double reach, double least_share) const;
   // Whether the motion carries the component onto the other by what is known of their class, to half the reach.
   bool carries(std::size_t component, std::size_t target, const Motion& motion, double reach) const;
   double reach_of(std::size_t component, const PointGroup& group) const;
+  SurfaceSamples samples_of(std::size_t component) const;
 
   const PreparedMesh& prepared_;
   const ComponentSurvey& survey_;
@@ -57,7 +58,7 @@ class ComponentMover {
   std::vector<Place> places_;                                  // by component
   std::vector<std::optional<GroupPlacement>> continuous_own_;  // by class
   std::vector<std::vector<Motion>> own_;                       // by class: elements of a finite own group
-  std::vector<SurfaceSamples> samples_;                        // of each component, drawn when first needed
+  std::vector<SurfaceSamples> samples_;                        // of each component
 };
 
 /// The elements of a group, the identity among them, to ask whether motions are some of them.
