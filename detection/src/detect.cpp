@@ -39,6 +39,7 @@
 
 #include "cut_discs.h"
 #include "looser_groups.h"
+#include "partial_rows.h"
 #include "region_patterns.h"
 #include "row_growth.h"
 #include "thresholds.h"
@@ -101,6 +102,7 @@ class Detector {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
       drop_lesser_groups(prepared_, options_.tolerance, regions_, options_.explanation);
+      drop_some_of_rows(prepared_, options_.tolerance, context_, regions_, options_.explanation);
       complete_regions(prepared_, *prepared_.index,
                        {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }}, context_,
                        regions_);
