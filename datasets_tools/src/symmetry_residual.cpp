@@ -100,12 +100,14 @@ RegionSample sample_of(const Mesh& deformed, const Region& region, const RegionP
   return sample;
 }
 
+// From the starts in turn, until one leaves nothing.
 CarriedFit best_fit(const std::vector<RegionSample>& samples, CarriedMotions mode, double scale,
                     const std::vector<Motion>& starts) {
   CarriedFit best;
   for (const Motion& start : starts) {
     CarriedFit fit = fit_carried_frames(samples, mode, scale, start);
     if (best.frames.empty() || fit.energy < best.energy) best = std::move(fit);
+    if (best.exact) break;
   }
   return best;
 }
@@ -136,7 +138,7 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
   for (const std::size_t r : measured) samples.push_back(sample_of(deformed, regions[r], pairs[r], points));
 
   const double scale = diagonal(deformed.vertices);
-  const std::vector<Motion> starts{Motion{}, best_rigid_motion(deformed.vertices, mesh.vertices)};
+  const std::vector<Motion> starts{best_rigid_motion(deformed.vertices, mesh.vertices), Motion{}};
   const CarriedMotions common = motions == CarriedMotions::posed ? motions : CarriedMotions::floating;
   const CarriedFit together = best_fit(samples, common, scale, starts);
   for (std::size_t i = 0; i < measured.size(); ++i) frames[measured[i]] = together.frames[i];
@@ -147,9 +149,8 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
     const std::size_t r = measured[i];
     const Points from = deformed.vertices(pairs[r].vertices, Eigen::all);
     const Points to = mesh.vertices(pairs[r].vertices, Eigen::all);
-    std::vector<Motion> own_starts = starts;
-    own_starts.push_back(best_rigid_motion(from, to));
-    own_starts.push_back(as_motion(together.frames[i], regions[r].centre));
+    std::vector<Motion> own_starts{as_motion(together.frames[i], regions[r].centre), best_rigid_motion(from, to)};
+    own_starts.insert(own_starts.end(), starts.begin(), starts.end());
     frames[r] = best_fit({samples[i]}, motions, scale, own_starts).frames.front();
   }
   return frames;
