@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -156,7 +157,16 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
   return frames;
 }
 
-RegionResidual region_residual(const Mesh& mesh, const Mesh* deformed, const Region& region, const RegionPairs& pairs,
+// A mesh and its diagonal.
+struct Shape {
+  explicit Shape(const Mesh& given) : mesh(given), size(diagonal(given.vertices)) {}
+
+  const Mesh& mesh;
+  double size;
+};
+
+// \param deformed  null: at rest alone
+RegionResidual region_residual(const Shape& rest, const Shape* deformed, const Region& region, const RegionPairs& pairs,
                                const CarriedFrame& carried, const RunContext& context, Eigen::VectorXd& vertex_excess) {
   RegionResidual result;
   result.id = region.id;
@@ -165,11 +175,11 @@ RegionResidual region_residual(const Mesh& mesh, const Mesh* deformed, const Reg
   result.vertices = static_cast<int>(pairs.vertices.size());
   result.pairs = static_cast<int>(pairs.places.size());
   result.mapped = static_cast<int>(std::ranges::count_if(pairs.places, [](const auto& q) { return q.vertex >= 0; }));
-  const Eigen::VectorXd floor = distances(mesh, pairs, at_rest(region), context) / diagonal(mesh.vertices);
+  const Eigen::VectorXd floor = distances(rest.mesh, pairs, at_rest(region), context) / rest.size;
   result.floor = summary(floor);
   Eigen::VectorXd ranked = floor;
   if (deformed != nullptr) {
-    ranked = distances(*deformed, pairs, carried, context) / diagonal(deformed->vertices);
+    ranked = distances(deformed->mesh, pairs, carried, context) / deformed->size;
     result.deformed = summary(ranked);
     const Eigen::VectorXd excess = (ranked - floor).cwiseMax(0);
     result.excess = summary(excess);
@@ -252,11 +262,13 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
                          " faces; its connectivity must be that of the mesh, " + std::to_string(mesh.vertices.rows()) +
                          " vertices and " + std::to_string(mesh.faces.rows()) + " faces");
   }
-  const double rest_diagonal = diagonal(mesh.vertices);
+  const Shape rest(mesh);
+  std::optional<Shape> now;
+  if (deformed != nullptr) now.emplace(*deformed);
   std::vector<RegionPairs> pairs;
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
     context.progress("pairs", static_cast<double>(r) / static_cast<double>(annotation.regions.size()));
-    pairs.push_back(pair_up(mesh, annotation.regions[r], rest_diagonal, context));
+    pairs.push_back(pair_up(mesh, annotation.regions[r], rest.size, context));
   }
   std::vector<CarriedFrame> frames(annotation.regions.size());
   if (deformed != nullptr) frames = carried_frames(mesh, *deformed, annotation.regions, pairs, motions, context);
@@ -265,8 +277,8 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
   report.vertices_onto_vertices = true;
   report.vertex_excess.setZero(mesh.vertices.rows());
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
-    const RegionResidual& region = report.regions.emplace_back(
-        region_residual(mesh, deformed, annotation.regions[r], pairs[r], frames[r], context, report.vertex_excess));
+    const RegionResidual& region = report.regions.emplace_back(region_residual(
+        rest, now ? &*now : nullptr, annotation.regions[r], pairs[r], frames[r], context, report.vertex_excess));
     report.vertices_onto_vertices = report.vertices_onto_vertices && region.mapped == region.pairs;
     report.worst_floor = std::max(report.worst_floor, region.floor.max);
     report.worst_deformed = std::max(report.worst_deformed, region.deformed.max);
