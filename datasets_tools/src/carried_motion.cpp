@@ -16,6 +16,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kMostSteps = 100;
+constexpr double kRounding = 4e-15;  // of the scale, rms: what is left of exact symmetries
 
 Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d matrix;
@@ -71,6 +72,15 @@ class Problem {
       }
     }
     return sum;
+  }
+
+  // The energy that rounding leaves.
+  double rounding() const {
+    double points = 0;
+    for (const RegionSample& region : regions_) {
+      for (const ElementSample& sample : region.elements) points += static_cast<double>(sample.p.rows());
+    }
+    return points * (kRounding * scale_) * (kRounding * scale_);
   }
 
   // Normal equations of the linearised energy; a rotation is updated by exp(w) from the left.
@@ -143,13 +153,14 @@ CarriedFit fit_carried_frames(const std::vector<RegionSample>& regions, CarriedM
   const Problem problem(regions, mode, scale);
   Unknowns at = problem.initial(start);
   double energy = problem.energy(at);
+  const double enough = problem.rounding();
   Eigen::MatrixXd hessian;
   Eigen::VectorXd gradient;
-  problem.linearise(at, hessian, gradient);
+  if (energy > enough) problem.linearise(at, hessian, gradient);
   // Directions that no element constrains (along a mirror plane, about an axis) are held by the damping alone.
   double damping = 1e-9;
   int stalled = 0;
-  for (int i = 0; i < kMostSteps && damping < 10 && stalled < 3 && energy > 0; ++i) {
+  for (int i = 0; i < kMostSteps && damping < 10 && stalled < 3 && energy > enough; ++i) {
     Eigen::MatrixXd damped = hessian;
     damped.diagonal().array() += damping * (hessian.trace() / static_cast<double>(hessian.rows()) + 1e-300);
     const Unknowns next = problem.moved(at, solve_semidefinite(damped, -gradient));
@@ -159,7 +170,7 @@ CarriedFit fit_carried_frames(const std::vector<RegionSample>& regions, CarriedM
       at = next;
       energy = next_energy;
       damping = std::max(damping * 0.1, 1e-12);
-      problem.linearise(at, hessian, gradient);
+      if (energy > enough) problem.linearise(at, hessian, gradient);
     } else {
       damping = std::max(damping * 100, 1e-7);
     }
@@ -167,6 +178,7 @@ CarriedFit fit_carried_frames(const std::vector<RegionSample>& regions, CarriedM
   CarriedFit result;
   for (std::size_t r = 0; r < regions.size(); ++r) result.frames.push_back(problem.frame(at, r));
   result.energy = energy;
+  result.exact = energy <= enough;
   return result;
 }
 

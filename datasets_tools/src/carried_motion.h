@@ -34,10 +34,11 @@ struct RegionSample {
 struct CarriedFit {
   std::vector<CarriedFrame> frames;  ///< one a region
   double energy = 0;                 ///< sum of squared distances
+  bool exact = false;                ///< no more is left than rounding leaves
 };
 
 /// The frames N that make the sum of |g N y(p) - N y(q)|^2 least, by Levenberg and Marquardt's method from `start`,
-/// iterated until rounding stops it. `mode` is posed, floating or moving.
+/// iterated until rounding stops it, or nothing but rounding is left. `mode` is posed, floating or moving.
 /// \param scale a length of the shape's size
 CarriedFit fit_carried_frames(const std::vector<RegionSample>& regions, CarriedMotions mode, double scale,
                               const Motion& start);

@@ -13,6 +13,9 @@ namespace {
 // A point whose nearest face looks this much the other way is taken to be on the wrong side of a thin part.
 constexpr double kOtherSide = -0.2;
 constexpr double kSameSide = 0.2;
+// Width of the cells in which vertices are looked for, in reaches: most points have all that is in reach in one of
+// them.
+constexpr double kCell = 32;
 // How much further away, as a multiple of the reach, the side that faces the right way may be.
 constexpr double kThinness = 1e4;
 
@@ -32,7 +35,7 @@ Eigen::Vector3d SurfacePlace::operator()(const Mesh& mesh) const {
 }
 
 RegionSurface::RegionSurface(const Mesh& mesh, const std::vector<int>& faces, double reach)
-    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(4 * reach), patch_(submesh(mesh, faces, &vertices_)) {
+    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(kCell * reach), patch_(submesh(mesh, faces, &vertices_)) {
   normals_ = vertex_normals(patch_);
   origin_ = bounding_box_centre(patch_.vertices);
   const std::size_t count = vertices_.size();
@@ -55,7 +58,7 @@ RegionSurface::RegionSurface(const Mesh& mesh, const std::vector<int>& faces, do
 }
 
 std::int64_t RegionSurface::key_of(const Eigen::Vector3d& cell) const {
-  // 21 bits a coordinate: cells of 4e-6 diagonals about the middle need 18.
+  // 21 bits a coordinate: cells of 3.2e-5 diagonals about the middle need 15.
   const auto bits = [](double value) { return static_cast<std::int64_t>(value) & 0x1FFFFF; };
   return bits(cell.x()) | (bits(cell.y()) << 21) | (bits(cell.z()) << 42);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -100,12 +101,14 @@ RegionSample sample_of(const Mesh& deformed, const Region& region, const RegionP
   return sample;
 }
 
+// From the starts in turn, until one leaves nothing.
 CarriedFit best_fit(const std::vector<RegionSample>& samples, CarriedMotions mode, double scale,
                     const std::vector<Motion>& starts) {
   CarriedFit best;
   for (const Motion& start : starts) {
     CarriedFit fit = fit_carried_frames(samples, mode, scale, start);
     if (best.frames.empty() || fit.energy < best.energy) best = std::move(fit);
+    if (best.exact) break;
   }
   return best;
 }
@@ -136,7 +139,7 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
   for (const std::size_t r : measured) samples.push_back(sample_of(deformed, regions[r], pairs[r], points));
 
   const double scale = diagonal(deformed.vertices);
-  const std::vector<Motion> starts{Motion{}, best_rigid_motion(deformed.vertices, mesh.vertices)};
+  const std::vector<Motion> starts{best_rigid_motion(deformed.vertices, mesh.vertices), Motion{}};
   const CarriedMotions common = motions == CarriedMotions::posed ? motions : CarriedMotions::floating;
   const CarriedFit together = best_fit(samples, common, scale, starts);
   for (std::size_t i = 0; i < measured.size(); ++i) frames[measured[i]] = together.frames[i];
@@ -147,15 +150,23 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
     const std::size_t r = measured[i];
     const Points from = deformed.vertices(pairs[r].vertices, Eigen::all);
     const Points to = mesh.vertices(pairs[r].vertices, Eigen::all);
-    std::vector<Motion> own_starts = starts;
-    own_starts.push_back(best_rigid_motion(from, to));
-    own_starts.push_back(as_motion(together.frames[i], regions[r].centre));
+    std::vector<Motion> own_starts{as_motion(together.frames[i], regions[r].centre), best_rigid_motion(from, to)};
+    own_starts.insert(own_starts.end(), starts.begin(), starts.end());
     frames[r] = best_fit({samples[i]}, motions, scale, own_starts).frames.front();
   }
   return frames;
 }
 
-RegionResidual region_residual(const Mesh& mesh, const Mesh* deformed, const Region& region, const RegionPairs& pairs,
+// A mesh and its diagonal.
+struct Shape {
+  explicit Shape(const Mesh& given) : mesh(given), size(diagonal(given.vertices)) {}
+
+  const Mesh& mesh;
+  double size;
+};
+
+// \param deformed  null: at rest alone
+RegionResidual region_residual(const Shape& rest, const Shape* deformed, const Region& region, const RegionPairs& pairs,
                                const CarriedFrame& carried, const RunContext& context, Eigen::VectorXd& vertex_excess) {
   RegionResidual result;
   result.id = region.id;
@@ -164,11 +175,11 @@ RegionResidual region_residual(const Mesh& mesh, const Mesh* deformed, const Reg
   result.vertices = static_cast<int>(pairs.vertices.size());
   result.pairs = static_cast<int>(pairs.places.size());
   result.mapped = static_cast<int>(std::ranges::count_if(pairs.places, [](const auto& q) { return q.vertex >= 0; }));
-  const Eigen::VectorXd floor = distances(mesh, pairs, at_rest(region), context) / diagonal(mesh.vertices);
+  const Eigen::VectorXd floor = distances(rest.mesh, pairs, at_rest(region), context) / rest.size;
   result.floor = summary(floor);
   Eigen::VectorXd ranked = floor;
   if (deformed != nullptr) {
-    ranked = distances(*deformed, pairs, carried, context) / diagonal(deformed->vertices);
+    ranked = distances(deformed->mesh, pairs, carried, context) / deformed->size;
     result.deformed = summary(ranked);
     const Eigen::VectorXd excess = (ranked - floor).cwiseMax(0);
     result.excess = summary(excess);
@@ -251,11 +262,13 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
                          " faces; its connectivity must be that of the mesh, " + std::to_string(mesh.vertices.rows()) +
                          " vertices and " + std::to_string(mesh.faces.rows()) + " faces");
   }
-  const double rest_diagonal = diagonal(mesh.vertices);
+  const Shape rest(mesh);
+  std::optional<Shape> now;
+  if (deformed != nullptr) now.emplace(*deformed);
   std::vector<RegionPairs> pairs;
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
     context.progress("pairs", static_cast<double>(r) / static_cast<double>(annotation.regions.size()));
-    pairs.push_back(pair_up(mesh, annotation.regions[r], rest_diagonal, context));
+    pairs.push_back(pair_up(mesh, annotation.regions[r], rest.size, context));
   }
   std::vector<CarriedFrame> frames(annotation.regions.size());
   if (deformed != nullptr) frames = carried_frames(mesh, *deformed, annotation.regions, pairs, motions, context);
@@ -264,8 +277,8 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
   report.vertices_onto_vertices = true;
   report.vertex_excess.setZero(mesh.vertices.rows());
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
-    const RegionResidual& region = report.regions.emplace_back(
-        region_residual(mesh, deformed, annotation.regions[r], pairs[r], frames[r], context, report.vertex_excess));
+    const RegionResidual& region = report.regions.emplace_back(region_residual(
+        rest, now ? &*now : nullptr, annotation.regions[r], pairs[r], frames[r], context, report.vertex_excess));
     report.vertices_onto_vertices = report.vertices_onto_vertices && region.mapped == region.pairs;
     report.worst_floor = std::max(report.worst_floor, region.floor.max);
     report.worst_deformed = std::max(report.worst_deformed, region.deformed.max);

@@ -7,6 +7,7 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/subspace/corotation.h"
+#include "orbifit/subspace/neighbour_sums.h"
 
 namespace orbifit {
 
@@ -41,6 +42,7 @@ class CorotatedEnergy {
 
  private:
   Corotation corotation_;
+  NeighbourSums sums_;
   double degree_;
   double stretch_;
   Rotations rotations_;

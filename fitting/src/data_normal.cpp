@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "orbifit/fitting/alignment.h"
+#include "orbifit/subspace/gram.h"
 
 namespace orbifit {
 
@@ -41,7 +42,7 @@ class Batch {
     for (std::size_t j = 0; j < columns_.size(); ++j) {
       local_of_[static_cast<std::size_t>(columns_[j])] = static_cast<int>(j);
     }
-    const auto count = static_cast<Eigen::Index>(columns_.size());
+    const auto count = whole_fours(static_cast<Eigen::Index>(columns_.size()));
     all_.setZero(rows, count);
     right_.setZero(rows);
     own_.setZero(3 * static_cast<Eigen::Index>(representatives_.size()), count);
@@ -81,7 +82,7 @@ class Batch {
 
   // The unknowns of the pose, the right-hand side, and the weight of the row: its last step.
   void finish(Eigen::Index row, const Eigen::Matrix<double, 7, 1>& pose, double right, double weight) {
-    all_.row(row).tail(last_) = pose.tail(last_);
+    all_.row(row).segment(static_cast<Eigen::Index>(columns_.size()) - last_, last_) = pose.tail(last_);
     right_[row] = right;
     const double root = std::sqrt(weight);
     all_.row(row) *= root;
@@ -91,16 +92,17 @@ class Batch {
   // On the columns used, ascending: the lower half on them is one of the whole matrix's.
   struct Product {
     std::vector<int> columns;
-    Eigen::MatrixXd gram;
+    Eigen::MatrixXd gram;  // filled up with zeros, the side too
     Eigen::VectorXd side;
 
     void add_to(DataNormal& normal) const {
-      for (Eigen::Index b = 0; b < gram.cols(); ++b) {
+      const auto count = static_cast<Eigen::Index>(columns.size());
+      for (Eigen::Index b = 0; b < count; ++b) {
         const int column = columns[static_cast<std::size_t>(b)];
         normal.side[column] += side[b];
         double* to = normal.matrix.col(column).data();
         const double* from = gram.col(b).data();
-        for (Eigen::Index a = b; a < gram.rows(); ++a) to[columns[static_cast<std::size_t>(a)]] += from[a];
+        for (Eigen::Index a = b; a < count; ++a) to[columns[static_cast<std::size_t>(a)]] += from[a];
       }
     }
   };
@@ -112,14 +114,11 @@ class Batch {
     representatives_.clear();
     product.columns = std::move(columns_);
     columns_.clear();
-    product.gram.setZero(all_.cols(), all_.cols());
-    product.gram.selfadjointView<Eigen::Lower>().rankUpdate(all_.transpose());
+    lower_gram(all_, product.gram);
     product.side.noalias() = all_.transpose() * right_;
   }
 
  private:
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   Eigen::Index local(int column) const { return local_of_[static_cast<std::size_t>(column)]; }
 
   void use(const std::vector<int>& columns) {
@@ -137,8 +136,8 @@ class Batch {
   std::vector<int> local_of_;  // by column: its place among those used; -1: not used
   std::vector<int> place_of_;  // by representative, likewise
   std::vector<int> columns_, representatives_;
-  RowMajor own_;  // three rows of each representative, on the columns used
-  RowMajor all_;  // on the columns used
+  RowMajorMatrix own_;  // three rows of each representative, on the columns used, filled up with zeros to fours
+  RowMajorMatrix all_;  // likewise
   Eigen::VectorXd right_;
 };
 

@@ -1,6 +1,7 @@
 #include "orbifit/fitting/fit.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "fit_starts.h"
 #include "fit_system.h"
+#include "fit_systems.h"
 #include "fit_trial.h"
 #include "other_scale.h"
 #include "relaxation.h"
@@ -83,8 +85,8 @@ void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions&
 
 // Keeps the starts of which a short fit, which shows what deformation makes of them, promises most.
 // \return the iterations it took
-int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSystem& system, const FitOptions& options,
-                   const RunContext& context) {
+int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSystems& systems,
+                   const FitOptions& options, const RunContext& context) {
   constexpr int kSettling = 3;  // iterations
   if (static_cast<int>(starts.size()) <= options.most_tied) return 0;
   FitOptions brief = options;
@@ -92,14 +94,14 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
   brief.iterations = 1;
   brief.most_iterations = brief.levels + kSettling;
   brief.condition = false;
-  std::vector<std::pair<double, std::size_t>> promises;
-  promises.reserve(starts.size());
-  int iterations = 0;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const FitResult found = fit_from(input, starts[i], system, brief, context);
-    iterations += found.iterations_in_all;
-    promises.emplace_back(-worth(found), i);
-  }
+  std::vector<std::pair<double, std::size_t>> promises(starts.size());
+  std::vector<int> taken(starts.size());
+  systems.share(starts.size(), context, [&](std::size_t i, FitSystem& system, const RunContext& own) {
+    const FitResult found = fit_from(input, starts[i], system, brief, own);
+    taken[i] = found.iterations_in_all;
+    promises[i] = {-worth(found), i};
+  });
+  const int iterations = std::accumulate(taken.begin(), taken.end(), 0);
   std::ranges::sort(promises);
   promises.resize(static_cast<std::size_t>(options.most_tied));
   std::vector<PlacedScan> kept;
@@ -111,18 +113,25 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
 
 Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspace& subspace, const FitOptions& options,
              const RunContext& context) {
-  FitSystem system(subspace, input.mesh, options.stretch);
-  int iterations = keep_promising(starts, input, system, options, context);
+  FitSystems systems(subspace, input.mesh, options.stretch);
+  int iterations = keep_promising(starts, input, systems, options, context);
+  std::vector<FitResult> results(starts.size());
+  systems.share(starts.size(), context, [&](std::size_t i, FitSystem& system, const RunContext& own) {
+    results[i] = fit_from(input, starts[i], system, options, own);
+  });
   std::optional<Best> best;
-  for (PlacedScan& start : starts) {
-    FitResult found = fit_from(input, start, system, options, context);
-    iterations += found.iterations_in_all;
-    if (!best || worth(found) > worth(best->result) + kWorthwhile) best = Best{std::move(found), std::move(start)};
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    iterations += results[i].iterations_in_all;
+    if (!best || worth(results[i]) > worth(best->result) + kWorthwhile) {
+      best = Best{std::move(results[i]), std::move(starts[i])};
+    }
   }
   best->result.iterations_in_all = iterations;
   if (best->result.confidence * (1 - best->result.cut_off) < kWell && input.landmarks.empty() &&
       input.handles.empty()) {
-    try_other_scale(input, system, options, context, *best);
+    systems.share(1, context, [&](std::size_t, FitSystem& system, const RunContext& own) {
+      try_other_scale(input, system, options, own, *best);
+    });
   }
   return std::move(*best);
 }

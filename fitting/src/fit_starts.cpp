@@ -1,9 +1,15 @@
 #include "fit_starts.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/scan_preparation.h"
+
+#include "thread_share.h"
 
 namespace orbifit {
 
@@ -15,11 +21,24 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
   const MatchSurface surface(input.mesh);
   std::vector<Placement> found =
       find_placements(surface, input.annotation, input.scan, options.placement, context, input.pose);
-  for (const Placement& each : found) {
-    if (static_cast<int>(result.places.size()) == options.most_tried) break;
-    if (each.score() < options.tie * found.front().score()) break;
-    auto placed = placed_scan(surface, input.scan, each.pose, input.pose, options.placement, preparation, context);
-    if (placed) result.places.push_back(std::move(*placed));
+  // Side by side; others in place of those that have too little of the scan near them.
+  std::size_t tied = 0;
+  while (tied < found.size() && found[tied].score() >= options.tie * found.front().score()) ++tied;
+  const auto most = static_cast<std::size_t>(options.most_tried);
+  for (std::size_t first = 0; first < tied && result.places.size() < most;) {
+    const std::size_t count = std::min(most - result.places.size(), tied - first);
+    std::vector<std::optional<PlacedScan>> placed(count);
+    const RunContext own = share_of_threads(context, count);
+    parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        placed[i] =
+            placed_scan(surface, input.scan, found[first + i].pose, input.pose, options.placement, preparation, own);
+      }
+    });
+    for (auto& each : placed) {
+      if (each) result.places.push_back(std::move(*each));
+    }
+    first += count;
   }
   if (!result.places.empty()) result.placements = std::move(found);
   return result;
@@ -53,9 +72,13 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, const RunC
 
 FitStarts find_starts(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
   FitStarts result = starts_of(input, options, context, clock);
-  for (PlacedScan& start : result.places) {
-    start.views = std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, context);
-  }
+  const RunContext own = share_of_threads(context, result.places.size());
+  parallel_for(context, result.places.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      PlacedScan& start = result.places[i];
+      start.views = std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, own);
+    }
+  });
   return result;
 }
 

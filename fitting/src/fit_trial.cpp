@@ -22,14 +22,15 @@ void run_fit(DeformationSystem& system, FitState state, int first_level, const F
 namespace {
 
 // Once the groups have floated to where they fit best, they turn as well: a start from rest would let parts that are
-// still far from the scan turn every way.
+// still far from the scan turn every way. Stiff to begin with: what floating groups have pushed along a surface, for
+// want of a turn, comes back, which no point of the scan asks for.
 void let_groups_turn(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
                      const FitOptions& options, const RunContext& context, FitResult& result) {
   MovingSystem system(subspace, input.mesh, options.stretch);
   if (!system.turns()) return;
   FitOptions more = options;
   more.most_iterations += result.iterations_in_all;
-  run_fit(system, {result.pose, system.at_rest(result.q)}, options.levels / 2, input, start, more, context, result);
+  run_fit(system, {result.pose, system.at_rest(result.q)}, 0, input, start, more, context, result);
   const SubspaceState state = system.state_of(result.q);
   result.q = state.q;
   result.basis = state.basis;

@@ -8,6 +8,7 @@
 #include "orbifit/subspace/subspace.h"
 
 #include "rest_basis.h"
+#include "symmetric_sampler.h"
 
 namespace orbifit {
 
@@ -63,12 +64,13 @@ SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, Gr
   const double target = options.samples > 0 ? options.samples : kMostDefaultSamples;
   const double first = options.samples > 0 ? options.samples : kFirstSamples;
   double radius = std::sqrt(face_areas(mesh).sum() / (0.7 * first));
+  const SymmetricSampler sampler(mesh, regions);
   SymmetricSampling best;
   double best_error = 0;
   for (int round = 0; round < kSearchRounds; ++round) {
     SamplingOptions sampling = sampling_options(mesh, options, radius);
     sampling.most_samples = 20 * static_cast<int>(target) + 4000;
-    SymmetricSampling current = sample_symmetrically(mesh, regions, words, sampling, context);
+    SymmetricSampling current = sampler.sample(words, sampling, context);
     double excess = static_cast<double>(current.points.rows()) / target;
     if (options.samples == 0) {
       excess = std::max(excess, double(freedom_of(current, regions, words)) / kDefaultDegreesOfFreedom);

@@ -1,6 +1,7 @@
 #include "orbifit/subspace/corotation.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -72,24 +73,30 @@ Corotation corotation(const Points& samples, const SampleEdges& edges, const Eig
 std::vector<Eigen::Matrix3d> local_rotations(const Corotation& corotation, const Points& deformed,
                                              const std::vector<Eigen::Matrix3d>& previous) {
   std::vector<Eigen::Matrix3d> rotations = previous;
-  std::vector<Eigen::Matrix3d> covariances;
-  std::vector<std::size_t> held;  // samples that have neighbours
+  std::vector<Eigen::Matrix3d> covariances(previous.size(), Eigen::Matrix3d::Zero());
+  std::vector<double> sizes(previous.size(), 0);
   for (std::size_t i = 0; i < previous.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    double size = 0;
     for (const int j : corotation.neighbours[i]) {
       const Eigen::RowVector3d rest = corotation.rest.row(j) - corotation.rest.row(row);
       const Eigen::RowVector3d now = deformed.row(j) - deformed.row(row);
-      covariance += now.transpose() * rest;
-      size += rest.squaredNorm();
+      covariances[i] += now.transpose() * rest;
+      sizes[i] += rest.squaredNorm();
     }
-    if (!(size > 0)) continue;
-    covariances.emplace_back(covariance + kAnchor * size * previous[i]);
+  }
+  turn_locally(std::move(covariances), sizes, rotations);
+  return rotations;
+}
+
+void turn_locally(std::vector<Eigen::Matrix3d> covariances, const std::vector<double>& sizes,
+                  std::vector<Eigen::Matrix3d>& rotations) {
+  std::vector<std::size_t> held;  // samples that have neighbours
+  for (std::size_t i = 0; i < covariances.size(); ++i) {
+    if (!(sizes[i] > 0)) continue;
+    covariances[held.size()] = covariances[i] + kAnchor * sizes[i] * rotations[i];
     held.push_back(i);
   }
   turn_to(covariances, held, rotations);
-  return rotations;
 }
 
 Points corotated_pull(const Corotation& corotation, const std::vector<Eigen::Matrix3d>& rotations) {

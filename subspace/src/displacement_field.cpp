@@ -87,6 +87,8 @@ class FieldEvaluator {
       for (const OrbitConstraint& constraint : orbit.constraints) {
         pairs.push_back({orbit.points[static_cast<std::size_t>(constraint.point)].word, constraint.word});
       }
+      std::ranges::sort(pairs);
+      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
       const Binding binding = binding_of(pairs, transports_);
       Vector3d bound = binding.kept * u + binding.slope * start + binding.offset;
       add_carried(binding.bound, bound);

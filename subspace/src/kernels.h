@@ -24,6 +24,21 @@ struct Kernels {
   /// sum[0 ... 11] = sum over e < count of q[column[e]] * blocks[12 e ...].
   void (*gather_blocks)(const double* blocks, const int* column, int count, const double* q, double* sum);
 
+  /// For e < count, with v the row of four at rows + 4 end[e] and d the one at edges + 4 e, whose fourths are 0: the
+  /// sum of v d^T, column-major, its columns four apart: sum[0 ... 11].
+  void (*edge_products)(const double* edges, const int* end, int count, const double* rows, double* sum);
+
+  /// Likewise, with M at matrices + 12 end[e], column-major, its columns four apart: sum[0 ... 3] = the sum of M d.
+  void (*turned_edges)(const double* edges, const int* end, int count, const double* matrices, double* sum);
+
+  /// Likewise, the sum of |d + row - v - (matrix d + M d) / 2|^2.
+  double (*edge_misfits)(const double* edges, const int* end, int count, const double* matrices, const double* rows,
+                         const double* matrix, const double* row);
+
+  /// The lower half of A^T A, column-major and `columns` apart, and entries above it: A has `count` rows, row-major.
+  /// \param columns  a multiple of four
+  void (*gram)(const double* rows, int count, std::ptrdiff_t columns, double* result);
+
   /// Newton's method for the rotations nearest to four matrices, as nearest_rotation() takes it: entry k of the
   /// column-major matrix of lane l is at [4 k + l]. `rotations` holds where to start and then the results.
   /// \return bit l set: lane l has got no maximum that way; its rotation is to be found by other means

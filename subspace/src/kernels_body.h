@@ -64,6 +64,85 @@ void gather_blocks(const double* blocks, const int* column, int count, const dou
   *reinterpret_cast<Four*>(sum + 8) = c;
 }
 
+void edge_products(const double* edges, const int* end, int count, const double* rows, double* sum) {
+  Four a{};
+  Four b{};
+  Four c{};
+  for (int e = 0; e < count; ++e, edges += 4) {
+    const Four row = *reinterpret_cast<const Four*>(rows + std::ptrdiff_t{4} * end[e]);
+    a += edges[0] * row;
+    b += edges[1] * row;
+    c += edges[2] * row;
+  }
+  *reinterpret_cast<Four*>(sum) = a;
+  *reinterpret_cast<Four*>(sum + 4) = b;
+  *reinterpret_cast<Four*>(sum + 8) = c;
+}
+
+void turned_edges(const double* edges, const int* end, int count, const double* matrices, double* sum) {
+  Four a{};
+  Four b{};
+  Four c{};
+  for (int e = 0; e < count; ++e, edges += 4) {
+    const auto* matrix = reinterpret_cast<const Four*>(matrices + std::ptrdiff_t{12} * end[e]);
+    a += edges[0] * matrix[0];
+    b += edges[1] * matrix[1];
+    c += edges[2] * matrix[2];
+  }
+  *reinterpret_cast<Four*>(sum) = a + b + c;
+}
+
+double edge_misfits(const double* edges, const int* end, int count, const double* matrices, const double* rows,
+                    const double* matrix, const double* row) {
+  const auto* here = reinterpret_cast<const Four*>(matrix);
+  const Four own = *reinterpret_cast<const Four*>(row);
+  Four sum{};
+  for (int e = 0; e < count; ++e, edges += 4) {
+    const auto* there = reinterpret_cast<const Four*>(matrices + std::ptrdiff_t{12} * end[e]);
+    const Four turned =
+        edges[0] * (here[0] + there[0]) + edges[1] * (here[1] + there[1]) + edges[2] * (here[2] + there[2]);
+    const Four now = *reinterpret_cast<const Four*>(edges) +
+                     (own - *reinterpret_cast<const Four*>(rows + std::ptrdiff_t{4} * end[e]));
+    const Four misfit = now - 0.5 * turned;
+    sum += misfit * misfit;
+  }
+  return sum[0] + sum[1] + sum[2];
+}
+
+// kFours times four rows of the product from row a on, in the four columns from b on. Unrolled, its sums stay in
+// registers.
+template <int kFours>
+void gram_block(const double* rows, int count, std::ptrdiff_t columns, std::ptrdiff_t a, std::ptrdiff_t b,
+                double* result) {
+  Four sum[4][kFours] = {};
+  const double* left = rows + a;
+  const double* right = rows + b;
+  for (int r = 0; r < count; ++r, left += columns, right += columns) {
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k) {
+#pragma GCC unroll 3
+      for (int f = 0; f < kFours; ++f) sum[k][f] += right[k] * *reinterpret_cast<const Four*>(left + 4 * f);
+    }
+  }
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; ++k) {
+#pragma GCC unroll 3
+    for (int f = 0; f < kFours; ++f) *reinterpret_cast<Four*>(result + (b + k) * columns + a + 4 * f) = sum[k][f];
+  }
+}
+
+void gram(const double* rows, int count, std::ptrdiff_t columns, double* result) {
+  for (std::ptrdiff_t b = 0; b < columns; b += 4) {
+    std::ptrdiff_t a = b;
+    for (; a + 12 <= columns; a += 12) gram_block<3>(rows, count, columns, a, b, result);
+    if (a + 8 <= columns) {
+      gram_block<2>(rows, count, columns, a, b, result);
+    } else if (a + 4 <= columns) {
+      gram_block<1>(rows, count, columns, a, b, result);
+    }
+  }
+}
+
 using FourMasks = long long __attribute__((vector_size(32)));  // what comparing Fours gives
 
 unsigned nearest_rotations(const double* matrices, double* rotations) {

@@ -12,6 +12,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
 
+#include "alike_points.h"
 #include "plain_lift.h"
 
 namespace orbifit {
@@ -64,6 +65,9 @@ class AtomTable {
     if (number < 0) number = find_or_add(atom);
     return number;
   }
+
+  /// Under the displacement by which atoms are told apart.
+  const Eigen::VectorXd& carriers() const { return fingerprint_.carriers; }
 
   const std::vector<LiftAtom>& atoms() const { return atoms_; }
   const std::vector<Vector3d>& positions() const { return positions_; }
@@ -225,6 +229,8 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
   if (options.averaged) regions.prepare();
   const PlacesBefore places(regions, words);
   AtomTable table(sampling, regions, words, basis);
+  std::vector<int> stood_for(vertices.point_words.size(), 1);
+  if (options.averaged) stood_for = points_stood_for(sampling, regions, words, table.carriers(), vertices);
   OrbitLift lift;
   const auto count = static_cast<std::size_t>(vertices.representatives());
   lift.first.reserve(count / OrbitLift::kLanes + 2);
@@ -251,12 +257,13 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
         PlainLift::begin_orbit(scratch);
         for (std::int64_t k = 0; k < points; ++k) {
           const auto at = static_cast<std::size_t>(vertices.first_point[r] + k);
+          if (stood_for[at] == 0) continue;
           const int word = vertices.point_words[at];
           const PlainLift::Origin origin{position, places.of(word)};
           plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch, static_cast<std::size_t>(k),
                       &origin);
           for (LiftTerm term : scratch.terms) {
-            term.weight /= static_cast<double>(points);
+            term.weight *= static_cast<double>(stood_for[at]) / static_cast<double>(points);
             terms[i].push_back({term, word});
           }
         }

@@ -14,7 +14,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/random.h"
 
-#include "border_points.h"
+#include "symmetric_sampler.h"
 
 namespace orbifit {
 
@@ -220,20 +220,24 @@ void append(SymmetricSampling& sampling, const Orbit& orbit, const RegionMap& re
 
 SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& regions, GroupWords& words,
                                        const SamplingOptions& options, const RunContext& context) {
-  const bool field = options.radius_field.size() == mesh.vertices.rows() && options.radius_field.size() > 0;
+  return SymmetricSampler(mesh, regions).sample(words, options, context);
+}
+
+SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOptions& options,
+                                           const RunContext& context) const {
+  const bool field = options.radius_field.size() == mesh_.vertices.rows() && options.radius_field.size() > 0;
   const double least = field ? options.radius_field.minCoeff() : options.radius;
   const double largest = field ? options.radius_field.maxCoeff() : options.radius;
-  const AbuttingPlaces borders(mesh, regions);
-  const std::vector<Candidate> candidates = draw_candidates(mesh, regions, borders, options, least, context);
+  const std::vector<Candidate> candidates = draw_candidates(mesh_, regions_, borders_, options, least, context);
 
   SymmetricSampling sampling;
   sampling.radius = options.radius;
   sampling.first_sample.push_back(0);
   std::vector<Vector3d> points;
   std::vector<double> radii;
-  DiscGrid grid(largest, regions);
+  DiscGrid grid(largest, regions_);
   ClosureOptions closure;
-  closure.doublet = kDoubletSamples * diagonal(mesh.vertices);
+  closure.doublet = kDoubletSamples * diagonal(mesh_.vertices);
   std::set<int> unclosed;  // sets of borders
   std::size_t done = 0;
   for (const Candidate& candidate : candidates) {
@@ -241,17 +245,17 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
     const int set = candidate.set;
     if (candidate.border && unclosed.contains(set)) continue;
     double radius = options.radius;
-    if (field) radius = options.radius_field(mesh.faces.row(candidate.face).transpose()).mean();
+    if (field) radius = options.radius_field(mesh_.faces.row(candidate.face).transpose()).mean();
     if (grid.covered(candidate.position, set, radius)) continue;
     closure.snap = kCrowded * radius;
-    closure.normal = face_normal(mesh, candidate.face);
+    closure.normal = face_normal(mesh_, candidate.face);
     closure.set_at = nullptr;
     double off_border = kOnBorder * radius;
     if (candidate.border) {
-      closure.set_at = [&](const Vector3d& image, int carried) { return borders.set_at(image, carried, off_border); };
+      closure.set_at = [&](const Vector3d& image, int carried) { return borders_.set_at(image, carried, off_border); };
     }
     const auto follow = [&] {
-      Orbit orbit = orbit_of(candidate.position, set, regions, words, closure);
+      Orbit orbit = orbit_of(candidate.position, set, regions_, words, closure);
       if (orbit.stabilisers.empty()) return orbit;
       const Vector3d start = orbit.points.front().position;
       const Vector3d fixed = fixed_point(start, orbit.stabilisers);
@@ -261,7 +265,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
       ClosureOptions exact = closure;
       exact.snap = 0;
       exact.normal.setZero();  // between faces, off the surface
-      return orbit_of(fixed, orbit.points.front().set, regions, words, exact);
+      return orbit_of(fixed, orbit.points.front().set, regions_, words, exact);
     };
     Orbit orbit;
     try {
@@ -272,7 +276,7 @@ SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& region
       continue;
     }
     const std::size_t before = points.size();
-    append(sampling, orbit, regions, radius, points, radii);
+    append(sampling, orbit, regions_, radius, points, radii);
     if (points.size() > static_cast<std::size_t>(options.most_samples)) {
       throw InputError(
           "", "radius " + std::to_string(options.radius),

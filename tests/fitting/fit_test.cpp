@@ -219,6 +219,11 @@ TEST(Fit, ShortFitsChooseAmongPlacesThatTie) {
   EXPECT_GT(chosen.iterations_in_all, static_cast<int>(chosen.iterations.size()));
   EXPECT_GE(chosen.confidence, first.confidence - 0.01);
   EXPECT_TRUE(chosen.converged) << chosen.stopped_because;
+  context.threads = 2;  // the places side by side
+  const FitResult shared = found_of(8);
+  EXPECT_EQ(shared.fitted.vertices, chosen.fitted.vertices);
+  EXPECT_EQ(shared.iterations_in_all, chosen.iterations_in_all);
+  EXPECT_EQ(shared.confidence, chosen.confidence);
 }
 
 // Floating groups carry no leg that stands at another slant: its axis has another direction.

@@ -1,8 +1,16 @@
 #include "orbifit/subspace/lift.h"
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "orbifit/model/random.h"
+
+#include "alike_points.h"
+#include "plain_lift.h"
+#include "subspaces.h"
 
 namespace orbifit {
 namespace {
@@ -53,6 +61,46 @@ TEST(Lift, DoesNotDependOnThreads) {
   const LiftWeights a = lift_weights(points, samples, 0.3, RunContext{});
   const LiftWeights b = lift_weights(points, samples, 0.3, two);
   EXPECT_EQ(Eigen::MatrixXd(a), Eigen::MatrixXd(b));
+}
+
+// Of an orbit's points those that stand for others give the same mean as all of them.
+TEST(Lift, PointsStandForTheirImagesUnderTheWhole) {
+  for (const std::string name : {"table", "chair", "car"}) {
+    const GeneratedModel model = generate(name);
+    const Subspace subspace = subspace_of(model, GroupMode::floating, 0.06);
+    const Eigen::VectorXd q = random_state(subspace, 0.1).q;
+    const Points samples = sample_displacements(subspace, q);
+    const Eigen::VectorXd carriers = subspace.basis.carried * q;
+    const VertexOrbits& orbits = subspace.orbits;
+    const std::vector<int> stood_for =
+        points_stood_for(subspace.sampling, *subspace.regions, *subspace.words, carriers, orbits);
+    EXPECT_GT(std::ranges::count(stood_for, 0), orbits.representatives()) << name;
+
+    const PlainLift plain(subspace.sampling, *subspace.regions, true);
+    subspace.regions->prepare();
+    PlainLift::Scratch scratch;
+    for (int r = 0; r < orbits.representatives(); r += 97) {
+      Eigen::Vector3d all = Eigen::Vector3d::Zero();
+      Eigen::Vector3d some = Eigen::Vector3d::Zero();
+      int count = 0;
+      const auto at = static_cast<std::size_t>(r);
+      for (auto k = orbits.first_point[at]; k < orbits.first_point[at + 1]; ++k) {
+        const auto point = static_cast<std::size_t>(k);
+        const int word = orbits.point_words[point];
+        const Transport& transport = subspace.words->transport(word);
+        plain.terms(subspace.words->motion(word)(orbits.positions.row(r).transpose()), orbits.point_sets[point],
+                    scratch);
+        Eigen::Vector3d u = Eigen::Vector3d::Zero();
+        for (const LiftTerm& term : scratch.terms) u += term.weight * samples.row(term.sample).transpose();
+        for (const auto& [carrier, matrix] : transport.carried) u -= matrix * carriers.segment<3>(3 * carrier);
+        all += transport.frame.transpose() * u;
+        some += stood_for[point] * (transport.frame.transpose() * u);
+        count += stood_for[point];
+      }
+      EXPECT_EQ(count, orbits.first_point[at + 1] - orbits.first_point[at]);
+      EXPECT_LT((all - some).norm() / count, 1e-7 * subspace.diagonal) << name << ", representative " << r;
+    }
+  }
 }
 
 }  // namespace

@@ -29,6 +29,11 @@ Corotation corotation(const Points& samples, const SampleEdges& edges, const Eig
 std::vector<Eigen::Matrix3d> local_rotations(const Corotation& corotation, const Points& deformed,
                                              const std::vector<Eigen::Matrix3d>& previous);
 
+/// The same from the neighbourhoods' covariances, in place. \param covariances  sum of (y_j - y_i) (x_j - x_i)^T of
+/// each sample \param sizes  their traces at rest; 0 where there are no neighbours, which keeps the rotation
+void turn_locally(std::vector<Eigen::Matrix3d> covariances, const std::vector<double>& sizes,
+                  std::vector<Eigen::Matrix3d>& rotations);
+
 /// L^T (R delta - L x), #S by 3: the right-hand side of equation (4) without the handles.
 Points corotated_pull(const Corotation& corotation, const std::vector<Eigen::Matrix3d>& rotations);
 

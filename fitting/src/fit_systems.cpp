@@ -1,0 +1,31 @@
+#include "fit_systems.h"
+
+#include <utility>
+
+#include "thread_share.h"
+
+namespace orbifit {
+
+std::unique_ptr<FitSystem> FitSystems::take() {
+  {
+    const std::lock_guard lock(guard_);
+    if (!idle_.empty()) {
+      std::unique_ptr<FitSystem> system = std::move(idle_.back());
+      idle_.pop_back();
+      return system;
+    }
+  }
+  return std::make_unique<FitSystem>(subspace_, mesh_, stretch_);
+}
+
+void FitSystems::share(std::size_t count, const RunContext& context, const Task& task) {
+  const RunContext own = share_of_threads(context, count);
+  parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<FitSystem> system = take();
+    for (std::size_t i = begin; i < end; ++i) task(i, *system, own);
+    const std::lock_guard lock(guard_);
+    idle_.push_back(std::move(system));
+  });
+}
+
+}  // namespace orbifit
