@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -171,11 +172,13 @@ class PartSearch {
   }
 
   bool already_known(const GroupPlacement& placement, const std::vector<int>& parts) const {
-    const SurfaceMoments mine = moments_of(parts);
-    const double tolerance = options_.tolerance * std::min(1.0, 4 * mine.diagonal);
+    const double area = area_of(parts);
+    std::optional<SurfaceMoments> mine;  // few ask
     return std::ranges::any_of(found_, [&](const Found& other) {
-      return holds_nearly(other, placement, parts, mine.area) &&
-             contains_group(other.placement, placement, mine.centroid, mine.radius, tolerance);
+      if (!holds_nearly(other, placement, parts, area)) return false;
+      if (!mine) mine = moments_of(parts);
+      const double tolerance = options_.tolerance * std::min(1.0, 4 * mine->diagonal);
+      return contains_group(other.placement, placement, mine->centroid, mine->radius, tolerance);
     });
   }
 

@@ -133,18 +133,20 @@ SurfaceMoments surface_moments(const PreparedMesh& prepared, const std::vector<i
     return result;
   }
   result.centroid /= result.area;
+  double farthest = 0;  // squared
   for (const int f : faces) {
     // Over a triangle the integral of x x^T is area / 12 (sum of v v^T + s s^T) with s the sum of the corners.
     Vector3d sum = Vector3d::Zero();
     Matrix3d outer = Matrix3d::Zero();
     for (int k = 0; k < 3; ++k) {
       const Vector3d v = corner(f, k) - result.centroid;
-      result.radius = std::max(result.radius, v.norm());
+      farthest = std::max(farthest, v.squaredNorm());
       sum += v;
       outer += v * v.transpose();
     }
     second += prepared.areas[f] / 12 * (outer + sum * sum.transpose());
   }
+  result.radius = std::sqrt(farthest);
   result.covariance = second / result.area;
   return result;
 }
