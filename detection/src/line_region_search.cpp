@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <ranges>
 #include <set>
 #include <span>
 
@@ -354,8 +353,9 @@ bool LineRegionSearch::ends_anywhere(const FoundRegion& region, std::size_t firs
     return (larger.continuous() || larger.order() >= group.order()) && other.area > region.area &&
            area_outside(prepared, region.faces, other.faces) < (1 - kWithin) * region.area;
   };
-  const auto regions = std::views::iota(first, said_.size());
-  if (std::ranges::none_of(regions, holds)) return false;
+  bool held = false;
+  for (std::size_t r = first; r < said_.size() && !held; ++r) held = holds(r);
+  if (!held) return false;
   return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) > kMostSmooth;
 }
 
