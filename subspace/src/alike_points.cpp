@@ -75,12 +75,13 @@ bool keeps_samples(const SymmetricSampling& sampling, const RegionMap& regions, 
   std::map<int, int> image_of_set;
   for (Eigen::Index k = 0; k < sampling.points.rows(); ++k) {
     const auto s = static_cast<std::size_t>(k);
-    const auto [set, added] = image_of_set.try_emplace(sampling.sets[s], -1);
-    if (added) set->second = mapped_set(regions, sampling.sets[s], image);
+    const auto set = image_of_set.try_emplace(sampling.sets[s], -1);
+    if (set.second) set.first->second = mapped_set(regions, sampling.sets[s], image);
+    const int image_set = set.first->second;
     bool met = false;
     grid.visit(motion(sampling.points.row(k).transpose()), [&](int other) {
       const auto o = static_cast<std::size_t>(other);
-      met = met || (sampling.sets[o] == set->second && sampling.radii[other] == sampling.radii[k] &&
+      met = met || (sampling.sets[o] == image_set && sampling.radii[other] == sampling.radii[k] &&
                     sampling.shares[o] == sampling.shares[s] && sampling.copy_counts[o] == sampling.copy_counts[s]);
     });
     if (!met) return false;
