@@ -76,9 +76,8 @@ class RowTest {
     for (const Motion& theirs : own_) {
       const Motion image = around * theirs * back;
       for (const Motion& mine : own_) {
-        const double turn = (mine.linear * image.linear - Matrix3d::Identity()).norm();
         const Motion step = mine * image;
-        const bool turns = turn > kAngle;
+        const bool turns = (step.linear - Matrix3d::Identity()).norm() > kAngle;
         if (turns ? mirror : (step(centroid) - centroid).norm() > kShift * patch_.tolerance) result.push_back(step);
       }
     }
