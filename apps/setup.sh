@@ -10,7 +10,7 @@ build=$root/build/release
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libceres-dev libpcl-dev libflann-dev liblz4-dev libgtest-dev
-  libembree-dev libcli11-dev nlohmann-json3-dev libstb-dev
+  libembree-dev libtbb-dev libcli11-dev nlohmann-json3-dev libstb-dev
   libcgal-demo # real meshes
 )
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <Eigen/Geometry>
+#include <tbb/task_arena.h>
 
 #include "orbifit/model/errors.h"
 
@@ -60,7 +61,7 @@ Eigen::Vector3f linear_colour(const Colour& colour) {
 }
 
 RayScene::RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame, float beside)
-    : device_(rtcNewDevice("threads=1,set_affinity=0")), centre_(0.5 * frame.row(0) + 0.5 * frame.row(1)) {
+    : device_(rtcNewDevice("set_affinity=0")), centre_(0.5 * frame.row(0) + 0.5 * frame.row(1)) {
   if (device_ == nullptr) throw Error("Embree cannot create its device");
   const double size = (frame.row(1) - frame.row(0)).norm();
   scale_ = size > 0 ? 1 / size : 1;
@@ -79,8 +80,9 @@ RayScene::RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame,
     add_segments(marks_, layer, layer.radius);
     add_segments(thick_marks_, layer, layer.radius + beside);
   }
+  tbb::task_arena alone(1);  // Embree builds on the threads of the arena that it is called in
   for (const Part* part : {&opaque_, &glass_, &marks_, &thick_marks_}) {
-    if (part->scene != nullptr) rtcCommitScene(part->scene);
+    if (part->scene != nullptr) alone.execute([&] { rtcCommitScene(part->scene); });
   }
 }
 

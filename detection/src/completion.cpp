@@ -237,8 +237,10 @@ class Completion {
     if (surfaces_.size() <= region) surfaces_.resize(region + 1);
     if (!surfaces_[region]) {
       const std::vector<int>& faces = regions_[region].faces;
+      RunContext alone = context_;  // see parallel_for: the lock is held
+      alone.threads = 1;
       surfaces_[region] = std::make_unique<Surface>(
-          Surface{make_patch(prepared_, faces, kSpreadSamples, options_.tolerance, context_, "completion"), {}, {}});
+          Surface{make_patch(prepared_, faces, kSpreadSamples, options_.tolerance, alone, "completion"), {}, {}});
     }
     return *surfaces_[region];
   }

@@ -45,7 +45,7 @@ class LineRegionSearch {
   /// \param next  gives the candidate at `at` and moves on, as far as what was found tells which; nothing at the end
   template <typename State>
   void settle_all(State at, const std::function<std::optional<Candidate>(State& at)>& next) {
-    const std::size_t most = context_.threads > 1 ? 2 * static_cast<std::size_t>(context_.threads) : 1;
+    const auto most = static_cast<std::size_t>(context_.threads);
     while (!(options_.late && options_.late())) {
       std::vector<Candidate> candidates;
       std::vector<State> after;

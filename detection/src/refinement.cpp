@@ -117,7 +117,7 @@ struct Pairs {
   // Summed block by block, so that rounding does not depend on the number of threads.
   NormalEquations sum(const std::vector<Motion>& motions, const RunContext& context) const {
     constexpr Eigen::Index kBlock = 256;
-    constexpr std::size_t kLeastShare = 2;  // blocks
+    constexpr std::size_t kLeastShare = 1;  // blocks
     const auto pairs = static_cast<Eigen::Index>(motions.size()) * count;
     likely.resize(static_cast<std::size_t>(pairs), -1);
     std::vector<NormalEquations> blocks(static_cast<std::size_t>((pairs + kBlock - 1) / kBlock));

@@ -200,7 +200,7 @@ class RevolutionSearch {
 
   // The faces of a piece that turn; all if nearly all do.
   std::vector<int> faces_of_piece(std::size_t s, const Turned& turned) const {
-    constexpr std::size_t kLeastShare = 300;  // faces worth a thread
+    constexpr std::size_t kLeastShare = 64;  // faces worth a thread
     constexpr double kNearlyAll = 0.97;
     if (areas_[s] <= 0) return {};
     const std::vector<int>& faces = prepared_.components.faces[s];

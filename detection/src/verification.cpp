@@ -132,7 +132,7 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
   std::vector<char> thrown(chosen.size(), 0);
   std::vector<std::size_t> kept_by_motion(motions.size(), 0);
   // Blocks of growing size, so that a hopeless case ends after few queries, whatever the number of threads.
-  constexpr std::size_t kWorthThreads = 4000;  // queries
+  constexpr std::size_t kWorthThreads = 300;  // queries
   std::size_t done = 0;
   std::size_t block = give_up_below > 0 ? 64 : chosen.size();
   std::vector<char> hits;

@@ -9,7 +9,7 @@
 #include "orbifit/fitting/alignment.h"
 #include "orbifit/fitting/scan_preparation.h"
 
-#include "thread_share.h"
+#include "quiet_context.h"
 
 namespace orbifit {
 
@@ -28,7 +28,7 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
   for (std::size_t first = 0; first < tied && result.places.size() < most;) {
     const std::size_t count = std::min(most - result.places.size(), tied - first);
     std::vector<std::optional<PlacedScan>> placed(count);
-    const RunContext own = share_of_threads(context, count);
+    const RunContext own = quiet_context(context, count);
     parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         placed[i] =
@@ -72,7 +72,7 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, const RunC
 
 FitStarts find_starts(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
   FitStarts result = starts_of(input, options, context, clock);
-  const RunContext own = share_of_threads(context, result.places.size());
+  const RunContext own = quiet_context(context, result.places.size());
   parallel_for(context, result.places.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       PlacedScan& start = result.places[i];

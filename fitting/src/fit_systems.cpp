@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "thread_share.h"
+#include "quiet_context.h"
 
 namespace orbifit {
 
@@ -19,7 +19,7 @@ std::unique_ptr<FitSystem> FitSystems::take() {
 }
 
 void FitSystems::share(std::size_t count, const RunContext& context, const Task& task) {
-  const RunContext own = share_of_threads(context, count);
+  const RunContext own = quiet_context(context, count);
   parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<FitSystem> system = take();
     for (std::size_t i = begin; i < end; ++i) task(i, *system, own);

@@ -151,7 +151,7 @@ void MovingSurface::frame() {
 }
 
 void MovingSurface::move(const Mesh& mesh, const RunContext& context) {
-  constexpr std::size_t kLeastShare = 8000;
+  constexpr std::size_t kLeastShare = 2000;
   mesh_ = &mesh;
   frame();
   // Rounding keeps the order of numbers, so boxes may be those of rounded vertices.

@@ -157,8 +157,8 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
   const LiftState now = lift_state(basis, state);
 
   // Representatives. Sums take about half a microsecond a block, copies a few nanoseconds.
-  constexpr std::size_t kLeastBlocks = 400;
-  constexpr std::size_t kLeastCopies = 30000;
+  constexpr std::size_t kLeastBlocks = 100;
+  constexpr std::size_t kLeastCopies = 10000;
   constexpr std::size_t kLanes = OrbitLift::kLanes;
   const std::size_t blocks = lift.first.size() - 1;
   const std::unique_ptr<double[]> sources(new double[4 * kLanes * blocks]);

@@ -2,12 +2,28 @@
 
 #include <algorithm>
 #include <exception>
-#include <thread>
+#include <map>
+#include <mutex>
 #include <vector>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "orbifit/model/errors.h"
 
 namespace orbifit {
+
+namespace {
+
+// Where loops on so many threads run. Made once: an arena takes a millisecond to get its threads together.
+tbb::task_arena& arena_of(int threads) {
+  static std::mutex mutex;
+  static std::map<int, tbb::task_arena> arenas;
+  const std::lock_guard lock(mutex);
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
+}  // namespace
 
 void RunContext::check() const {
   if (interrupted != nullptr && interrupted->load(std::memory_order_relaxed)) throw InterruptedError("interrupted");
@@ -40,7 +56,8 @@ void parallel_for(const RunContext& context, std::size_t count,
   }
   std::vector<std::exception_ptr> failures(chunks);
   std::atomic<std::size_t> next{0};
-  const auto work = [&] {
+  // Each thread takes the lowest chunk that is left, so that what comes first is begun first.
+  const auto work = [&](std::size_t) {
     for (std::size_t chunk = next++; chunk < chunks; chunk = next++) {
       try {
         context.check();
@@ -51,10 +68,11 @@ void parallel_for(const RunContext& context, std::size_t count,
       }
     }
   };
-  {
-    std::vector<std::jthread> workers;
-    for (std::size_t i = 1; i < threads; ++i) workers.emplace_back(work);
-    work();
+  const auto loop = [&] { tbb::parallel_for(std::size_t{0}, threads, work, tbb::simple_partitioner{}); };
+  if (tbb::this_task_arena::max_concurrency() == context.threads) {
+    loop();
+  } else {
+    arena_of(context.threads).execute(loop);
   }
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);

@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include "orbifit/model/errors.h"
 #include "orbifit/model/space_order.h"
@@ -36,14 +37,15 @@ constexpr double kSphere = 2;
 
 using Device = std::shared_ptr<RTCDeviceTy>;
 
-// One device serves all indices for as long as one lives. It builds on the calling thread alone.
+// One device serves all indices for as long as one lives. Threads are not limited here: Embree would limit all that the
+// process has.
 Device shared_device() {
   static std::mutex mutex;
   static std::weak_ptr<RTCDeviceTy> current;
   const std::lock_guard lock(mutex);
   Device device = current.lock();
   if (!device) {
-    device = Device(rtcNewDevice("threads=1,set_affinity=0"), [](RTCDevice handle) {
+    device = Device(rtcNewDevice("set_affinity=0"), [](RTCDevice handle) {
       if (handle != nullptr) rtcReleaseDevice(handle);
     });
     if (!device) throw Error("Embree cannot create its device");
@@ -400,7 +402,8 @@ void SurfaceIndex::Implementation::build() {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);  // the scene keeps it
-  rtcCommitScene(scene);
+  tbb::task_arena alone(1);      // Embree builds on the threads of the arena that it is called in
+  alone.execute([&] { rtcCommitScene(scene); });
 }
 
 SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3d& point, double max_distance,

@@ -30,10 +30,12 @@ struct RunContext {
   void message(std::string_view text) const;
 };
 
-/// Calls body(begin, end) on contiguous chunks of [0, count), on context.threads threads. Chunks depend on count
-/// alone, so a body that writes only to its own indices gives the same result with any number of threads.
+/// Calls body(begin, end) on contiguous chunks of [0, count), on as many of context.threads threads as are idle.
+/// Chunks depend on count alone and are begun in their order, so a body that writes only to its own indices gives the
+/// same result with any number of threads. Loops within a body share the threads.
 /// An exception of a body is rethrown here, the one of the lowest chunk first.
-/// \param least_share  the fewest items worth a thread of their own, which takes tens of microseconds to start
+/// \pre no lock is held that a body of this or another loop takes: a thread that waits for others runs such bodies
+/// \param least_share  the fewest items worth a thread of their own, which takes some ten microseconds to begin
 void parallel_for(const RunContext& context, std::size_t count,
                   const std::function<void(std::size_t begin, std::size_t end)>& body, std::size_t least_share = 1);
 
