@@ -88,7 +88,8 @@ class Screen {
     for (const int f : patch.faces) {
       if (patch.prepared->areas[f] > 0) visible.push_back(f);
     }
-    return sample_surface(patch.prepared->mesh, kGridPoints, random, visible).points;
+    const PreparedMesh& prepared = *patch.prepared;
+    return sample_surface(prepared.mesh, prepared.areas, prepared.normals, kGridPoints, random, visible).points;
   }
 
   Vector3d centre_;

@@ -139,7 +139,7 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
       sides(face_sides(mesh)) {
   faces = with_area(mesh);
   Random random(context.seed, "screen");
-  samples = sample_surface(mesh.mesh, sample_count, random, faces);
+  samples = sample_surface(mesh.mesh, mesh.areas, mesh.normals, sample_count, random, faces);
   for (const int face : samples.faces) {
     piece_of_sample.push_back(mesh.components.component_of_face[static_cast<std::size_t>(face)]);
   }

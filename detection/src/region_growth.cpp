@@ -110,7 +110,7 @@ SurfaceSamples ComponentMover::samples_of(std::size_t component) const {
     if (prepared_.areas[f] > 0) visible.push_back(f);
   }
   Random random(context_.seed, "growth");
-  return sample_surface(prepared_.mesh, kComponentSamples, random, visible);
+  return sample_surface(prepared_.mesh, prepared_.areas, prepared_.normals, kComponentSamples, random, visible);
 }
 
 void ComponentMover::know(std::size_t number, const GroupPlacement& own) {

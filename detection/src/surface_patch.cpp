@@ -70,7 +70,8 @@ SurfaceSamples samples_of_parts(const PreparedMesh& prepared, const std::vector<
     double part_area = 0;
     for (const int f : faces) part_area += prepared.areas[f];
     if (part_area < kMatters * area) continue;
-    const SurfaceSamples part = sample_surface(prepared.mesh, SurfacePatch::kPartSamples, random, faces);
+    const SurfaceSamples part =
+        sample_surface(prepared.mesh, prepared.areas, prepared.normals, SurfacePatch::kPartSamples, random, faces);
     append(result.points, part.points);
     append(result.normals, part.normals);
     result.faces.insert(result.faces.end(), part.faces.begin(), part.faces.end());
@@ -173,7 +174,8 @@ SurfacePatch sample_patch(const PreparedMesh& prepared, std::vector<int> faces, 
   patch.relative_tolerance = tolerance;
   patch.tolerance = tolerance * std::min(1.0, 4 * patch.moments.diagonal);
   Random random(context.seed, stream);
-  patch.samples = sample_surface(prepared.mesh, samples, random, visible_faces(prepared, faces));
+  patch.samples =
+      sample_surface(prepared.mesh, prepared.areas, prepared.normals, samples, random, visible_faces(prepared, faces));
   patch.at_crease.assign(static_cast<std::size_t>(patch.samples.points.rows()), 0);
   patch.faces = std::move(faces);
   return patch;

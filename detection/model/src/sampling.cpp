@@ -7,21 +7,18 @@
 
 namespace orbifit {
 
-SurfaceSamples sample_surface(const Mesh& mesh, int count, Random& random, const std::vector<int>& faces) {
-  if (!faces.empty()) {  // areas and normals of these alone: small places of large meshes are sampled one by one
-    SurfaceSamples samples = sample_surface(submesh(mesh, faces), count, random);
-    for (int& face : samples.faces) face = faces[static_cast<std::size_t>(face)];
-    return samples;
+SurfaceSamples sample_surface(const Mesh& mesh, const Eigen::VectorXd& areas, const Points& normals, int count,
+                              Random& random, const std::vector<int>& faces) {
+  std::vector<int> chosen = faces;
+  if (faces.empty()) {
+    chosen.resize(static_cast<std::size_t>(mesh.faces.rows()));
+    std::iota(chosen.begin(), chosen.end(), 0);
   }
-  std::vector<int> chosen(static_cast<std::size_t>(mesh.faces.rows()));
-  std::iota(chosen.begin(), chosen.end(), 0);
-  const Eigen::VectorXd areas = face_areas(mesh);
   std::erase_if(chosen, [&](int face) { return !(areas[face] > 0); });
   double total = 0;
   for (const int face : chosen) total += areas[face];
   if (!(total > 0)) throw InputError("", "", "the surface to sample has no area");
 
-  const Points normals = face_normals(mesh);
   SurfaceSamples samples;
   samples.points.resize(std::max(count, 0), 3);
   samples.normals.resize(std::max(count, 0), 3);
@@ -42,6 +39,14 @@ SurfaceSamples sample_surface(const Mesh& mesh, int count, Random& random, const
     samples.normals.row(i) = normals.row(face);
     samples.faces.push_back(face);
   }
+  return samples;
+}
+
+SurfaceSamples sample_surface(const Mesh& mesh, int count, Random& random, const std::vector<int>& faces) {
+  if (faces.empty()) return sample_surface(mesh, face_areas(mesh), face_normals(mesh), count, random);
+  // Areas and normals of these alone: small places of large meshes are sampled one by one.
+  SurfaceSamples samples = sample_surface(submesh(mesh, faces), count, random);
+  for (int& face : samples.faces) face = faces[static_cast<std::size_t>(face)];
   return samples;
 }
 

@@ -18,4 +18,8 @@ struct SurfaceSamples {
 /// \throw InputError when those faces have no area
 SurfaceSamples sample_surface(const Mesh& mesh, int count, Random& random, const std::vector<int>& faces = {});
 
+/// The same where the areas and unit normals of all faces are known: costs as many steps as there are given faces.
+SurfaceSamples sample_surface(const Mesh& mesh, const Eigen::VectorXd& areas, const Points& normals, int count,
+                              Random& random, const std::vector<int>& faces = {});
+
 }  // namespace orbifit
