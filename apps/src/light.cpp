@@ -107,7 +107,7 @@ void trace_row(LightBuffer& buffer, const RayScene& scene, const Camera& camera,
         static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer.width) + static_cast<std::size_t>(x);
     PixelSurface& pixel = buffer.surfaces[place];
     Eigen::Vector3f origin;
-    if (const auto hit = scene.surface(ray, 0, infinity)) {
+    if (const auto hit = scene.surface(ray, infinity)) {
       pixel = {PixelSurface::Kind::surface, hit->position, hit->normal, hit->colour, hit->distance};
       origin = hit->lifted + kLift * hit->geometric_normal;
     } else {

@@ -1,7 +1,9 @@
 #include "ray_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -42,6 +44,37 @@ RTCRayHit ray_hit(const Ray& ray, float beyond, float up_to) {
   query.ray.mask = 0xFFFFFFFFU;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   return query;
+}
+
+// What one ray crosses, gathered by a filter that lets it pass.
+struct Crossings {
+  static constexpr std::size_t kMost = 32;  // the nearest ones
+
+  RTCIntersectContext context;  // first, so that Embree's pointer to it is one to all of this
+  std::array<RTCRayHit, kMost> all;
+  std::size_t count = 0;
+};
+
+bool nearer(const RTCRayHit& a, const RTCRayHit& b) {
+  return a.ray.tfar < b.ray.tfar;
+}
+
+void let_pass(const RTCFilterFunctionNArguments* arguments) {
+  auto& crossings = *reinterpret_cast<Crossings*>(arguments->context);
+  arguments->valid[0] = 0;
+  RTCRayHit crossing;
+  crossing.ray = rtcGetRayFromRayN(arguments->ray, arguments->N, 0);
+  crossing.hit = rtcGetHitFromHitN(arguments->hit, arguments->N, 0);
+  if (crossings.count < Crossings::kMost) {
+    crossings.all[crossings.count++] = crossing;
+    return;
+  }
+  RTCRayHit& farthest = *std::ranges::max_element(crossings.all, nearer);
+  if (nearer(crossing, farthest)) {
+    farthest = crossing;
+  } else {
+    arguments->valid[0] = -1;  // nothing beyond it matters
+  }
 }
 
 bool intersect(RTCScene scene, RTCRayHit& query) {
@@ -100,7 +133,8 @@ Eigen::Vector3f RayScene::to_scene(const Eigen::RowVector3d& point) const {
 void RayScene::attach(Part& part, RTCGeometry geometry, Layer layer) {
   if (part.scene == nullptr) {
     part.scene = rtcNewScene(device_);
-    rtcSetSceneFlags(part.scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(part.scene, &part == &glass_ ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+                                                  : RTC_SCENE_FLAG_ROBUST);
   }
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(part.scene, geometry);  // numbered from 0
@@ -164,10 +198,7 @@ void RayScene::add_segments(Part& part, const SegmentLayer& layer, double radius
   attach(part, geometry, std::move(entry));
 }
 
-std::optional<SurfaceHit> RayScene::hit(const Part& part, const Ray& ray, float beyond, float up_to) const {
-  if (part.scene == nullptr) return std::nullopt;
-  RTCRayHit query = ray_hit(ray, beyond, up_to);
-  if (!intersect(part.scene, query)) return std::nullopt;
+SurfaceHit RayScene::hit_of(const Part& part, const Ray& ray, const RTCRayHit& query) const {
   const Layer& layer = part.layers[query.hit.geomID];
   const SurfaceLayer& surface = *layer.surface;
   const auto face = static_cast<Eigen::Index>(query.hit.primID);
@@ -220,12 +251,30 @@ std::optional<SurfaceHit> RayScene::hit(const Part& part, const Ray& ray, float 
   return result;
 }
 
-std::optional<SurfaceHit> RayScene::surface(const Ray& ray, float beyond, float up_to) const {
-  return hit(opaque_, ray, beyond, up_to);
+std::optional<SurfaceHit> RayScene::surface(const Ray& ray, float up_to) const {
+  if (opaque_.scene == nullptr) return std::nullopt;
+  RTCRayHit query = ray_hit(ray, 0, up_to);
+  if (!intersect(opaque_.scene, query)) return std::nullopt;
+  return hit_of(opaque_, ray, query);
 }
 
-std::optional<SurfaceHit> RayScene::glass(const Ray& ray, float beyond, float up_to) const {
-  return hit(glass_, ray, beyond, up_to);
+void RayScene::glass(const Ray& ray, float up_to, int most, const std::function<void(const SurfaceHit&)>& visit) const {
+  if (glass_.scene == nullptr) return;
+  Crossings crossings;
+  rtcInitIntersectContext(&crossings.context);
+  crossings.context.filter = let_pass;
+  RTCRayHit query = ray_hit(ray, 0, up_to);
+  rtcIntersect1(glass_.scene, &crossings.context, &query);
+  const auto end = crossings.all.begin() + static_cast<std::ptrdiff_t>(crossings.count);
+  std::sort(crossings.all.begin(), end, nearer);
+  float beyond = 0;
+  for (auto crossing = crossings.all.begin(); crossing != end && most > 0; ++crossing) {
+    if (crossing->ray.tfar < beyond) continue;  // the same sheet once more
+    const SurfaceHit hit = hit_of(glass_, ray, *crossing);
+    visit(hit);
+    beyond = hit.distance * (1 + 1e-5F) + 1e-6F;
+    --most;
+  }
 }
 
 std::optional<MarkHit> RayScene::mark(const Ray& ray, float up_to) const {

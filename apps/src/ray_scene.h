@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,8 +47,11 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  std::optional<SurfaceHit> surface(const Ray& ray, float beyond, float up_to) const;
-  std::optional<SurfaceHit> glass(const Ray& ray, float beyond, float up_to) const;
+  std::optional<SurfaceHit> surface(const Ray& ray, float up_to) const;
+
+  /// Visits what the ray crosses of glass nearer than `up_to`, nearest first, at most so many sheets (of 32 with those
+  /// that coincide). One walk through the tree finds them all.
+  void glass(const Ray& ray, float up_to, int most, const std::function<void(const SurfaceHit&)>& visit) const;
   std::optional<MarkHit> mark(const Ray& ray, float up_to) const;
 
   /// Whether the ray comes near a mark, behind whatever it may be.
@@ -80,7 +84,7 @@ class RayScene {
   void add_points(Part& part, const PointLayer& layer, double radius);
   void add_segments(Part& part, const SegmentLayer& layer, double radius);
   void attach(Part& part, RTCGeometry geometry, Layer layer);
-  std::optional<SurfaceHit> hit(const Part& part, const Ray& ray, float beyond, float up_to) const;
+  SurfaceHit hit_of(const Part& part, const Ray& ray, const RTCRayHit& query) const;
   Eigen::Vector3f to_scene(const Eigen::RowVector3d& point) const;
 
   RTCDevice device_ = nullptr;

@@ -171,7 +171,7 @@ class Painter {
 
   Base base(int x, int y, const Ray& ray) const {
     const float infinity = std::numeric_limits<float>::infinity();
-    if (const auto hit = scene_.surface(ray, 0, infinity)) {
+    if (const auto hit = scene_.surface(ray, infinity)) {
       const Light light = buffer_.light(x, y, hit->position, hit->normal, PixelSurface::Kind::surface);
       return {shade(*hit, ray, light), hit->distance};
     }
@@ -224,17 +224,13 @@ class Painter {
 
   Glass glass(const Ray& ray, float end) const {
     Glass result;
-    float beyond = 0;
-    for (int layer = 0; layer < kMaxGlassLayers; ++layer) {
-      const auto hit = scene_.glass(ray, beyond, end);
-      if (!hit) break;
+    scene_.glass(ray, end, kMaxGlassLayers, [&](const SurfaceHit& hit) {
       // Seen edge-on glass is denser.
-      const float facing = std::abs(hit->normal.dot(ray.direction));
-      const float opacity = 1 - std::pow(1 - hit->opacity, 1 / std::max(facing, 0.35F));
-      result.colour += result.passes * opacity * shade(*hit, ray, {1, 1});
+      const float facing = std::abs(hit.normal.dot(ray.direction));
+      const float opacity = 1 - std::pow(1 - hit.opacity, 1 / std::max(facing, 0.35F));
+      result.colour += result.passes * opacity * shade(hit, ray, {1, 1});
       result.passes *= 1 - opacity;
-      beyond = hit->distance * (1 + 1e-5F) + 1e-6F;
-    }
+    });
     return result;
   }
 
