@@ -71,11 +71,18 @@ double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion&
   return measure_residual(patch, motions, context, kQueries).rms;
 }
 
-// Whether pieces of surface were added to components at the cost of how well they turn or mirror.
+// Whether more faces or elements came at the cost of how well components turn or mirror: pieces of surface were added,
+// or what is exact was taken into what is far from it.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
-  if (!outer.of_pieces || inner.of_pieces) return false;
-  return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
+  constexpr double kNothing = 0.01;  // tolerances
+  constexpr double kFarOff = 0.2;
+  if (inner.of_pieces) return false;
+  const double outer_misfit = misfit(prepared, tolerance, outer);
+  if (!outer.of_pieces && outer_misfit <= kFarOff * tolerance) return false;
+  const double inner_misfit = misfit(prepared, tolerance, inner);
+  if (!outer.of_pieces) return inner_misfit < kNothing * tolerance;
+  return outer_misfit > kFarLess * inner_misfit;
 }
 
 bool same_faces(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {

@@ -134,6 +134,41 @@ TEST_F(Regions, LackingOnePartAreNoRepeat) {
             (Names{"C4v of 5", "Cs of 6"}));
 }
 
+// Two wheels on one axle, which lean in by some degrees.
+class Axle : public testing::TestWithParam<double> {};
+
+TEST_P(Axle, WheelsStayBesideItUnlessItFitsAsWell) {
+  const Mesh wheel = test::moved(test::prism(5, 0.3, 0.1), test::shift(0, 0, 0.4));
+  const Motion lean = Motion::rotation({1, 0, 0}, GetParam() * std::numbers::pi / 180, {0, 0, 0.4});
+  const Motion across{Vector3d(1, 1, -1).asDiagonal(), Vector3d::Zero()};
+  const Mesh left = test::moved(wheel, lean);
+  const PreparedMesh prepared = prepare(test::joined({left, test::moved(left, across)}));
+  const auto region = [&](const char* symbol, const GroupFrame& frame, const Vector3d& centre, std::vector<int> parts) {
+    FoundRegion result;
+    result.placement = test::normalised(prepared, {*PointGroup::parse(symbol), frame, centre});
+    for (const int c : parts) {
+      const std::vector<int>& faces = prepared.components.faces[static_cast<std::size_t>(c)];
+      result.faces.insert(result.faces.end(), faces.begin(), faces.end());
+    }
+    result.area = surface_moments(prepared, result.faces).area;
+    result.name = symbol;
+    return result;
+  };
+  std::vector<FoundRegion> regions{
+      region("D5h", GroupFrame::Identity(), {0, 0, 0}, {0, 1}),
+      region("C5v", frame_about(lean.linear.col(2), lean.linear.col(1)), {0, 0, 0.4}, {0})};
+  drop_repeats(prepared, test::kTolerance, regions);
+  EXPECT_EQ(regions.size(), GetParam() > 0.1 ? 2U : 1U);
+  // Pieces of surface end by chance; they do not stay for it.
+  regions = {region("D5h", GroupFrame::Identity(), {0, 0, 0}, {0, 1}),
+             region("C5v", frame_about(lean.linear.col(2), lean.linear.col(1)), {0, 0, 0.4}, {0})};
+  regions[1].of_pieces = true;
+  drop_repeats(prepared, test::kTolerance, regions);
+  EXPECT_EQ(regions.size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, Axle, testing::Values(0, 0.02, 0.8, 1));
+
 TEST_F(Regions, AnOrderOfRegionsChangesWhichStayOnlyAmongEquals) {
   std::vector<FoundRegion> regions{region("C4v", {0, 1, 2, 3, 4, 5}),
                                    region("D4h", {5}),
