@@ -479,24 +479,28 @@ class PartSearch {
     }
     std::vector<std::pair<int, std::vector<int>>> found;
     const int lowest = crowded() ? 3 : 2;
+    // What lies on the line speaks for itself: what turns about it is looked for off it first.
+    std::vector<int> beside;
+    for (std::size_t c = 0; c < survey().moments.size(); ++c) {
+      if (distance_from(line, survey().moments[c].centroid) >= 3 * options_.tolerance)
+        beside.push_back(static_cast<int>(c));
+    }
     std::vector<std::vector<int>> permuted(static_cast<std::size_t>(kHighestOrder - lowest + 1));
     for_each(permuted.size(), [&](std::size_t i) {
       const int n = kHighestOrder - static_cast<int>(i);
-      permuted[i] = mover_->permuted({{Family::Cn, n}, frame, line.point}, round);
+      permuted[i] = mover_->permuted_among(beside, {{Family::Cn, n}, frame, line.point}, round);
     });
     for (int n = kHighestOrder; n >= lowest; --n) {
       context_.check();
-      std::vector<int>& turned = permuted[static_cast<std::size_t>(kHighestOrder - n)];
       std::vector<std::vector<int>> larger{round};
       for (const auto& [order, parts] : found) {
         if (order % n == 0) larger.push_back(parts);
       }
-      std::vector<int> fresh = without(turned, larger);
-      // What lies on the line speaks for itself.
-      std::erase_if(fresh, [&](int c) { return distance_from(line, moments(c).centroid) < 3 * options_.tolerance; });
+      const std::vector<int> fresh = without(permuted[static_cast<std::size_t>(kHighestOrder - n)], larger);
       if (area_of(fresh) < least_area()) continue;
       // Whole classes were looked at before; what turns with a larger region as well has nothing new to say.
       const GroupPlacement turn{{Family::Cn, n}, frame, line.point};
+      std::vector<int> turned = mover_->permuted(turn, round);
       for (const CongruenceClass& kind : classes()) {
         std::vector<int> ring;
         std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));

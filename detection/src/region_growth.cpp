@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -168,6 +169,13 @@ double ComponentMover::reach_of(std::size_t component, const PointGroup& group) 
 
 std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const std::vector<int>& seed,
                                           double strictness) const {
+  std::vector<int> all(survey_.moments.size());
+  std::iota(all.begin(), all.end(), 0);
+  return permuted_among(all, placement, seed, strictness);
+}
+
+std::vector<int> ComponentMover::permuted_among(const std::vector<int>& among, const GroupPlacement& placement,
+                                                const std::vector<int>& seed, double strictness) const {
   const std::size_t count = survey_.moments.size();
   std::vector<char> in(count, 0);
   for (const int c : seed) in[static_cast<std::size_t>(c)] = 1;
@@ -175,7 +183,8 @@ std::vector<int> ComponentMover::permuted(const GroupPlacement& placement, const
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
   // images[c]: the components onto which the group carries c; empty for the seed.
   std::vector<std::vector<int>> images(count);
-  for (std::size_t c = 0; c < count; ++c) {
+  for (const int each : among) {
+    const auto c = static_cast<std::size_t>(each);
     context_.check();
     if (in[c] != 0) continue;
     const double reach = strictness * reach_of(c, placement.group);

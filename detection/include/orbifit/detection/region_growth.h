@@ -33,6 +33,10 @@ class ComponentMover {
   /// \param seed components known to belong \param strictness how far images may be off, in tolerances
   std::vector<int> permuted(const GroupPlacement& placement, const std::vector<int>& seed, double strictness = 1) const;
 
+  /// The same of some components: those of the seed and those `among`, ascending, that the group permutes together.
+  std::vector<int> permuted_among(const std::vector<int>& among, const GroupPlacement& placement,
+                                  const std::vector<int>& seed, double strictness = 1) const;
+
   /// For subgroups H of a finite group known on `seed`: the components that H permutes where they are more than the
   /// seed, largest subgroup first.
   std::vector<SubgroupRegion> subgroup_regions(const GroupPlacement& placement, const std::vector<int>& seed) const;
