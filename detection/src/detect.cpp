@@ -60,7 +60,8 @@ constexpr double kLongest = 1e8;      // seconds, which a clock can add
 constexpr double kLeastSeconds = 1;   // for the whole
 constexpr double kOfDetection = 0.6;  // of the time, where what is found is to be carried to a finer mesh
 constexpr int kDetectSamples = 6000;
-constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise
+constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise;
+constexpr std::size_t kMostOfComponent = 4;  // unless that many come of as many components
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -221,7 +222,7 @@ class Detector {
     PreparedMesh partition = prepared_;
     partition.components = segments_.faces.empty() ? smooth_segments(prepared_) : std::move(segments_);
     const std::size_t count = partition.components.faces.size();
-    if (count > kMostSegments) return;
+    if (count > std::max(kMostSegments, kMostOfComponent * prepared_.components.faces.size())) return;
     // Of one surface what lines say is asked first: pieces have little to add to it.
     const bool fine = one_fine_surface();
     const bool cut = count != prepared_.components.faces.size();

@@ -24,16 +24,17 @@ using Eigen::Vector3d;
 
 constexpr double kWeldTolerance = 1e-7;
 
-// Faces with the same welded corners as an earlier one carry no area of their own: a sheet modelled with two sides
-// would else weigh double and pull the centroid away from the axis.
-void silence_repeated_faces(const Mesh& mesh, const Weld& weld, Eigen::VectorXd& areas) {
-  std::vector<std::pair<std::array<int, 3>, int>> corners(static_cast<std::size_t>(mesh.faces.rows()));
+// Faces with the same welded corners as an earlier one of their component carry no area of their own: a sheet modelled
+// with two sides would else weigh double and pull the centroid away from the axis.
+void silence_repeated_faces(const Mesh& mesh, const Weld& weld, const Components& components, Eigen::VectorXd& areas) {
+  std::vector<std::pair<std::array<int, 4>, int>> corners(static_cast<std::size_t>(mesh.faces.rows()));
   for (int f = 0; f < mesh.faces.rows(); ++f) {
-    std::array<int, 3> key{};
+    std::array<int, 4> key{};
     for (int k = 0; k < 3; ++k) {
       key[static_cast<std::size_t>(k)] = weld.group_of_vertex[static_cast<std::size_t>(mesh.faces(f, k))];
     }
-    std::ranges::sort(key);
+    std::sort(key.begin(), key.begin() + 3);
+    key[3] = components.component_of_face[static_cast<std::size_t>(f)];
     corners[static_cast<std::size_t>(f)] = {key, f};
   }
   std::ranges::sort(corners);
@@ -91,10 +92,10 @@ PreparedMesh prepare(const Mesh& mesh) {
   result.mesh = mesh;
   result.mesh.vertices = (mesh.vertices.rowwise() - centre.transpose()) / size;
   result.weld = weld_vertices(result.mesh.vertices, kWeldTolerance);
-  result.components = connected_components(result.mesh, result.weld);
+  result.components = touching_parts(result.mesh, result.weld);
   result.normals = face_normals(result.mesh);
   result.areas = face_areas(result.mesh);
-  silence_repeated_faces(result.mesh, result.weld, result.areas);
+  silence_repeated_faces(result.mesh, result.weld, result.components, result.areas);
   result.area = result.areas.sum();
   if (!(result.area > 0)) throw InputError("", "faces", "the mesh has no area");
   result.faces_of_vertex.resize(result.weld.representative.size());

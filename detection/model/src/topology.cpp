@@ -4,8 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -169,6 +173,87 @@ double enclosed_volume(const Mesh& mesh) {
   return volume;
 }
 
+// The mesh's own vertices at the ends of a side, ascending; nothing where a face has two such sides.
+std::optional<std::array<int, 2>> own_vertices(const Mesh& mesh, const Weld& weld, const EdgeUse& use) {
+  std::optional<std::array<int, 2>> own;
+  for (int k = 0; k < 3; ++k) {
+    const int a = mesh.faces(use.face, k);
+    const int b = mesh.faces(use.face, (k + 1) % 3);
+    const auto [low, high] = std::minmax(weld.group_of_vertex[static_cast<std::size_t>(a)],
+                                         weld.group_of_vertex[static_cast<std::size_t>(b)]);
+    if (low != use.vertices[0] || high != use.vertices[1]) continue;
+    if (own) return std::nullopt;
+    own = {std::min(a, b), std::max(a, b)};
+  }
+  return own;
+}
+
+// Whether the mesh's own vertices pair the faces at an edge, no more and no fewer than two each; then those of a pair
+// come to stand side by side.
+bool pair_by_vertices(const Mesh& mesh, const Weld& weld, std::span<EdgeUse> uses) {
+  if (uses.size() % 2 != 0) return false;
+  std::vector<std::pair<std::array<int, 2>, EdgeUse>> by_vertices;
+  for (const EdgeUse& use : uses) {
+    const std::optional<std::array<int, 2>> own = own_vertices(mesh, weld, use);
+    if (!own) return false;
+    by_vertices.emplace_back(*own, use);
+  }
+  std::ranges::stable_sort(by_vertices, {}, [](const auto& each) { return each.first; });
+  for (std::size_t i = 0; i < by_vertices.size(); ++i) {
+    const bool same = i > 0 && by_vertices[i].first == by_vertices[i - 1].first;
+    if (same != (i % 2 == 1)) return false;
+  }
+  for (std::size_t i = 0; i < uses.size(); ++i) uses[i] = by_vertices[i].second;
+  return true;
+}
+
+// Unites sets most of whose faces repeat another set's: the two sides of a sheet.
+void unite_doubled(const Mesh& mesh, const Weld& weld, DisjointSets& sets) {
+  constexpr std::size_t kMost = 8;  // faces on one another: of more none is the side of a sheet
+  std::vector<std::pair<std::array<int, 3>, int>> corners;
+  std::unordered_map<int, std::size_t> sizes;
+  for (int f = 0; f < mesh.faces.rows(); ++f) {
+    std::array<int, 3> key = corner_groups(mesh, weld, f);
+    std::ranges::sort(key);
+    corners.emplace_back(key, f);
+    ++sizes[sets.root(f)];
+  }
+  std::ranges::sort(corners);
+  std::map<std::array<int, 2>, std::size_t> common;  // faces that the first set repeats of the second
+  for (std::size_t first = 0; first < corners.size();) {
+    std::size_t last = first + 1;
+    while (last < corners.size() && corners[last].first == corners[first].first) ++last;
+    for (std::size_t i = first; i < last && last - first <= kMost; ++i) {
+      for (std::size_t j = first; j < last; ++j) {
+        const int mine = sets.root(corners[i].second);
+        const int other = sets.root(corners[j].second);
+        if (mine != other) ++common[{mine, other}];
+      }
+    }
+    first = last;
+  }
+  for (const auto& [pair, count] : common) {
+    if (2 * count > sizes[pair[0]]) sets.unite(pair[0], pair[1]);
+  }
+}
+
+Components components_of(DisjointSets& sets) {
+  Components components;
+  components.component_of_face.assign(sets.size(), -1);
+  for (std::size_t f = 0; f < sets.size(); ++f) {
+    // The root is the component's first face, so its number is known by now.
+    const auto root = static_cast<std::size_t>(sets.root(static_cast<int>(f)));
+    if (root == f) {
+      components.component_of_face[f] = static_cast<int>(components.faces.size());
+      components.faces.emplace_back();
+    } else {
+      components.component_of_face[f] = components.component_of_face[root];
+    }
+    components.faces[static_cast<std::size_t>(components.component_of_face[f])].push_back(static_cast<int>(f));
+  }
+  return components;
+}
+
 }  // namespace
 
 Weld weld_vertices(const Points& vertices, double tolerance) {
@@ -189,26 +274,29 @@ Weld weld_vertices(const Points& vertices, double tolerance) {
 }
 
 Components connected_components(const Mesh& mesh, const Weld& weld) {
-  const auto face_count = static_cast<std::size_t>(mesh.faces.rows());
-  DisjointSets sets(face_count);
+  DisjointSets sets(static_cast<std::size_t>(mesh.faces.rows()));
   const std::vector<EdgeUse> uses = edge_uses(mesh, weld, true);
   for (std::size_t i = 1; i < uses.size(); ++i) {
     if (uses[i].vertices == uses[i - 1].vertices) sets.unite(uses[i].face, uses[i - 1].face);
   }
-  Components components;
-  components.component_of_face.assign(face_count, -1);
-  for (std::size_t f = 0; f < face_count; ++f) {
-    // The root is the component's first face, so its number is known by now.
-    const auto root = static_cast<std::size_t>(sets.root(static_cast<int>(f)));
-    if (root == f) {
-      components.component_of_face[f] = static_cast<int>(components.faces.size());
-      components.faces.emplace_back();
-    } else {
-      components.component_of_face[f] = components.component_of_face[root];
+  return components_of(sets);
+}
+
+Components touching_parts(const Mesh& mesh, const Weld& weld) {
+  DisjointSets sets(static_cast<std::size_t>(mesh.faces.rows()));
+  std::vector<EdgeUse> uses = edge_uses(mesh, weld, true);
+  for (std::size_t first = 0; first < uses.size();) {
+    std::size_t last = first + 1;
+    while (last < uses.size() && uses[last].vertices == uses[first].vertices) ++last;
+    const std::span<EdgeUse> here = std::span(uses).subspan(first, last - first);
+    const bool apart = here.size() > 2 && pair_by_vertices(mesh, weld, here);
+    for (std::size_t i = 1; i < here.size(); ++i) {
+      if (!apart || i % 2 == 1) sets.unite(here[i].face, here[i - 1].face);
     }
-    components.faces[static_cast<std::size_t>(components.component_of_face[f])].push_back(static_cast<int>(f));
+    first = last;
   }
-  return components;
+  unite_doubled(mesh, weld, sets);
+  return components_of(sets);
 }
 
 std::vector<Edge> welded_edges(const Mesh& mesh, const Weld& weld) {

@@ -118,6 +118,57 @@ TEST(ConnectedComponents, NeedASharedEdge) {
   EXPECT_EQ(connected_components(side, weld_vertices(side.vertices)).faces.size(), 1U);
 }
 
+std::size_t touching(const Mesh& mesh) {
+  return touching_parts(mesh, weld_vertices(mesh.vertices)).faces.size();
+}
+
+TEST(TouchingParts, StayApartWhereTheirOwnVerticesTellThem) {
+  const Mesh side = joined(cube(), moved(cube(), 1));
+  EXPECT_EQ(touching(side), 2U) << "a side in common";
+  Mesh edge = moved(cube(), 1);
+  edge.vertices.col(1).array() += 1;
+  EXPECT_EQ(touching(joined(cube(), edge)), 2U) << "an edge in common";
+  Mesh row = cube();
+  for (int i = 1; i < 5; ++i) row = joined(row, moved(cube(), i));
+  EXPECT_EQ(touching(row), 5U);
+  EXPECT_EQ(touching(exploded(side)), 1U) << "a soup's vertices tell nothing";
+  Mesh welded = side;
+  const Weld weld = weld_vertices(side.vertices);
+  for (Eigen::Index i = 0; i < welded.faces.size(); ++i) {
+    int& vertex = welded.faces.data()[i];
+    const int group = weld.group_of_vertex[static_cast<std::size_t>(vertex)];
+    vertex = weld.representative[static_cast<std::size_t>(group)];
+  }
+  EXPECT_EQ(touching(welded), 1U) << "nor do shared ones";
+}
+
+TEST(TouchingParts, TwoSidesOfASheetAreOne) {
+  Mesh inside = cube();
+  inside.faces.col(1).swap(inside.faces.col(2));
+  EXPECT_EQ(touching(joined(cube(), inside)), 1U);
+  EXPECT_EQ(touching(joined(joined(cube(), inside), moved(cube(), 1))), 2U);
+  const Components both = touching_parts(joined(cube(), inside), weld_vertices(joined(cube(), inside).vertices));
+  EXPECT_EQ(both.faces[0].size(), 24U);
+}
+
+TEST(TouchingParts, AreTheComponentsOfAManifold) {
+  for (const Mesh& mesh : {cube(), joined(cube(), moved(cube(), 3)), exploded(cube())}) {
+    const Weld weld = weld_vertices(mesh.vertices);
+    EXPECT_EQ(touching_parts(mesh, weld).component_of_face, connected_components(mesh, weld).component_of_face);
+  }
+}
+
+TEST(TouchingParts, FinishOnManyFacesOfTheSameCorners) {
+  Mesh heap;
+  heap.vertices.resize(3, 3);
+  heap.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  heap.faces.resize(200000, 3);
+  heap.faces.rowwise() = Eigen::RowVector3i(0, 1, 2);
+  EXPECT_EQ(touching(heap), 1U);
+  heap.faces.rowwise() = Eigen::RowVector3i(0, 1, 1);
+  EXPECT_EQ(touching(heap), 1U);
+}
+
 TEST(ConnectedComponents, AreNumberedByFirstFaceWithFacesAscending) {
   Mesh mesh = exploded(joined(joined(cube(), moved(cube(), 3)), moved(cube(), 6)));
   Random random(3);

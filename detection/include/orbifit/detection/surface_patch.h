@@ -20,9 +20,9 @@ struct PreparedMesh {
   Mesh mesh;                       ///< normalised; faces in the order of the input
   Similarity input_of_normalised;  ///< carries the normalised mesh back to where it was given
   Weld weld;                       ///< at 1e-7 of the diagonal
-  Components components;
-  Points normals;                                 ///< #F by 3
-  Eigen::VectorXd areas;                          ///< #F; 0 for faces that repeat an earlier one (two-sided sheets)
+  Components components;           ///< touching_parts()
+  Points normals;                  ///< #F by 3
+  Eigen::VectorXd areas;           ///< #F; 0 for faces that repeat one of their component (two-sided sheets)
   std::vector<std::vector<int>> faces_of_vertex;  ///< by group of the weld: the faces at it
   double area = 0;
   double noise = 0;                           ///< that was taken out, a fraction of the diagonal

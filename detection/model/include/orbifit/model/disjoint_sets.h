@@ -28,6 +28,8 @@ class DisjointSets {
     parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
   }
 
+  std::size_t size() const { return parent_.size(); }
+
  private:
   std::vector<int> parent_;
 };
