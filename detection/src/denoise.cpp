@@ -41,7 +41,7 @@ Lists neighbours_of_groups(const PreparedMesh& prepared) {
       }
     }
     std::ranges::sort(around);
-    around.erase(std::ranges::unique(around).begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
     result.items.insert(result.items.end(), around.begin(), around.end());
     result.close();
   }
@@ -61,7 +61,7 @@ Lists neighbours_of_faces(const PreparedMesh& prepared) {
       if (at.size() <= kMost) around.insert(around.end(), at.begin(), at.end());
     }
     std::ranges::sort(around);
-    around.erase(std::ranges::unique(around).begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
     std::erase(around, static_cast<int>(f));
     result.items.insert(result.items.end(), around.begin(), around.end());
     result.close();

@@ -36,7 +36,7 @@ int largest(const Eigen::VectorXd& values, const Points& middles) {
 // A direction that turns with the shape: in the frame of its centroid, the face farthest from it, and the face farthest
 // from the line through the two. It lies along none of the frame's planes, so that few faces are level.
 Vector3d own_direction(const Points& middles, const Vector3d& centroid) {
-  const Vector3d in_frame = Vector3d(0.5377, 0.3188, 0.7811).normalized();
+  Vector3d in_frame = Vector3d(0.5377, 0.3188, 0.7811).normalized();
   const Points from = middles.rowwise() - centroid.transpose();
   const int farthest = largest(from.rowwise().norm(), middles);
   if (farthest < 0 || !(from.row(farthest).norm() > kSame)) return in_frame;
