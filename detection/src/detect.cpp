@@ -39,7 +39,6 @@
 
 #include "cut_discs.h"
 #include "looser_groups.h"
-#include "own_order.h"
 #include "partial_rows.h"
 #include "region_patterns.h"
 #include "row_growth.h"
@@ -414,8 +413,22 @@ std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, double noise, c
   return coarse;
 }
 
-SymmetryAnnotation detect_in_order(const Mesh& mesh, const DetectOptions& options, Clock::time_point start,
-                                   RunContext& context) {
+}  // namespace
+
+void DetectOptions::validate() const {
+  const auto refuse = [](const std::string& field, const std::string& value, const std::string& rule) {
+    throw UsageError("DetectOptions." + field + " is " + value + "; it must satisfy " + rule);
+  };
+  if (!(tolerance >= 1e-6 && tolerance <= 0.1))
+    refuse("tolerance", std::to_string(tolerance), "1e-6 <= tolerance <= 0.1");
+  if (samples < 100) refuse("samples", std::to_string(samples), "samples >= 100");
+  if (stand_in_from < 0) refuse("stand_in_from", std::to_string(stand_in_from), "stand_in_from >= 0");
+  if (!(max_seconds >= 0)) refuse("max_seconds", std::to_string(max_seconds), "max_seconds >= 0");
+}
+
+SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
+  options.validate();
+  const auto start = Clock::now();
   PreparedMesh prepared = prepare(mesh);
   SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
   std::optional<PreparedMesh> given;  // where there is noise: before it was taken out
@@ -455,37 +468,6 @@ SymmetryAnnotation detect_in_order(const Mesh& mesh, const DetectOptions& option
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
   context.progress("regions", 1);
-  return annotation;
-}
-
-}  // namespace
-
-void DetectOptions::validate() const {
-  const auto refuse = [](const std::string& field, const std::string& value, const std::string& rule) {
-    throw UsageError("DetectOptions." + field + " is " + value + "; it must satisfy " + rule);
-  };
-  if (!(tolerance >= 1e-6 && tolerance <= 0.1))
-    refuse("tolerance", std::to_string(tolerance), "1e-6 <= tolerance <= 0.1");
-  if (samples < 100) refuse("samples", std::to_string(samples), "samples >= 100");
-  if (stand_in_from < 0) refuse("stand_in_from", std::to_string(stand_in_from), "stand_in_from >= 0");
-  if (!(max_seconds >= 0)) refuse("max_seconds", std::to_string(max_seconds), "max_seconds >= 0");
-}
-
-SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
-  options.validate();
-  const auto start = Clock::now();
-  if (!mesh.vertices.allFinite()) throw InputError("", "vertices", "a coordinate is not finite");
-  // Samples are drawn along the faces: in their own order they do not depend on the file's.
-  const OwnOrder ordered = in_own_order(mesh);
-  SymmetryAnnotation annotation = detect_in_order(ordered.mesh, options, start, context);
-  const auto restore = [&](std::vector<int>& faces) {
-    for (int& face : faces) face = ordered.face[static_cast<std::size_t>(face)];
-    std::ranges::sort(faces);
-  };
-  for (Region& region : annotation.regions) restore(region.faces);
-  for (Pattern& pattern : annotation.patterns) {
-    for (PatternInstance& instance : pattern.instances) restore(instance.faces);
-  }
   return annotation;
 }
 

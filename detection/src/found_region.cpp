@@ -71,18 +71,19 @@ double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion&
   return measure_residual(patch, motions, context, kQueries).rms;
 }
 
-// Whether more faces or elements came at the cost of how well components turn or mirror: pieces of surface were added,
-// or what is exact was taken into what is far from it.
+// Whether pieces of surface were added to components at the cost of how well they turn or mirror.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
+  if (!outer.of_pieces || inner.of_pieces) return false;
+  return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
+}
+
+// Whether components that are exact were taken into others that are far from it.
+bool less_exact(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kNothing = 0.01;  // tolerances
   constexpr double kFarOff = 0.2;
-  if (inner.of_pieces) return false;
-  const double outer_misfit = misfit(prepared, tolerance, outer);
-  if (!outer.of_pieces && outer_misfit <= kFarOff * tolerance) return false;
-  const double inner_misfit = misfit(prepared, tolerance, inner);
-  if (!outer.of_pieces) return inner_misfit < kNothing * tolerance;
-  return outer_misfit > kFarLess * inner_misfit;
+  return !outer.of_pieces && !inner.of_pieces && misfit(prepared, tolerance, outer) > kFarOff * tolerance &&
+         misfit(prepared, tolerance, inner) < kNothing * tolerance;
 }
 
 bool same_faces(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {
@@ -173,9 +174,11 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
     for (std::size_t j = 0; j < regions.size() && !repeats; ++j) {
       if (i == j) continue;
       if (!contains_group(regions[j].placement, mine.placement, moments.centroid, moments.radius, reach)) continue;
-      if (!covers(prepared, regions[j], mine) && !more_by_chance(prepared, regions[j], mine)) continue;
+      const bool covered = covers(prepared, regions[j], mine);
+      if (!covered && !more_by_chance(prepared, regions[j], mine)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
-      repeats = (!mutual || j < i) && !looser(prepared, tolerance, regions[j], mine);
+      repeats = (!mutual || j < i) && !looser(prepared, tolerance, regions[j], mine) &&
+                !(covered && less_exact(prepared, tolerance, regions[j], mine));
       if (repeats)
         note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
     }

@@ -167,6 +167,12 @@ TEST_P(SameBytes, WithAnyNumberOfThreads) {
   EXPECT_EQ(files[0].count("cube.ply"), 1U);
 }
 
+TEST_P(SameBytes, SilentAboutMoreThreadsThanCores) {
+  const ProgramResult result = program_.run(GetParam() + " --quiet --threads 64");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.errors, "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Commands, SameBytes,
                          testing::Values("detect cube.ply -o a.json --colour a.ply",
                                          "scan cube.ply --noise 0.01 --outliers 0.1 -o a.ply",

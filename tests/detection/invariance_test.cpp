@@ -230,24 +230,6 @@ TEST_P(Invariance, OtherOrderOfVerticesAndFaces) {
   expect_same({}, true, "order");
 }
 
-// To the last bit: the order of a file says nothing of a shape.
-TEST_P(Invariance, ByteForByteInOtherOrders) {
-  for (const int trial : {0, 1, 2}) {
-    Random random(11 + trial, GetParam().name);
-    const Changed other = changed(mesh_, {}, true, random);
-    SymmetryAnnotation found = regions_of(other.mesh);
-    const auto restore = [&](std::vector<int>& faces) {
-      for (int& face : faces) face = other.face[static_cast<std::size_t>(face)];
-      std::ranges::sort(faces);
-    };
-    for (Region& region : found.regions) restore(region.faces);
-    for (Pattern& pattern : found.patterns) {
-      for (PatternInstance& instance : pattern.instances) restore(instance.faces);
-    }
-    EXPECT_EQ(to_json(found), to_json(expected_));
-  }
-}
-
 // On two threads, and asked to explain itself, the detector finds the very same.
 TEST_P(Invariance, ByteForByteAndEverythingExplained) {
   Explanation explanation;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -69,10 +70,12 @@ void parallel_for(const RunContext& context, std::size_t count,
     }
   };
   const auto loop = [&] { tbb::parallel_for(std::size_t{0}, threads, work, tbb::simple_partitioner{}); };
-  if (tbb::this_task_arena::max_concurrency() == context.threads) {
+  // More than there are cores would not be faster, and TBB warns of them.
+  const int usable = std::min(context.threads, tbb::info::default_concurrency());
+  if (tbb::this_task_arena::max_concurrency() == usable) {
     loop();
   } else {
-    arena_of(context.threads).execute(loop);
+    arena_of(usable).execute(loop);
   }
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
