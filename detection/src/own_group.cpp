@@ -154,14 +154,6 @@ class GroupSearch {
     return refine(patch_, {group, frame, centre_}, context_, options);
   }
 
-  // The same with its centre beside the patch's along the axis. A wall slides along its axis unresisted: only its
-  // borders, which weigh little in a fit, tell where its middle is.
-  GroupPlacement centred(GroupPlacement placement) const {
-    const Vector3d axis = placement.frame.col(2);
-    placement.centre += axis * axis.dot(centre_ - placement.centre);
-    return placement;
-  }
-
   static void add_line(std::vector<Vector3d>& lines, const Vector3d& line) {
     const Vector3d unit = line.normalized();
     if (std::ranges::none_of(lines, [&](const Vector3d& known) { return same_line(known, unit); })) {
@@ -222,13 +214,8 @@ class GroupSearch {
   bool attempt(const PointGroup& group, const GroupFrame& frame) {
     context_.check();
     if (best_ && size_of(best_->placement.group) >= size_of(group)) return false;
-    GroupPlacement placement = fitted(group, frame);
-    bool holds = check(placement);
-    if (!holds && group.family == Family::Dinfh) {
-      placement = centred(placement);
-      holds = check(placement);
-    }
-    if (!holds) {
+    const GroupPlacement placement = fitted(group, frame);
+    if (!check(placement)) {
       ++failures_;
       return false;
     }
@@ -467,13 +454,8 @@ class GroupSearch {
     options.iterations = 12;
     options.first_width = 1.5;
     options.last_width = 1;
-    GroupPlacement better = refine_on_vertices(patch_, refine(patch_, before, context_, options));
-    constexpr double kAsWell = 1.05;
-    if (better.group.family == Family::Dinfh &&
-        misfit(patch_, centred(better), context_) <= kAsWell * misfit(patch_, better, context_)) {
-      better = centred(better);
-    }
-    for (const GroupPlacement& placement : {better, before}) {
+    for (const GroupPlacement& placement :
+         {refine_on_vertices(patch_, refine(patch_, before, context_, options)), before}) {
       Verification verification = verify(patch_, judged_motions(placement.group, placement.frame, placement.centre),
                                          tolerance_of(placement.group), 0, 0, context_);
       if (!passes(verification, limits_of(patch_))) continue;

@@ -1,6 +1,5 @@
 #include "orbifit/detection/own_group.h"
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -59,28 +58,6 @@ TEST(OwnGroup, ATreadIsNoFacet) {
   }
   EXPECT_EQ(symbol_of(drum), "D10h");
 }
-
-// A wall without ends slides along its axis unresisted: where its middle is must not depend on where samples fall.
-class OpenWall : public testing::TestWithParam<double> {};
-
-TEST_P(OpenWall, HasItsMiddleWhateverTheSamples) {
-  Mesh wall = test::prism(48, 1, GetParam());
-  wall.faces = wall.faces.topRows(2 * 48).eval();
-  const PreparedMesh prepared =
-      prepare(test::moved(wall, Motion::rotation(Eigen::Vector3d(1, 2, 3).normalized(), 0.8, {0, 0, 0})));
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
-    RunContext context;
-    context.seed = seed;
-    const SurfacePatch patch = make_patch(prepared, test::all_faces(wall), 700, 0.005, context, "wall");
-    const DirectionSet screen = hemisphere_directions(2000);
-    const std::optional<OwnGroup> group = find_own_group(patch, &screen, {}, context);
-    ASSERT_TRUE(group) << seed;
-    EXPECT_EQ(group->placement.group.symbol(), "Dinfh") << seed;
-    EXPECT_LT(group->placement.centre.norm(), 1e-4) << seed;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Heights, OpenWall, testing::Values(0.8, 1.45, 3, 6));
 
 TEST(OwnGroup, NearMissesAreTold) {
   EXPECT_EQ(symbol_of(test::box(1, 1.006, 2), 0.0008), "D2h");
