@@ -23,6 +23,7 @@
 #include "orbifit/detection/components.h"
 #include "orbifit/detection/denoise.h"
 #include "orbifit/detection/found_region.h"
+#include "orbifit/detection/joined_groups.h"
 #include "orbifit/detection/noise_check.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/part_regions.h"
@@ -157,14 +158,19 @@ class Detector {
     const PartRegions parts = find_in_parts(prepared_, survey_of(prepared_), false);
     for (const FoundRegion& region : parts.regions) regions_.push_back(region);
     for (std::size_t k = 0; k < parts.own_groups.size(); ++k) {
-      if (!parts.own_groups[k]) continue;
-      for (const int part : parts.survey.classes[k].members) {
-        symmetric_area_ += parts.survey.moments[static_cast<std::size_t>(part)].area;
-      }
+      const std::optional<GroupPlacement>& own = parts.own_groups[k];
+      const std::vector<int>& members = parts.survey.classes[k].members;
+      double area = 0;
+      for (const int part : members) area += parts.survey.moments[static_cast<std::size_t>(part)].area;
+      if (own) symmetric_area_ += area;
+      if (members.size() == 1 && !(own && has_axes(own->group))) single_area_ += area;
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
     add_patterns(prepared_, parts, false);
   }
+
+  // Whether the group has more than a mirror or a half-turn, which many a cut leaves.
+  static bool has_axes(const PointGroup& group) { return group.continuous() || group.order() > 2; }
 
   // The largest group found for all faces, or all but specks.
   std::optional<GroupPlacement> placement_of_whole() const {
@@ -223,20 +229,21 @@ class Detector {
     partition.components = segments_.faces.empty() ? smooth_segments(prepared_) : std::move(segments_);
     const std::size_t count = partition.components.faces.size();
     if (count > std::max(kMostSegments, kMostOfComponent * prepared_.components.faces.size())) return;
-    // Of one surface what lines say is asked first: pieces have little to add to it.
-    const bool fine = one_fine_surface();
+    // Of one surface what lines say is asked first: pieces have little to add to it. Of parts that no other equals,
+    // such as what a cut left of one of several, they say what still turns and mirrors with the others.
+    const bool fine_triangles = has_fine_triangles();
+    const bool fine = fine_triangles && one_surface();
+    const bool about_lines = fine || (fine_triangles && single_area_ >= kLeastTurned * prepared_.area);
     const bool cut = count != prepared_.components.faces.size();
     if (fine) {
       for (FoundRegion& region : regions_) region.of_pieces = true;  // where components end is chance there
       find_turned(partition, fine);
     }
     if (late()) return;
-    if (fine || cut) {
+    if (about_lines || cut) {
       ComponentSurvey survey = survey_of(partition);
-      if (fine) {
-        find_about_lines(partition, survey);
-        find_repeated(partition);
-      }
+      if (about_lines) find_about_lines(partition, survey);
+      if (fine) find_repeated(partition);
       if (cut) add_of_pieces(find_in_parts(partition, std::move(survey), true).regions);
     }
     if (!fine) find_turned(partition, fine);
@@ -252,14 +259,9 @@ class Detector {
     add_patterns(repeated, parts, true);
   }
 
-  // Whether nearly all is one component of small triangles, of which creases tell little; or much of it is, and others
-  // have no symmetry: thin parts fall into scraps where a surface was made anew. Where parts are modelled as such, they
-  // and their pieces say all there is; and where triangles are large the pieces are exact.
-  bool one_fine_surface() const {
-    constexpr double kNearlyAll = 0.8;  // of the area
-    constexpr double kMuch = 0.4;
-    constexpr double kAll = 0.9;  // of the area, in components with a group of their own
-    constexpr double kFine = 5;   // mean length of the triangles' longest edges, tolerances
+  // Whether triangles are small: of them a part of a surface can be put together wherever it ends.
+  bool has_fine_triangles() const {
+    constexpr double kFine = 5;  // mean length of the triangles' longest edges, tolerances
     double lengths = 0;
     for (Eigen::Index f = 0; f < prepared_.mesh.faces.rows(); ++f) {
       double longest = 0;
@@ -270,7 +272,16 @@ class Detector {
       }
       lengths += prepared_.areas[f] * longest;
     }
-    if (lengths >= kFine * options_.tolerance * prepared_.area) return false;
+    return lengths < kFine * options_.tolerance * prepared_.area;
+  }
+
+  // Whether nearly all is one component; or much of it is, and others have no symmetry: thin parts fall into scraps
+  // where a surface was made anew. Where parts are modelled as such, they and their pieces say most of what there is;
+  // and where triangles are large the pieces are exact.
+  bool one_surface() const {
+    constexpr double kNearlyAll = 0.8;  // of the area
+    constexpr double kMuch = 0.4;
+    constexpr double kAll = 0.9;  // of the area, in components with a group of their own
     double largest = 0;
     for (const std::vector<int>& faces : prepared_.components.faces) {
       largest = std::max(largest, area_of(prepared_, faces));
@@ -307,6 +318,18 @@ class Detector {
     std::vector<CandidateLine> planes = mirror_planes(surface, about.turning, options.least_share, limited_);
     planes.insert(planes.end(), lines.planes.begin(), lines.planes.end());
     add_of_pieces(find_plane_regions(surface, *prepared_.index, planes, about.turning, regions_, options, limited_));
+    limited_.progress("joined", 0);
+    std::vector<FoundRegion> joined =
+        find_joined_groups(surface, *prepared_.index, about.turning, regions_, options, limited_);
+    std::vector<FoundRegion> wider = find_wider_subgroups(surface, *prepared_.index, joined, about.turning,
+                                                          together(regions_, joined), options, limited_);
+    add_of_pieces(std::move(joined));
+    add_of_pieces(std::move(wider));
+  }
+
+  static std::vector<FoundRegion> together(std::vector<FoundRegion> some, const std::vector<FoundRegion>& others) {
+    some.insert(some.end(), others.begin(), others.end());
+    return some;
   }
 
   // Of regions that turn by a third or less.
@@ -374,6 +397,7 @@ class Detector {
   std::vector<Pattern> patterns_;
   std::vector<Line> fitted_axes_;  // of pieces that look turned; set by find_turned
   double symmetric_area_ = 0;      // of components that have a group of their own
+  double single_area_ = 0;         // of components that no other equals, with a mirror or half-turn at most
 };
 
 void take_noise_out(PreparedMesh& prepared, double noise, Explanation* explanation, const RunContext& context) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 
 #include "line_region_search.h"
@@ -82,12 +83,10 @@ class Mirrored {
   const ScreenedSurface& surface_;
 };
 
-// Whether the plane holds the axis, about which the surface turns at the point: no news.
-bool holds(const Line& plane, const Line& axis, const Vector3d& normal, const Vector3d& point, double tolerance) {
+bool holds(const Line& plane, const Line& axis, double tolerance) {
   constexpr double kAngle = 0.03;  // radians
-  if (std::abs(plane.direction.dot(axis.direction)) > kAngle) return false;
-  if (std::abs(plane.direction.dot(axis.point - plane.point)) > 2 * tolerance) return false;
-  return meets(axis, point, normal);
+  return std::abs(plane.direction.dot(axis.direction)) <= kAngle &&
+         std::abs(plane.direction.dot(axis.point - plane.point)) <= 2 * tolerance;
 }
 
 // Tilts and shifts the plane a little wherever that keeps more of the samples, by smaller and smaller steps.
@@ -111,6 +110,55 @@ Line climbed(const Mirrored& mirrored, Line plane, double tolerance) {
     }
   }
   return plane;
+}
+
+// The planes through an axis that mirror most of what does not turn about it: angles are tried one by one. A handle on
+// a cup has few samples of which two are mirror images, but the axis is known.
+std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const Mirrored& mirrored, const Line& axis,
+                                          double least_share) {
+  constexpr std::size_t kMostLooks = 400;
+  constexpr std::size_t kMostOfAxis = 4;
+  constexpr double kStep = 0.5;     // tolerances, at the farthest
+  constexpr double kRoughly = 0.5;  // of the least share: planes that are a little off keep less
+  constexpr double kMostly = 0.5;   // of what does not turn: one plane of many keeps something by chance
+  std::vector<Eigen::Index> open;
+  double radius = 0;
+  const Eigen::Index count = surface.samples.points.rows();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Vector3d point = surface.samples.points.row(i);
+    if (meets(axis, point, surface.samples.normals.row(i))) continue;
+    open.push_back(i);
+    radius = std::max(radius, axis.direction.cross(point - axis.point).norm());
+  }
+  const double each = surface.prepared.area / static_cast<double>(count);  // area of a sample
+  if (static_cast<double>(open.size()) * each < least_share * surface.prepared.area) return {};
+  const std::size_t looks = std::min(open.size(), kMostLooks);
+  const double weight = static_cast<double>(open.size()) / static_cast<double>(looks) * each;
+  const auto steps = static_cast<std::size_t>(std::ceil(std::numbers::pi * radius / (kStep * surface.tolerance)));
+  const GroupFrame frame = frame_about(axis.direction);
+  const auto plane_at = [&](std::size_t step) {
+    const double angle = std::numbers::pi * static_cast<double>(step) / static_cast<double>(steps);
+    return Line{axis.point, frame.col(0) * std::cos(angle) + frame.col(1) * std::sin(angle)};
+  };
+  std::vector<std::size_t> kept(steps, 0);
+  for (std::size_t step = 0; step < steps; ++step) {
+    const Line plane = plane_at(step);
+    for (std::size_t k = 0; k < looks; ++k) {
+      bool slides = false;
+      if (mirrored.keeps(open[k * open.size() / looks], plane, slides) && !slides) ++kept[step];
+    }
+  }
+  std::vector<CandidateLine> result;
+  while (steps > 0 && result.size() < kMostOfAxis) {
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(kept) - kept.begin());
+    const double area = weight * static_cast<double>(kept[best]);
+    if (static_cast<double>(kept[best]) < kMostly * static_cast<double>(looks)) break;
+    if (area < kRoughly * least_share * surface.prepared.area) break;
+    result.push_back({plane_at(best), area});
+    constexpr std::size_t kBeside = 5;  // steps, to either side
+    for (std::size_t k = steps - std::min(kBeside, steps - 1); k <= steps + kBeside; ++k) kept[(best + k) % steps] = 0;
+  }
+  return result;
 }
 
 bool same_plane(const Line& a, const Line& b, double tolerance) {
@@ -141,7 +189,9 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
       if ((m - 2 * across * normal - other).squaredNorm() > kNormals * kNormals) continue;
       const Line plane{p + 0.5 * apart, normal};
       if (mirrored.holds_ball_of(a * count / voters, plane)) continue;
-      if (std::ranges::any_of(turning, [&](const Line& axis) { return holds(plane, axis, m, p, surface.tolerance); })) {
+      // That a surface turned about an axis is mirrored in planes through it is no news.
+      if (std::ranges::any_of(
+              turning, [&](const Line& axis) { return holds(plane, axis, surface.tolerance) && meets(axis, p, m); })) {
         continue;
       }
       if (mirrored.share(plane, kFirstLook, least_share) <= 0) continue;
@@ -162,12 +212,25 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
   }
   std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
   std::vector<CandidateLine> distinct;
-  for (const CandidateLine& plane : found) {
-    if (distinct.size() >= kMostPlanes) break;
-    const bool known = std::ranges::any_of(distinct, [&](const CandidateLine& other) {
+  const auto is_known = [&](const CandidateLine& plane) {
+    return std::ranges::any_of(distinct, [&](const CandidateLine& other) {
       return same_plane(plane.line, other.line, 2 * surface.tolerance);
     });
-    if (!known) distinct.push_back(plane);
+  };
+  for (const Line& axis : turning) {
+    context.check();
+    for (const CandidateLine& plane : planes_through(surface, mirrored, axis, least_share)) {
+      if (!is_known(plane)) distinct.push_back(plane);
+    }
+  }
+  const std::size_t most = kMostPlanes + distinct.size();
+  for (const CandidateLine& plane : found) {
+    if (distinct.size() >= most) break;
+    // Climbed to where most turns: planes through an axis are there already.
+    if (std::ranges::any_of(turning, [&](const Line& axis) { return holds(plane.line, axis, surface.tolerance); })) {
+      continue;
+    }
+    if (!is_known(plane)) distinct.push_back(plane);
   }
   return distinct;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -205,6 +206,28 @@ TEST(Detect, SameForAnyPoseScaleAndOrder) {
     }
     shuffled.polygon_of_face.clear();
     EXPECT_EQ(summary(found_in(shuffled)), expected);
+  }
+}
+
+TEST(Detect, AnArmThatIsShorterDoesNotHideWhatItShares) {
+  std::vector<Mesh> parts{test::subdivided(test::prism(6, 0.6, 0.5), 4)};
+  for (int k = 0; k < 3; ++k) {
+    const double length = k == 0 ? 1.1 : 2;
+    const Mesh arm = test::moved(test::subdivided(test::box(length, 0.3, 0.2), 5), test::shift(0.3 + length / 2, 0, 0));
+    parts.push_back(test::moved(arm, Motion::rotation(Vector3d::UnitZ(), 2 * k * std::numbers::pi / 3, {0, 0, 0})));
+  }
+  const Mesh mesh = test::joined(parts);
+  const SymmetryAnnotation annotation = found_in(mesh);
+  const auto whole =
+      std::ranges::find_if(annotation.regions, [](const Region& r) { return r.group.symbol() == "C2v"; });
+  ASSERT_NE(whole, annotation.regions.end());
+  EXPECT_EQ(whole->faces.size(), static_cast<std::size_t>(mesh.faces.rows()));
+  const auto of_turns = std::ranges::find_if(annotation.regions, [&](const Region& r) {
+    return r.group.symbol() == "D3h" && r.faces.size() > static_cast<std::size_t>(parts[0].faces.rows());
+  });
+  ASSERT_NE(of_turns, annotation.regions.end()) << ::testing::PrintToString(summary(annotation));
+  for (const int f : of_turns->faces) {
+    EXPECT_LT(face_centroids(mesh).row(f).head<2>().norm(), 1.45) << "beyond the shorter arm";
   }
 }
 

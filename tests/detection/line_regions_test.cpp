@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/detection/axis_regions.h"
+#include "orbifit/detection/joined_groups.h"
 #include "orbifit/detection/own_group.h"
 #include "orbifit/detection/plane_regions.h"
 #include "orbifit/detection/revolution_regions.h"
@@ -331,6 +332,64 @@ TEST(GridRegion, LeavesOutWhatHasNoImage) {
   const std::vector<int> region = grid_region(both.surface(), both.placement("Cs"), {});
   EXPECT_EQ(region.size(), static_cast<std::size_t>(middle.faces.rows()));
 }
+
+// A body with two knobs that one mirror keeps, and two that the other does.
+class KnobbedBody : public testing::Test {
+ protected:
+  static Mesh knob(double x, double y) {
+    return test::moved(test::subdivided(test::box(0.3, 0.3, 0.4), 2), test::shift(x, y, 1));
+  }
+
+  const Mesh body_ = test::subdivided(test::box(2, 2.4, 1), 3);
+  const Screened screened_{
+      Screened(test::joined({body_, knob(-0.8, 0.2), knob(0.8, 0.2), knob(0.25, 0.9), knob(0.25, -0.9)}))};
+
+  FoundRegion with_knobs(const Vector3d& normal, int first) const {
+    const int faces = static_cast<int>(body_.faces.rows());
+    const int each = (static_cast<int>(screened_.surface().faces.size()) - faces) / 4;
+    std::vector<int> some = test::all_faces(body_);
+    for (int k = 0; k < 2 * each; ++k) some.push_back(faces + first * each + k);
+    GroupPlacement mirror = screened_.placement("Cs");
+    mirror.frame = frame_about(normal);
+    return {mirror, some, screened_.share_of(some) * screened_.surface().prepared.area, "mirrored"};
+  }
+};
+
+TEST_F(KnobbedBody, HasTheGroupThatItsMirrorsGenerate) {
+  const std::vector<FoundRegion> known{with_knobs(Vector3d::UnitX(), 0), with_knobs(Vector3d::UnitY(), 2)};
+  const std::vector<FoundRegion> found = find_joined_groups(screened_.surface(), screened_.whole(), {}, known, {}, {});
+  ASSERT_EQ(symbols(found), std::vector<std::string>{"C2v"});
+  EXPECT_EQ(found.front().faces, test::all_faces(body_));
+  EXPECT_LT(found.front().placement.frame.col(2).cross(Vector3d::UnitZ()).norm(), 1e-9);
+}
+
+TEST_F(KnobbedBody, SaysNothingThatIsKnown) {
+  std::vector<FoundRegion> known{with_knobs(Vector3d::UnitX(), 0), with_knobs(Vector3d::UnitY(), 2)};
+  const std::vector<int> body = test::all_faces(body_);
+  known.push_back({screened_.placement("D2h", {0, 0, 0}), body,
+                   screened_.share_of(body) * screened_.surface().prepared.area, "body"});
+  EXPECT_EQ(symbols(find_joined_groups(screened_.surface(), screened_.whole(), {}, known, {}, {})),
+            std::vector<std::string>{});
+}
+
+// A post with a block at its side, which alone says which of the planes through the axis is meant.
+class PostWithBlock : public testing::TestWithParam<double> {};
+
+TEST_P(PostWithBlock, IsMirroredInThePlaneThroughBoth) {
+  const Motion turn = Motion::rotation(Vector3d::UnitZ(), GetParam(), Vector3d::Zero());
+  const Mesh block = test::moved(test::subdivided(test::box(0.3, 0.25, 0.6), 2), test::shift(1.15, 0, 0.3));
+  const Mesh stop = test::moved(test::subdivided(test::box(0.2, 0.3, 0.3), 2), test::shift(0.3, 0.9, -0.5));
+  const Screened both(
+      test::joined({test::subdivided(test::prism(96, 1, 2), 2), test::moved(block, turn), test::moved(stop, turn)}));
+  const Line axis{both.placement("C2").centre, Vector3d::UnitZ()};
+  const std::vector<CandidateLine> planes = mirror_planes(both.surface(), {axis}, 0.02, {});
+  ASSERT_FALSE(planes.empty());
+  const Vector3d normal = turn.linear * Vector3d::UnitY();
+  EXPECT_LT(planes.front().line.direction.cross(normal).norm(), 0.01);
+  EXPECT_LT(std::abs((planes.front().line.point - axis.point).dot(normal)), 1e-12) << "through the axis";
+}
+
+INSTANTIATE_TEST_SUITE_P(Angles, PostWithBlock, testing::Values(0, 0.3, 1.1, 2.9));
 
 }  // namespace
 }  // namespace orbifit
