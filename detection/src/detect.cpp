@@ -230,10 +230,12 @@ class Detector {
     const std::size_t count = partition.components.faces.size();
     if (count > std::max(kMostSegments, kMostOfComponent * prepared_.components.faces.size())) return;
     // Of one surface what lines say is asked first: pieces have little to add to it. Of parts that no other equals,
-    // such as what a cut left of one of several, they say what still turns and mirrors with the others.
+    // such as what a cut left of one of several, they say what still turns and mirrors with the others;
+    // noise hides where that ends.
     const bool fine_triangles = has_fine_triangles();
     const bool fine = fine_triangles && one_surface();
-    const bool about_lines = fine || (fine_triangles && single_area_ >= kLeastTurned * prepared_.area);
+    const bool about_lines =
+        fine || (fine_triangles && prepared_.noise == 0 && single_area_ >= kLeastTurned * prepared_.area);
     const bool cut = count != prepared_.components.faces.size();
     if (fine) {
       for (FoundRegion& region : regions_) region.of_pieces = true;  // where components end is chance there
@@ -319,17 +321,23 @@ class Detector {
     planes.insert(planes.end(), lines.planes.begin(), lines.planes.end());
     add_of_pieces(find_plane_regions(surface, *prepared_.index, planes, about.turning, regions_, options, limited_));
     limited_.progress("joined", 0);
-    std::vector<FoundRegion> joined =
-        find_joined_groups(surface, *prepared_.index, about.turning, regions_, options, limited_);
-    std::vector<FoundRegion> wider = find_wider_subgroups(surface, *prepared_.index, joined, about.turning,
-                                                          together(regions_, joined), options, limited_);
-    add_of_pieces(std::move(joined));
-    add_of_pieces(std::move(wider));
+    add_joined(surface, about.turning, options);
   }
 
-  static std::vector<FoundRegion> together(std::vector<FoundRegion> some, const std::vector<FoundRegion>& others) {
-    some.insert(some.end(), others.begin(), others.end());
-    return some;
+  // Groups that those found generate together, and what subgroups of them keep besides.
+  void add_joined(const ScreenedSurface& surface, const std::vector<Line>& turning, const LineRegionOptions& options) {
+    constexpr double kNothingMore = 0.05;  // of a region, that lies outside of what has the larger group
+    const SurfaceIndex& whole = *prepared_.index;
+    std::vector<FoundRegion> joined = find_joined_groups(surface, whole, turning, regions_, options, limited_);
+    if (joined.empty()) return;
+    std::erase_if(regions_, [&](const FoundRegion& region) {
+      return region.of_pieces && region.area < kNearlyWhole * prepared_.area &&
+             says_nothing_new_beside(prepared_, joined, region, options_.tolerance, kNothingMore);
+    });
+    std::vector<FoundRegion> known = regions_;
+    known.insert(known.end(), joined.begin(), joined.end());
+    add_of_pieces(find_wider_subgroups(surface, whole, joined, turning, known, options, limited_));
+    add_of_pieces(std::move(joined));
   }
 
   // Of regions that turn by a third or less.

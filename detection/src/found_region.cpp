@@ -73,20 +73,20 @@ double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion&
 
 // Where pieces of surface were added to components of the same group, whether these say as well where it stands: they
 // may be exact, while what was fitted to pieces cut anywhere hardly is. The region then has their placement.
-bool takes_placement(const PreparedMesh& prepared, double tolerance, FoundRegion& outer, const FoundRegion& inner) {
+void take_placement(const PreparedMesh& prepared, double tolerance, FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kHardly = 1.02;
-  if (!outer.of_pieces || inner.of_pieces || outer.placement.group != inner.placement.group) return false;
+  if (!outer.of_pieces || inner.of_pieces || outer.placement.group != inner.placement.group) return;
   FoundRegion other = outer;
   other.placement = inner.placement;
-  if (misfit(prepared, tolerance, other) > kHardly * misfit(prepared, tolerance, outer)) return false;
+  if (misfit(prepared, tolerance, other) > kHardly * misfit(prepared, tolerance, outer)) return;
   outer.placement = inner.placement;
-  return true;
 }
 
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
-  if (!outer.of_pieces || inner.of_pieces) return false;
+  constexpr double kLittle = 0.5;  // of the region: components that are no more are not what it is about
+  if (!outer.of_pieces || inner.of_pieces || inner.area < kLittle * outer.area) return false;
   return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
 }
 
@@ -190,11 +190,11 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
       if (!covered && !more_by_chance(prepared, regions[j], mine)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
       if (mutual && j > i) continue;
-      repeats = takes_placement(prepared, tolerance, regions[j], mine) ||
-                (!looser(prepared, tolerance, regions[j], mine) &&
-                 !(covered && less_exact(prepared, tolerance, regions[j], mine)));
-      if (repeats)
-        note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
+      repeats = !looser(prepared, tolerance, regions[j], mine) &&
+                !(covered && less_exact(prepared, tolerance, regions[j], mine));
+      if (!repeats) continue;
+      take_placement(prepared, tolerance, regions[j], mine);
+      note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
     }
     if (!repeats) kept.push_back(mine);
   }

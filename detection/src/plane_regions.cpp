@@ -120,7 +120,8 @@ std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const 
   constexpr std::size_t kMostOfAxis = 4;
   constexpr double kStep = 0.5;     // tolerances, at the farthest
   constexpr double kRoughly = 0.5;  // of the least share: planes that are a little off keep less
-  constexpr double kMostly = 0.5;   // of what does not turn: one plane of many keeps something by chance
+  constexpr double kMostly = 0.4;   // of what does not turn: one plane of many keeps something by chance;
+  constexpr double kSome = 0.15;    // where most of the surface turns about the axis, this is no chance
   std::vector<Eigen::Index> open;
   double radius = 0;
   const Eigen::Index count = surface.samples.points.rows();
@@ -135,6 +136,8 @@ std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const 
   const std::size_t looks = std::min(open.size(), kMostLooks);
   const double weight = static_cast<double>(open.size()) / static_cast<double>(looks) * each;
   const auto steps = static_cast<std::size_t>(std::ceil(std::numbers::pi * radius / (kStep * surface.tolerance)));
+  const bool mostly_turned = 2 * static_cast<Eigen::Index>(open.size()) < count;
+  const double least_kept = (mostly_turned ? kSome : kMostly) * static_cast<double>(looks);
   const GroupFrame frame = frame_about(axis.direction);
   const auto plane_at = [&](std::size_t step) {
     const double angle = std::numbers::pi * static_cast<double>(step) / static_cast<double>(steps);
@@ -152,7 +155,7 @@ std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const 
   while (steps > 0 && result.size() < kMostOfAxis) {
     const auto best = static_cast<std::size_t>(std::ranges::max_element(kept) - kept.begin());
     const double area = weight * static_cast<double>(kept[best]);
-    if (static_cast<double>(kept[best]) < kMostly * static_cast<double>(looks)) break;
+    if (static_cast<double>(kept[best]) < least_kept) break;
     if (area < kRoughly * least_share * surface.prepared.area) break;
     result.push_back({plane_at(best), area});
     constexpr std::size_t kBeside = 5;  // steps, to either side
