@@ -85,8 +85,10 @@ void take_placement(const PreparedMesh& prepared, double tolerance, FoundRegion&
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
-  constexpr double kLittle = 0.5;  // of the region: components that are no more are not what it is about
-  if (!outer.of_pieces || inner.of_pieces || inner.area < kLittle * outer.area) return false;
+  constexpr double kLittle =
+      0.5;  // of a region of the same group: components that are no more are not what it is about
+  if (!outer.of_pieces || inner.of_pieces) return false;
+  if (outer.placement.group == inner.placement.group && inner.area < kLittle * outer.area) return false;
   return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
 }
 
@@ -177,7 +179,7 @@ bool by_coincidence(double area, double misfit, double area_around, double misfi
 
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation) {
-  std::vector<FoundRegion> kept;
+  std::vector<char> repeated(regions.size(), 0);
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const FoundRegion& mine = regions[i];
     const SurfaceMoments moments = surface_moments(prepared, mine.faces);
@@ -196,9 +198,10 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
       take_placement(prepared, tolerance, regions[j], mine);
       note_drop(explanation, "repeats", mine, regions[j].placement.group.symbol() + " on " + regions[j].name);
     }
-    if (!repeats) kept.push_back(mine);
+    repeated[i] = repeats ? 1 : 0;
   }
-  regions = std::move(kept);
+  std::size_t number = 0;
+  std::erase_if(regions, [&](const FoundRegion&) { return repeated[number++] != 0; });
 }
 
 void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,

@@ -169,6 +169,40 @@ TEST_P(Axle, WheelsStayBesideItUnlessItFitsAsWell) {
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Axle, testing::Values(0, 0.02, 0.8, 1));
 
+// Pieces of surface about blocks of the same group, by so many degrees off where the blocks stand.
+class Tilted : public Regions, public testing::WithParamInterface<double> {
+ protected:
+  FoundRegion of_pieces(const std::vector<int>& parts) const {
+    FoundRegion result = region("C4v", parts);
+    const Motion off = Motion::rotation({1, 2, 0}, GetParam() * std::numbers::pi / 180, {0, 0, 0});
+    result.placement.frame = off.linear * result.placement.frame;
+    result.of_pieces = true;
+    return result;
+  }
+};
+
+TEST_P(Tilted, TheLargerTakesThePlacementOfComponentsThatAreExact) {
+  for (const bool larger_first : {true, false}) {
+    const FoundRegion blocks = region("C4v", {1, 2, 3, 4});
+    std::vector<FoundRegion> regions{of_pieces({0, 1, 2, 3, 4, 5}), blocks};
+    if (!larger_first) std::ranges::reverse(regions);
+    drop_repeats(prepared_, test::kTolerance, regions);
+    ASSERT_EQ(regions.size(), 1U);
+    EXPECT_TRUE(regions.front().of_pieces);
+    EXPECT_EQ(regions.front().placement.frame, blocks.placement.frame);
+    EXPECT_EQ(regions.front().placement.centre, blocks.placement.centre);
+  }
+}
+
+TEST_P(Tilted, ComponentsThatAreMostOfItStayBesideIt) {
+  const FoundRegion most = region("C4v", {0, 1, 2, 3, 4});
+  std::vector<FoundRegion> regions{of_pieces({0, 1, 2, 3, 4, 5}), most};
+  drop_repeats(prepared_, test::kTolerance, regions);
+  EXPECT_EQ(regions.size(), GetParam() > 0 ? 2U : 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, Tilted, testing::Values(0, 0.01, 0.2));
+
 TEST_F(Regions, AnOrderOfRegionsChangesWhichStayOnlyAmongEquals) {
   std::vector<FoundRegion> regions{region("C4v", {0, 1, 2, 3, 4, 5}),
                                    region("D4h", {5}),
