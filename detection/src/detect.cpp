@@ -230,12 +230,10 @@ class Detector {
     const std::size_t count = partition.components.faces.size();
     if (count > std::max(kMostSegments, kMostOfComponent * prepared_.components.faces.size())) return;
     // Of one surface what lines say is asked first: pieces have little to add to it. Of parts that no other equals,
-    // such as what a cut left of one of several, they say what still turns and mirrors with the others;
-    // noise hides where that ends.
+    // such as what a cut left of one of several, they say what still turns and mirrors with the others.
     const bool fine_triangles = has_fine_triangles();
     const bool fine = fine_triangles && one_surface();
-    const bool about_lines =
-        fine || (fine_triangles && prepared_.noise == 0 && single_area_ >= kLeastTurned * prepared_.area);
+    const bool about_lines = fine || (fine_triangles && single_area_ >= kLeastTurned * prepared_.area);
     const bool cut = count != prepared_.components.faces.size();
     if (fine) {
       for (FoundRegion& region : regions_) region.of_pieces = true;  // where components end is chance there
