@@ -47,10 +47,9 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const Found
 /// Drops regions inside another one whose group holds all their elements: they say nothing new. Of two that say the
 /// same of one another the earlier stays. A group that keeps but a little more than a far larger one, see
 /// share_of_few(), says nothing new either, unless on nearly the whole mesh. A region of whole components stays beside
-/// one of pieces that fits far less well, unless that has the same group and is more than twice as large, and beside one
-/// that is far from exact where it is exact itself. One of pieces takes the placement of components of the same group
-/// that go, where it fits as well with that.
-/// \param tolerance of the detector, a fraction of the diagonal
+/// one of pieces that fits far less well, unless that has the same group and is more than twice as large, and beside
+/// one that is far from exact where it is exact itself. One of pieces takes the placement of components of the same
+/// group that go, where it fits as well with that. \param tolerance of the detector, a fraction of the diagonal
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
                   Explanation* explanation = nullptr);
 
