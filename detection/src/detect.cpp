@@ -259,7 +259,8 @@ class Detector {
     add_patterns(repeated, parts, true);
   }
 
-  // Whether triangles are small: of them a part of a surface can be put together wherever it ends.
+  // Whether triangles are small: of them a part of a surface can be put together wherever it ends. Where they are large
+  // the pieces are exact.
   bool has_fine_triangles() const {
     constexpr double kFine = 5;  // mean length of the triangles' longest edges, tolerances
     double lengths = 0;
@@ -276,8 +277,7 @@ class Detector {
   }
 
   // Whether nearly all is one component; or much of it is, and others have no symmetry: thin parts fall into scraps
-  // where a surface was made anew. Where parts are modelled as such, they and their pieces say most of what there is;
-  // and where triangles are large the pieces are exact.
+  // where a surface was made anew. Where parts are modelled as such, they and their pieces say most of what there is.
   bool one_surface() const {
     constexpr double kNearlyAll = 0.8;  // of the area
     constexpr double kMuch = 0.4;
@@ -329,8 +329,13 @@ class Detector {
     std::vector<FoundRegion> joined = find_joined_groups(surface, whole, turning, regions_, options, limited_);
     if (joined.empty()) return;
     std::erase_if(regions_, [&](const FoundRegion& region) {
-      return region.of_pieces && region.area < kNearlyWhole * prepared_.area &&
-             says_nothing_new_beside(prepared_, joined, region, options_.tolerance, kNothingMore);
+      const bool drop = region.of_pieces && region.area < kNearlyWhole * prepared_.area &&
+                        says_nothing_new_beside(prepared_, joined, region, options_.tolerance, kNothingMore);
+      if (drop && options_.explanation != nullptr) {
+        options_.explanation->notes.push_back({"joined", region.placement.group.symbol() + " on " + region.name, false,
+                                               "known from a larger group joined of others"});
+      }
+      return drop;
     });
     std::vector<FoundRegion> known = regions_;
     known.insert(known.end(), joined.begin(), joined.end());

@@ -60,15 +60,19 @@ bool more_by_chance(const PreparedMesh& prepared, const FoundRegion& outer, cons
          area_outside(prepared, inner.faces, outer.faces) <= share * inner.area;
 }
 
-// Root mean square distance of the region's images from it.
-double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion& region) {
+// Root mean square distance of the region's images from it, its group placed there.
+double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion& region,
+              const GroupPlacement& placement) {
   constexpr int kSamples = 250;
   constexpr std::size_t kQueries = 2500;
   const RunContext context;
   const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "repeats");
-  const GroupPlacement& placement = region.placement;
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
   return measure_residual(patch, motions, context, kQueries).rms;
+}
+
+double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion& region) {
+  return misfit(prepared, tolerance, region, region.placement);
 }
 
 // Where pieces of surface were added to components of the same group, whether these say as well where it stands: they
@@ -76,17 +80,15 @@ double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion&
 void take_placement(const PreparedMesh& prepared, double tolerance, FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kHardly = 1.02;
   if (!outer.of_pieces || inner.of_pieces || outer.placement.group != inner.placement.group) return;
-  FoundRegion other = outer;
-  other.placement = inner.placement;
-  if (misfit(prepared, tolerance, other) > kHardly * misfit(prepared, tolerance, outer)) return;
+  if (misfit(prepared, tolerance, outer, inner.placement) > kHardly * misfit(prepared, tolerance, outer)) return;
   outer.placement = inner.placement;
+  outer.residual.reset();
 }
 
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
 bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kFarLess = 3;
-  constexpr double kLittle =
-      0.5;  // of a region of the same group: components that are no more are not what it is about
+  constexpr double kLittle = 0.5;  // of a region of the same group: that is not about components that are less of it
   if (!outer.of_pieces || inner.of_pieces) return false;
   if (outer.placement.group == inner.placement.group && inner.area < kLittle * outer.area) return false;
   return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);

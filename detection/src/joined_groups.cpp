@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -19,30 +20,24 @@ namespace orbifit {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::MatrixXd;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
-constexpr std::size_t kMostJoined = 120;  // elements: those of Ih
-constexpr int kMostTurns = 12;            // by which mirrors and half-turns alone generate rotations
-constexpr double kOpenDirection = 0.1;    // of the largest singular value: the common points go on there
-constexpr std::array kSame{0.05, 0.1};    // largest entry, about radians, by which one element may differ from itself
-constexpr double kClosed = 1e-9;          // once averaged
-
-bool finite(const PointGroup& group) {
-  return !group.continuous() && group.family != PointGroup::Family::K && group.family != PointGroup::Family::Kh;
-}
+constexpr std::size_t kMostJoined = 120;     // elements: those of Ih
+constexpr int kMostTurns = 12;               // by which mirrors and half-turns alone generate rotations
+constexpr double kOpenDirection = 0.1;       // of the largest singular value: the common points go on there
+constexpr std::array kSame{0.05, 0.1, 0.2};  // largest entry, about radians, by which an element may differ from itself
+constexpr double kClosed = 1e-9;             // once averaged
 
 // The point nearest to `near` that all motions leave where it is, as nearly as can be.
 Vector3d common_point(const std::vector<Motion>& motions, const Vector3d& near) {
-  MatrixXd moved(3 * static_cast<Eigen::Index>(motions.size()), 3);
-  VectorXd by(moved.rows());
+  Eigen::MatrixXd moved(3 * static_cast<Eigen::Index>(motions.size()), 3);
+  Eigen::VectorXd by(moved.rows());
   for (std::size_t k = 0; k < motions.size(); ++k) {
     const auto row = 3 * static_cast<Eigen::Index>(k);
     moved.middleRows<3>(row) = Matrix3d::Identity() - motions[k].linear;
     by.segment<3>(row) = motions[k](near) - near;
   }
-  Eigen::JacobiSVD<MatrixXd> solver(moved, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Eigen::JacobiSVD<Eigen::MatrixXd> solver(moved, Eigen::ComputeThinU | Eigen::ComputeThinV);
   solver.setThreshold(kOpenDirection);
   return near + solver.solve(by);
 }
@@ -76,8 +71,7 @@ std::optional<Elements> closure(const Elements& generators, double same) {
 }
 
 // Maps that are nearly a group as one that is: each becomes the mean of the quotients that it should be, over and over,
-// which squares what is left.
-// Nothing where their products are none of them, or two of them the same.
+// which squares what is left. Nothing where their products are none of them, or two of them the same.
 std::optional<Elements> averaged(Elements elements, double same) {
   constexpr int kRounds = 6;
   const std::size_t count = elements.size();
@@ -119,7 +113,7 @@ std::optional<ClassifiedGroup> generated(const Elements& generators) {
 
 std::optional<GroupPlacement> joined_group(const GroupPlacement& a, const GroupPlacement& b,
                                            const Eigen::Vector3d& near, double tolerance) {
-  if (!finite(a.group) || !finite(b.group)) return std::nullopt;
+  if (a.group.continuous() || b.group.continuous()) return std::nullopt;
   Elements linear;  // with all elements of both, words are short
   std::vector<Motion> motions;
   for (const GroupPlacement* each : {&a, &b}) {
@@ -145,22 +139,25 @@ std::vector<FoundRegion> find_joined_groups(const ScreenedSurface& surface, cons
   constexpr double kNear = 3;  // tolerances
   LineRegionSearch search(surface, whole, known, options, context);
   for (const Line& axis : turning) search.add_turning_axis(axis);
+  std::vector<GroupPlacement> asked;
   std::vector<GroupPlacement> joined;
   const auto late = [&] { return options.late && options.late(); };
   for (std::size_t a = 0; a < known.size() && !late(); ++a) {
     context.check();
     const Vector3d near = surface_moments(surface.prepared, known[a].faces).centroid;
     for (std::size_t b = 0; b < a; ++b) {
-      std::optional<GroupPlacement> group =
+      const std::optional<GroupPlacement> group =
           joined_group(known[a].placement, known[b].placement, near, kNear * surface.tolerance);
       if (!group) continue;
-      const bool tried = std::ranges::any_of(joined, [&](const GroupPlacement& other) {
+      const bool again = std::ranges::any_of(asked, [&](const GroupPlacement& other) {
         return other.group == group->group && contains_group(other, *group, near, 1, 2 * surface.tolerance);
       });
-      if (tried) continue;
+      if (again) continue;
+      asked.push_back(*group);
       const KeptSamples samples(surface, *group, context);
-      if (!samples.material(samples.kept_by(samples.all()), search.explained(*group), samples.all())) continue;
-      joined.push_back(*std::move(group));
+      if (samples.material(samples.kept_by(samples.all()), search.explained(*group), samples.all())) {
+        joined.push_back(*group);
+      }
     }
   }
   std::ranges::stable_sort(joined, std::greater<>(), [](const GroupPlacement& each) { return each.group.order(); });

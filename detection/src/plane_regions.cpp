@@ -83,6 +83,7 @@ class Mirrored {
   const ScreenedSurface& surface_;
 };
 
+// Whether the axis lies in the plane, roughly.
 bool holds(const Line& plane, const Line& axis, double tolerance) {
   constexpr double kAngle = 0.03;  // radians
   return std::abs(plane.direction.dot(axis.direction)) <= kAngle &&

@@ -10,11 +10,11 @@
 namespace orbifit {
 
 /// The finite group that two generate together, where all elements of both leave one point where it is: the common
-/// point nearest to `near`. A mirror and a half-turn about an axis in it make C2v. Elements that differ by less than
-/// 3 degrees, or else 6, count as one and are averaged, so that fits that agree roughly do.
-/// \param tolerance a length, by which elements may miss the point
-/// \return nothing for continuous groups, where there is no such point, where one group holds the other, and where the
-/// two generate no finite group of at most 120 elements
+/// point nearest to `near`, all in one frame. A mirror and a half-turn about an axis in it make C2v. Elements that
+/// differ by less than 3 degrees, or else 6, or 12, count as one; they are averaged to a group, so that fits that agree
+/// roughly do. \param tolerance a length, by which elements may miss the point \return nothing for continuous groups,
+/// where there is no such point, where one group holds the other, and where the two generate no finite group of at most
+/// 120 elements
 std::optional<GroupPlacement> joined_group(const GroupPlacement& a, const GroupPlacement& b,
                                            const Eigen::Vector3d& near, double tolerance);
 

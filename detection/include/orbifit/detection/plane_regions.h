@@ -9,12 +9,14 @@ namespace orbifit {
 
 /// Planes in which much of the surface is mirrored: each pair of samples whose normals are mirror images in the plane
 /// between them votes, and planes are judged on few samples first. Finds mirrors of surfaces that have no pieces, and
-/// of parts of surfaces.
-/// \param turning axes about which the surface turns, see AxisRegions: what is shaped like that says nothing of planes
-/// that hold the axis
+/// of parts of surfaces. Through axes about which the surface turns, planes are tried angle by angle, on what does not
+/// turn: a handle on a cup says which.
+/// \param turning such axes, see AxisRegions: what is shaped like that says nothing of planes that hold the axis
 /// \param least_share of the samples that a plane must keep
-/// \return through the line's point, across its direction; the heaviest first; in the frame of the mesh
-/// Costs O(N^2) comparisons for N = 700 samples, and some grid look-ups for the pairs that agree.
+/// \return through the line's point, across its direction; those that hold an axis first, axis by axis, then the
+/// others; of either the heaviest first; in the frame of the mesh; weights are areas Costs O(N^2) comparisons for N =
+/// 700 samples, some grid look-ups for the pairs that agree, and up to 400 for each of O(radius / tolerance) angles an
+/// axis.
 std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const std::vector<Line>& turning,
                                          double least_share, const RunContext& context);
 
