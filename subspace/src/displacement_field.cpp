@@ -60,11 +60,9 @@ class FieldEvaluator {
   /// Points of all orbits evaluated so far.
   std::size_t points_seen() const { return points_seen_; }
 
-  /// \param normal of the surface there; zero: unknown
-  Vector3d operator()(const Vector3d& point, int set, const Vector3d& normal = Vector3d::Zero()) {
-    closure_.normal = normal;
+  Vector3d operator()(const Vector3d& point, int set) {
     if (subspace_.lift_kind == LiftKind::paper) return paper(point);
-    const Orbit orbit = orbit_of(point, set, *subspace_.regions, words_, closure_);
+    const Orbit orbit = snapped_orbit_of(point, set, *subspace_.regions, words_, closure_);
     points_seen_ += orbit.points.size();
     if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) add_new_words();
     const Vector3d start = orbit.points.front().position;
@@ -81,7 +79,11 @@ class FieldEvaluator {
         blend += weight * seen.rotation;
       }
     }
-    if (!basis_.rotations.empty()) u += blended_rotation(blend) * (start - middle) - (start - middle);
+    Matrix3d turn = Matrix3d::Identity();
+    if (!basis_.rotations.empty()) {
+      turn = blended_rotation(blend);
+      u += turn * (start - middle) - (start - middle);
+    }
     if (!orbit.constraints.empty()) {
       std::vector<WordPair> pairs;
       for (const OrbitConstraint& constraint : orbit.constraints) {
@@ -94,7 +96,8 @@ class FieldEvaluator {
       add_carried(binding.bound, bound);
       u = bound;
     }
-    if (orbit.turned_by < 0) return u;
+    // Where the point was snapped to, and what lies between goes along as the surface turns.
+    if (orbit.turned_by < 0) return u + turn * (point - start) - (point - start);
     const Transport rest = step_transport(*subspace_.regions, orbit.turned_by, -1, orbit.turn, floating());
     Transport now = rest;
     if (!basis_.rotations.empty()) {
@@ -103,7 +106,8 @@ class FieldEvaluator {
     }
     Vector3d turned = now.frame * (start + u) + now.shift - (rest.frame * start + rest.shift);
     add_carried(now.carried, turned);
-    return turned;
+    const Vector3d rest_offset = point - orbit.turn(start);
+    return turned + now.frame * turn * rest.frame.transpose() * rest_offset - rest_offset;
   }
 
  private:
@@ -183,7 +187,6 @@ class PairResidual {
         baked_(vertex_displacements(subspace, state)),
         images_(mesh.vertices, kMet * subspace.diagonal),
         grid_(mesh.vertices, subspace.orbits.tolerance),
-        normals_(corner_normals(mesh)),
         field_(subspace, state, &grid_) {}
 
   /// Images at vertices are measured at once, others by finish().
@@ -224,10 +227,8 @@ class PairResidual {
       const Vector3d image = pair.motion(place);
       const bool orbits = subspace_.lift_kind == LiftKind::orbit;
       const int set = orbits ? set_of_vertex(subspace_.orbits, pair.vertex) : 0;
-      const Vector3d normal = normals_.row(pair.vertex).transpose();
-      const Vector3d turned = pair.motion.linear * normal;
-      const int image_set = subspace_.regions->set_of_image(set, pair.from_place, pair.element, image, turned);
-      measure(field_(place, set, normal), field_(image, image_set, turned), place, pair.motion, pair.carried);
+      const int image_set = subspace_.regions->carried_set(set, pair.from_place, pair.element);
+      measure(field_(place, set), field_(image, image_set), place, pair.motion, pair.carried);
     }
     off_vertices_.clear();
   }
@@ -262,7 +263,6 @@ class PairResidual {
   Points baked_;
   VertexGrid images_;  // vertices that may be images
   VertexGrid grid_;    // vertices whose places are those of what is near
-  Points normals_;
   FieldEvaluator field_;
   Residual residual_;
   double squares_ = 0, count_ = 0;

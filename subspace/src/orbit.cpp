@@ -208,7 +208,7 @@ class Closure {
     int set = carried;
     int known = doublets_.find(position, carried);
     if (known < 0) {
-      set = set_at(position, from.set, place, element, word);
+      set = set_at(position, carried);
       const int turning = continuous_place(set);
       if (turning >= 0) {
         const Continuum& continuum = *regions_.continuum(turning);
@@ -283,12 +283,10 @@ class Closure {
 
   int set_of(int point) const { return orbit_.points[static_cast<std::size_t>(point)].set; }
 
-  // The motion carries the point's places along; what else is there, the surface tells.
-  int set_at(const Eigen::Vector3d& position, int from, int place, int element, int word) const {
-    const int known = options_.set_at ? options_.set_at(position, regions_.carried_set(from, place, element)) : -1;
-    if (known >= 0) return known;
-    const Eigen::Vector3d normal = words_.motion(word).linear * (orbit_.turn.linear.transpose() * options_.normal);
-    return regions_.set_of_image(from, place, element, position, normal);
+  // The motion carries the point's places along; where a known point is, it may know of more.
+  int set_at(const Eigen::Vector3d& position, int carried) const {
+    const int known = options_.set_at ? options_.set_at(position, carried) : -1;
+    return known >= 0 ? known : carried;
   }
 
   const RegionMap& regions_;
@@ -307,6 +305,20 @@ class Closure {
 Orbit orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
                const ClosureOptions& options) {
   return Closure(regions, words, options).run(seed, set);
+}
+
+Orbit snapped_orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
+                       const ClosureOptions& options) {
+  constexpr double kMost = 10;  // doublet distances: motions without a common fixed point do not pull the seed away
+  ClosureOptions snapping = options;
+  snapping.snap = options.doublet;
+  Orbit orbit = orbit_of(seed, set, regions, words, snapping);
+  if (orbit.stabilisers.empty()) return orbit;
+  const Eigen::Vector3d start = orbit.points.front().position;
+  const Eigen::Vector3d fixed = fixed_point(start, orbit.stabilisers);
+  if (fixed == start || (fixed - start).norm() > kMost * options.doublet) return orbit;
+  const Eigen::Vector3d snapped = orbit.turned_by < 0 ? fixed : orbit.turn(fixed);
+  return orbit_of(snapped, orbit.points.front().set, regions, words, options);
 }
 
 Eigen::Vector3d fixed_point(const Eigen::Vector3d& seed, const std::vector<Motion>& stabilisers) {

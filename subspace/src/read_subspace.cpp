@@ -270,6 +270,9 @@ Subspace read_subspace(const std::filesystem::path& file, const Mesh& mesh, cons
   const int words = subspace.words->count();
   get_sampling(stored.section("sampling"), *subspace.regions, words, subspace.sampling);
   get_orbits(stored.section("orbits"), *subspace.regions, words, size_of(mesh.vertices.rows()), subspace.orbits);
+  if (subspace.mode == GroupMode::moving) {
+    subspace.orbits.offsets = follower_offsets(mesh, subspace.orbits, *subspace.words);
+  }
   get_lift(stored.section("lift"), subspace, subspace.lift);
   get_basis(stored.section("basis"), subspace, subspace.basis);
   context.progress("reading the basis", 0.5);

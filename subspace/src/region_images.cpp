@@ -10,7 +10,9 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kTie = 1e-6;  // of the diagonal: places of the same faces
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kTie = 1e-6;        // of the diagonal: places of the same faces
+constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
 
 bool is_identity(const Motion& motion) {
   return motion.linear.isIdentity(0) && motion.translation.isZero(0);
@@ -39,6 +41,26 @@ Motion RegionMap::told_from_origin(const Motion& motion) const {
   return Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
 }
 
+// Whether the motion takes the group of one region, placed, to that of another.
+bool RegionMap::group_goes_to(int from, const Motion& motion, int to) const {
+  const Place& a = at(from);
+  const Place& b = at(to);
+  if (a.motions.size() != b.motions.size() || a.continuum.has_value() != b.continuum.has_value()) return false;
+  if (a.continuum) {
+    if (a.continuum->spherical != b.continuum->spherical) return false;
+    const double off = b.continuum->distance(motion(a.continuum->foot(a.centre)));
+    if (off > kSameGroup * size_) return false;
+    return a.continuum->spherical || b.continuum->axis.cross(motion.linear * a.continuum->axis).norm() < kSameGroup;
+  }
+  return std::ranges::all_of(a.motions, [&](const Motion& element) {
+    const Motion image = conjugate(motion, element);
+    return std::ranges::any_of(b.motions, [&](const Motion& other) {
+      return (other.linear - image.linear).cwiseAbs().maxCoeff() < kSameGroup &&
+             (other(b.centre) - image(b.centre)).norm() < kSameGroup * size_;
+    });
+  });
+}
+
 RegionMap::Images RegionMap::find_images(int place, int element) const {
   Images result;
   const int arrival = this->arrival(place, element);
@@ -47,41 +69,43 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
   const std::vector<int>& there = meeting_[static_cast<std::size_t>(arrival)];
   if (is_identity(motion)) {
     for (const int p : here) result.pairs.emplace_back(p, p);
-    result.reached = here;
-    result.all = true;
     return result;
   }
   const Motion told = told_from_origin(motion);
   std::vector<PieceMoments> common;
   common.reserve(there.size());
+  std::vector<int> candidates;
   for (const int q : there) common.push_back(common_moments(arrival, q));
-  const auto alike = [&](int p, int q) {
-    return (p < count()) == (q < count()) && at(p).motions.size() == at(q).motions.size() &&
-           at(p).continuum.has_value() == at(q).continuum.has_value();
-  };
   for (const int p : here) {
     // A place all around, or the place itself, stays.
     if (p == place || (std::ranges::binary_search(there, p) && around(p, place) && around(p, arrival))) {
       result.pairs.emplace_back(p, p == place ? arrival : p);
       continue;
     }
+    candidates.push_back(p);
+  }
+  // Of the places whose group is the image of its group, the nearest to its image, to which no other is nearer;
+  // instances of patterns have no group.
+  Eigen::MatrixXd off = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(candidates.size()),
+                                                  static_cast<Eigen::Index>(there.size()), kFar);
+  for (Eigen::Index i = 0; i < off.rows(); ++i) {
+    const int p = candidates[static_cast<std::size_t>(i)];
     const PieceMoments piece = common_moments(place, p);
-    double best = same_place_;
-    std::vector<std::pair<double, int>> found;
-    for (std::size_t k = 0; k < there.size(); ++k) {
-      if (!alike(p, there[k])) continue;
-      const double miss = mismatch(piece, told, common[k], size_);
-      if (miss <= same_place_) found.emplace_back(miss, there[k]);
-      best = std::min(best, miss);
-    }
-    for (const auto& [miss, q] : found) {
-      if (miss <= best + kTie) result.pairs.emplace_back(p, q);
+    for (Eigen::Index k = 0; k < off.cols(); ++k) {
+      const int q = there[static_cast<std::size_t>(k)];
+      if ((p < count()) != (q < count()) || (p < count() && !group_goes_to(p, motion, q))) continue;
+      off(i, k) = separation(piece, told, common[static_cast<std::size_t>(k)], size_);
     }
   }
-  for (const auto& [p, q] : result.pairs) result.reached.push_back(q);
-  std::ranges::sort(result.reached);
-  result.reached.erase(std::unique(result.reached.begin(), result.reached.end()), result.reached.end());
-  result.all = result.reached.size() == there.size();
+  for (Eigen::Index i = 0; i < off.rows(); ++i) {
+    for (Eigen::Index k = 0; k < off.cols(); ++k) {
+      const double nearest = std::min(off.row(i).minCoeff(), off.col(k).minCoeff());
+      if (off(i, k) < kFar && off(i, k) <= nearest + kTie) {
+        result.pairs.emplace_back(candidates[static_cast<std::size_t>(i)], there[static_cast<std::size_t>(k)]);
+      }
+    }
+  }
+  std::ranges::sort(result.pairs);
   return result;
 }
 
@@ -103,7 +127,7 @@ std::vector<int> RegionMap::exact_images(int place, int element) const {
     if (!around(place, from) || !around(arrival(place, element), to)) continue;
     const PieceMoments here = common_moments(place, from);
     const PieceMoments there = common_moments(arrival(place, element), to);
-    if (std::abs(here.area - there.area) > kExact * here.area || mismatch(here, told, there, size_) > kExact) continue;
+    if (std::abs(here.area - there.area) > kExact * here.area || separation(here, told, there, size_) > kExact) continue;
     result[static_cast<std::size_t>(from)] = to;
   }
   return result;
@@ -130,19 +154,6 @@ int RegionMap::carried_set(int set, int place, int element) const {
     entry->second = intern(members);
   }
   return entry->second;
-}
-
-int RegionMap::set_of_image(int set, int place, int element, const Eigen::Vector3d& image,
-                            const Eigen::Vector3d& normal) const {
-  int result = carried_set(set, place, element);
-  const Images& known = images(place, element);
-  if (known.all) return result;
-  const int near = set_near(image, arrival(place, element), normal);
-  if (contains(result, near)) return result;
-  for (const int other : std::vector<int>(set_places(near))) {
-    if (!std::ranges::binary_search(known.reached, other)) result = with(result, other);
-  }
-  return result;
 }
 
 }  // namespace orbifit

@@ -21,7 +21,6 @@ using Family = PointGroup::Family;
 
 constexpr double kSameLine = 1e-7;   // of the diagonal, and radians
 constexpr double kOnAxis = 1e-12;    // of a point's offset
-constexpr double kSamePlace = 1e-3;  // of the diagonal, at least
 constexpr int kMostFold = 120;
 
 // One element of each component of a continuous group; mirrors contain the reference direction.
@@ -114,11 +113,6 @@ RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, con
   for (Place& place : places_) {
     place.whole = static_cast<Eigen::Index>(place.faces.size()) == mesh.faces.rows();
     surfaces_needed = surfaces_needed || !place.whole;
-    const auto set = [&](int face) { return set_of_face(face); };
-    if (!place.faces.empty() &&
-        std::ranges::all_of(place.faces, [&](int face) { return set(face) == set(place.faces.front()); })) {
-      place.common_set = set(place.faces.front());
-    }
     for (const int face : place.faces) {
       for (const int vertex : mesh.faces.row(face)) place.box.extend(mesh.vertices.row(vertex).transpose());
     }
@@ -127,7 +121,6 @@ RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, con
   size_ = diagonal(mesh.vertices);
   surfaces_.resize(places_.size());
   images_.resize(places_.size());
-  same_place_ = std::max(kSamePlace, 2 * annotation.tolerance);  // the region and the place are both that far off
   origin_ = bounding_box_centre(mesh.vertices);
   moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
   meeting_.resize(places_.size());
@@ -297,18 +290,6 @@ void RegionMap::prepare() const {
   for (int place = 0; place < places(); ++place) {
     if (!whole(place) && !at(place).faces.empty()) surface(place);
   }
-}
-
-int RegionMap::set_near(const Vector3d& point, int place, const Vector3d& normal) const {
-  constexpr double kSameSide = 0.2;  // cosine: a corner's normal is within it of its faces', the back of a part is not
-  constexpr double kSlack = 1e-5;    // of the diagonal: how much farther the right side may be
-  if (at(place).common_set >= 0) return at(place).common_set;
-  if (!normal.isZero(0)) {
-    const double nearest = surface(place).nearest(point).distance;
-    const auto facing = surface(place).nearest_facing(point, normal, kSameSide, nearest + kSlack * size_);
-    if (facing.face >= 0) return set_of_face(facing.face);
-  }
-  return set_of_face(surface(place).nearest(point).face);
 }
 
 double RegionMap::distance(const Vector3d& point, int place, double most, int* likely) const {

@@ -140,13 +140,6 @@ std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& region
   return candidates;
 }
 
-Vector3d face_normal(const Mesh& mesh, int face) {
-  const Vector3d a = mesh.vertices.row(mesh.faces(face, 0)).transpose();
-  const Vector3d b = mesh.vertices.row(mesh.faces(face, 1)).transpose();
-  const Vector3d c = mesh.vertices.row(mesh.faces(face, 2)).transpose();
-  return (b - a).cross(c - a).normalized();
-}
-
 // Turns from a canonical place to its copies, the identity first, and how many the radius asks for.
 std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& position, double radius, double& needed) {
   const double distance = continuum.distance(position);
@@ -248,7 +241,6 @@ SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOpti
     if (field) radius = options.radius_field(mesh_.faces.row(candidate.face).transpose()).mean();
     if (grid.covered(candidate.position, set, radius)) continue;
     closure.snap = kCrowded * radius;
-    closure.normal = face_normal(mesh_, candidate.face);
     closure.set_at = nullptr;
     double off_border = kOnBorder * radius;
     if (candidate.border) {
@@ -264,7 +256,6 @@ SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOpti
       off_border += (fixed - start).norm();
       ClosureOptions exact = closure;
       exact.snap = 0;
-      exact.normal.setZero();  // between faces, off the surface
       return orbit_of(fixed, orbit.points.front().set, regions_, words, exact);
     };
     Orbit orbit;

@@ -53,9 +53,8 @@ class OrbitBuilder {
         regions_(regions),
         words_(words),
         grid_(mesh.vertices, tolerance),
-        sets_(sets_of_vertices(mesh, regions)),
+        sets_(closed_sets_of_vertices(mesh, regions, grid_)),
         near_(regions, grid_, sets_) {
-    if (regions.places() > 1) normals_ = corner_normals(mesh);
     closure_.doublet = std::min(tolerance, kDoublet * diagonal(mesh.vertices));
     result_.tolerance = tolerance;
     closure_.set_at = [this](const Eigen::Vector3d& place, int carried) { return near_.set_at(place, carried); };
@@ -111,8 +110,7 @@ class OrbitBuilder {
   void add_orbit(int vertex) {
     const auto v = static_cast<std::size_t>(vertex);
     const int number = static_cast<int>(positions_.size());
-    if (regions_.places() > 1) closure_.normal = normals_.row(vertex).transpose();
-    const Orbit orbit = orbit_of(mesh_.vertices.row(vertex).transpose(), sets_[v], regions_, words_, closure_);
+    const Orbit orbit = snapped_orbit_of(mesh_.vertices.row(vertex).transpose(), sets_[v], regions_, words_, closure_);
     result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
     positions_.push_back(orbit.points.front().position);
     for (const OrbitPoint& point : orbit.points) {
@@ -158,7 +156,6 @@ class OrbitBuilder {
   VertexGrid grid_;
   std::vector<int> sets_;
   PlacesOfVertices near_;
-  Points normals_;
   ClosureOptions closure_;
   VertexOrbits result_;
   bool continuous_ = false;
@@ -171,19 +168,20 @@ class OrbitBuilder {
 
 }  // namespace
 
-Points corner_normals(const Mesh& mesh) {
-  Points result = Points::Zero(mesh.vertices.rows(), 3);
-  const Points normals = face_normals(mesh);
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    for (const int vertex : mesh.faces.row(face)) result.row(vertex) += normals.row(face);
-  }
-  result.rowwise().normalize();
-  return result;
-}
-
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
                            const RunContext& context) {
   return OrbitBuilder(mesh, regions, words, tolerance).run(context);
+}
+
+Points follower_offsets(const Mesh& mesh, const VertexOrbits& orbits, const GroupWords& words) {
+  Points result(mesh.vertices.rows(), 3);
+  for (Eigen::Index v = 0; v < result.rows(); ++v) {
+    const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(v)];
+    Eigen::Vector3d place = words.motion(follower.word)(orbits.positions.row(follower.representative).transpose());
+    if (follower.turn >= 0) place = orbits.turns[static_cast<std::size_t>(follower.turn)].motion(place);
+    result.row(v) = mesh.vertices.row(v) - place.transpose();
+  }
+  return result;
 }
 
 VertexOrbits lone_vertices(const Mesh& mesh) {

@@ -75,24 +75,96 @@ std::vector<int> welded_vertices(const Points& vertices) {
   return result;
 }
 
-std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions) {
-  std::vector<int> sets(static_cast<std::size_t>(mesh.vertices.rows()), 0);
-  const auto add = [&](int vertex, int set) {
-    int& here = sets[static_cast<std::size_t>(vertex)];
-    if (here != set) here = regions.joined(here, set);
-  };
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    for (const int vertex : mesh.faces.row(face)) add(vertex, regions.set_of_face(static_cast<int>(face)));
+namespace {
+
+// Sets of places by group of vertices that are one point of one part: those of all faces around.
+struct PointSets {
+  std::vector<int> root;  // of each vertex, the vertex that stands for its point
+  std::vector<int> sets;  // of each root
+};
+
+PointSets point_sets(const Mesh& mesh, const RegionMap& regions) {
+  PointSets result;
+  result.sets.assign(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  result.root.resize(result.sets.size());
+  std::iota(result.root.begin(), result.root.end(), 0);
+  if (regions.places() > 0) {
+    const std::vector<int> weld = welded_vertices(mesh.vertices);
+    bool doubled = false;
+    for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
+    if (doubled) {
+      std::vector<int> parents = linked(mesh, weld);
+      for (int v = 0; v < static_cast<int>(weld.size()); ++v) result.root[static_cast<std::size_t>(v)] = root(parents, v);
+    }
   }
-  if (regions.places() == 0) return sets;
-  const std::vector<int> weld = welded_vertices(mesh.vertices);
-  bool doubled = false;
-  for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
-  if (!doubled) return sets;
-  std::vector<int> parents = linked(mesh, weld);
-  for (int v = 0; v < static_cast<int>(weld.size()); ++v) add(root(parents, v), sets[static_cast<std::size_t>(v)]);
-  for (int v = 0; v < static_cast<int>(weld.size()); ++v) add(v, sets[static_cast<std::size_t>(root(parents, v))]);
-  return sets;
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (const int vertex : mesh.faces.row(face)) {
+      int& here = result.sets[static_cast<std::size_t>(result.root[static_cast<std::size_t>(vertex)])];
+      const int set = regions.set_of_face(static_cast<int>(face));
+      if (here != set) here = regions.joined(here, set);
+    }
+  }
+  return result;
+}
+
+std::vector<int> by_vertex(const PointSets& points) {
+  std::vector<int> result;
+  result.reserve(points.root.size());
+  for (const int root : points.root) result.push_back(points.sets[static_cast<std::size_t>(root)]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions) {
+  return by_vertex(point_sets(mesh, regions));
+}
+
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid) {
+  PointSets points = point_sets(mesh, regions);
+  bool partial = false;
+  for (int place = 0; place < regions.places(); ++place) partial = partial || !regions.whole(place);
+  if (!partial) return by_vertex(points);
+  std::vector<int> queue;
+  std::vector<char> queued(points.root.size(), 0);
+  for (std::size_t v = 0; v < points.root.size(); ++v) {
+    if (points.root[v] != static_cast<int>(v)) continue;
+    queue.push_back(static_cast<int>(v));
+    queued[v] = 1;
+  }
+  const auto set_of = [&](int vertex) -> int& {
+    return points.sets[static_cast<std::size_t>(points.root[static_cast<std::size_t>(vertex)])];
+  };
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const int vertex = queue[head];
+    queued[static_cast<std::size_t>(vertex)] = 0;
+    const Eigen::Vector3d position = mesh.vertices.row(vertex).transpose();
+    const std::vector<int> places = regions.set_places(set_of(vertex));
+    for (const int place : places) {
+      for (int element = 0; element < static_cast<int>(regions.elements(place).size()); ++element) {
+        const int carried = regions.carried_set(set_of(vertex), place, element);
+        const Eigen::Vector3d image = regions.elements(place)[static_cast<std::size_t>(element)](position);
+        bool same = false;
+        std::vector<int> met;
+        grid.visit(image, [&](int other) {
+          same = same || set_of(other) == carried;
+          if (regions.comparable(set_of(other), carried)) met.push_back(other);
+        });
+        if (same) continue;
+        for (const int other : met) {
+          const int joined = regions.joined(set_of(other), carried);
+          if (joined == set_of(other)) continue;
+          set_of(other) = joined;
+          const int root = points.root[static_cast<std::size_t>(other)];
+          if (queued[static_cast<std::size_t>(root)] == 0) {
+            queued[static_cast<std::size_t>(root)] = 1;
+            queue.push_back(root);
+          }
+        }
+      }
+    }
+  }
+  return by_vertex(points);
 }
 
 bool PlacesOfVertices::has_same(const Eigen::Vector3d& position, int set) const {

@@ -100,8 +100,9 @@ void put_sampling(SectionWriter& file, const SymmetricSampling& sampling) {
 }
 
 void put_orbits(SectionWriter& file, const VertexOrbits& orbits) {
-  const auto& [tolerance, followers, turns, positions, bound, bindings, first_point, point_words, point_sets, images] =
-      orbits;
+  // Offsets follow from the rest.
+  const auto& [tolerance, followers, turns, positions, bound, bindings, first_point, point_words, point_sets, images,
+               offsets] = orbits;
   file.begin("orbits");
   file.real(tolerance);
   put_each(file, followers, [](const auto& follower) { return follower.representative; });

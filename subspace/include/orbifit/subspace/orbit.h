@@ -40,10 +40,8 @@ struct ClosureOptions {
   int most_points = 20000;  ///< an orbit with more never closes
   /// Places to follow, by number; null: all. Not owned.
   const std::vector<char>* followed = nullptr;
-  /// The surface's normal at the seed: tells apart parts that touch, back to back. Zero: unknown.
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  /// The set of places of a known point at (nearly) this position, which the second set is to be part of; -1: not
-  /// known, the nearest surface decides.
+  /// The set of places of a known point at (nearly) this position, which the second set is to be part of; -1: no point
+  /// is known there, and the second set is it.
   std::function<int(const Eigen::Vector3d&, int)> set_at;
 };
 
@@ -51,6 +49,11 @@ struct ClosureOptions {
 /// \throw InputError naming two places when the orbit does not close
 Orbit orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
                const ClosureOptions& options);
+
+/// orbit_of() of the point nearest to the seed that all motions fix which move the seed by less than the doublet distance:
+/// what is on a mirror or an axis but for that has the displacements of what is on it exactly.
+Orbit snapped_orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
+                       const ClosureOptions& options);
 
 /// The point nearest to `seed` that all its stabilisers fix.
 Eigen::Vector3d fixed_point(const Eigen::Vector3d& seed, const std::vector<Motion>& stabilisers);

@@ -16,7 +16,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/moving_surface.h"
-#include "orbifit/subspace/piece_moments.h"
+#include "orbifit/model/piece_moments.h"
 
 namespace orbifit {
 
@@ -102,12 +102,10 @@ class RegionMap {
   /// Whether one of both sets contains the other.
   bool comparable(int a, int b) const { return contains(a, b) || contains(b, a); }
 
-  /// The set at the point of the place's surface nearest to `point`, on the side of `normal` unless that is zero;
-  /// `place` is among it.
-  int set_near(const Eigen::Vector3d& point, int place, const Eigen::Vector3d& normal = Eigen::Vector3d::Zero()) const;
-
   /// The places that hold the image, by element number `element` of `place`, of a point that `set` holds: those that
-  /// the motion takes places of the set to, and the arrival. Not for use by several threads.
+  /// the motion takes places of the set to, and the arrival. By algebra alone: the surface at the image is not asked,
+  /// since it is off by the tolerance and would answer now so, now so (method notes 2.6). Not for use by several
+  /// threads.
   int carried_set(int set, int place, int element) const;
 
   /// The places to which that motion takes `other`, which has surface in common with `place`; none where the annotation
@@ -117,11 +115,6 @@ class RegionMap {
   /// By place, the one that is its image by element number `element` of `place`, to rounding: for places that lie in
   /// `place`, where their moments leave no doubt; -1 for others.
   std::vector<int> exact_images(int place, int element) const;
-
-  /// As carried_set(), and of places to which the motion takes no place as a whole those near `image`, as by
-  /// set_near().
-  int set_of_image(int set, int place, int element, const Eigen::Vector3d& image,
-                   const Eigen::Vector3d& normal = Eigen::Vector3d::Zero()) const;
 
   /// Places that share faces with a place, itself among them, ascending.
   const std::vector<int>& meeting(int place) const { return meeting_[static_cast<std::size_t>(place)]; }
@@ -146,7 +139,6 @@ class RegionMap {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     std::vector<int> faces;
     Eigen::AlignedBox3d box;
-    int common_set = -1;  // of all its faces, where they agree
     bool whole = false;
     int pattern_first = -1;  // place of the pattern's first instance; -1: a region
     Carried shift;
@@ -154,11 +146,10 @@ class RegionMap {
   /// What one motion of a place does to all places that have surface in common with it.
   struct Images {
     std::vector<std::pair<int, int>> pairs;  // a place and where it goes, ascending
-    std::vector<int> reached;                // ascending
-    bool all = false;                        // whether all places at the arrival are among them
     std::unordered_map<int, int> sets;       // carried sets known so far
   };
   const Place& at(int place) const { return places_[static_cast<std::size_t>(place)]; }
+  bool group_goes_to(int from, const Motion& motion, int to) const;
   const MovingSurface& surface(int place) const;
   int intern(const std::vector<int>& places) const;
   PieceMoments common_moments(int a, int b) const;
@@ -175,7 +166,6 @@ class RegionMap {
   std::vector<int> first_place_;
   std::vector<int> first_step_;  // carrier of each pattern's first generator; -1: no lattice
   double size_ = 0;              // the mesh's diagonal
-  double same_place_ = 0;        // of the diagonal: how far from a place its image may be
   int regions_ = 0;
   int carriers_ = 0;
   std::vector<int> set_of_face_;

@@ -36,6 +36,8 @@ struct VertexOrbits {
   std::vector<int> point_words;           ///< from the canonical place; the first of each orbit is the identity
   std::vector<int> point_sets;            ///< places that hold the point
   bool images_are_vertices = true;        ///< of every point of every orbit
+  /// #V by 3, from where its word takes a vertex to where it is; no rows where groups do not turn. At most `tolerance`
+  Points offsets;
 
   int representatives() const { return static_cast<int>(bound.size()); }
 };
@@ -46,8 +48,8 @@ struct VertexOrbits {
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
                            const RunContext& context);
 
-/// Unit sums of the unit normals around each vertex, #V by 3: a corner's looks away from all its faces.
-Points corner_normals(const Mesh& mesh);
+/// The offsets of a mesh's vertices.
+Points follower_offsets(const Mesh& mesh, const VertexOrbits& orbits, const GroupWords& words);
 
 /// Every vertex its own representative, without symmetry.
 VertexOrbits lone_vertices(const Mesh& mesh);

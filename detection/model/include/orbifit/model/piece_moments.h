@@ -18,12 +18,16 @@ struct PieceMoments {
   PieceMoments& operator+=(const PieceMoments& other);
 };
 
+/// Of some faces. Positions are told from `origin`.
+PieceMoments moments_of_faces(const Mesh& mesh, const std::vector<int>& faces, const Eigen::Vector3d& origin);
+
 /// Of each set of faces: entry s sums up the faces whose set is s. Positions are told from `origin`.
 std::vector<PieceMoments> moments_of_sets(const Mesh& mesh, const std::vector<int>& set_of_face, int sets,
                                           const Eigen::Vector3d& origin);
 
-/// How far apart `motion` of the one piece and the other are, as a fraction of `size`; infinite where their areas
-/// differ by more than 3 % or they lie apart by half their width. Costs no more the more triangles they have.
-double mismatch(const PieceMoments& piece, const Motion& motion, const PieceMoments& other, double size);
+/// How far apart `motion` of the one piece and the other are, as a fraction of `size`: the distance of their means, and
+/// the differences of their spreads and of their sides as squares of the same area. Infinite where one has no area. Costs
+/// no more the more triangles they have.
+double separation(const PieceMoments& piece, const Motion& motion, const PieceMoments& other, double size);
 
 }  // namespace orbifit

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// A region or pattern that cannot be kept beside larger ones.
+struct LeftOut {
+  bool pattern = false;
+  int id = 0;
+  std::string name;
+  std::string group;   ///< Schoenflies symbol, or the pattern's kind
+  std::string reason;  ///< "the mirror of "whole" takes it where there is no such region"
+};
+
+/// "region 3 "leg" (C2v): ..."
+std::string to_string(const LeftOut& left_out);
+
+struct ConsistentAnnotation {
+  SymmetryAnnotation annotation;
+  std::vector<LeftOut> left_out;  ///< larger ones first
+  int added = 0;                  ///< images of regions that the annotation lacked
+  double largest_movement = 0;    ///< of a group on its own region, fraction of the diagonal
+};
+
+/// Makes the groups of an annotation agree with one another exactly, so that every subspace can keep all of them.
+///
+/// Regions that were found, or written, one by one agree to the tolerance only: a plane misses its parent's, an axis
+/// does not meet another. Then going to and fro between them carries a point ever farther, and nothing keeps both. An
+/// annotation is consistent where, for every region or pattern A, every motion g of A and every region B that shares
+/// faces with A and does not hold all of it, there is a region C that is the image of B: C has B's group, placed by g
+/// exactly, and holds what g makes of the faces that A and B share (method: groupoid closed under its own motions).
+/// Shared planes and axes, axes in planes and right angles are the cases in which C is B itself.
+///
+/// Regions are taken largest first. Each comes with all its images under those already taken (its family); images that
+/// the annotation lacks are added where the surface has them. The placement of the family's first region is fitted:
+/// as near as possible to where the placements of all members, taken back to it, are, subject to what the motions
+/// that take it to itself ask of it, which then holds to rounding. The others are its images, in closed form. A family
+/// that cannot be placed within the annotation's tolerance is left out, with its reason. Patterns take part in the same
+/// way: their steps are fitted to the groups around them, and take regions within one instance to those of the others.
+///
+/// An annotation that is consistent comes back as it is. \pre the annotation fits the mesh (read_annotation checks it)
+/// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries.
+ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
+                                           const RunContext& context);
+
+}  // namespace orbifit

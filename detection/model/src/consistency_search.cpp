@@ -1,0 +1,408 @@
+#include "consistency_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace orbifit {
+
+namespace {
+
+bool is_identity(const Motion& motion, const Extent& extent, double tolerance) {
+  return motion_distance(motion, Motion{}, extent.centre, extent.reach) <= tolerance;
+}
+
+// The region with its group at `place`, as it was but for that.
+Region at_place(const Region& region, const GroupPlace& place, double movement) {
+  Region result = make_region(place.group, place.centre, place.frame, region.faces, region.name);
+  result.id = region.id;
+  result.residual = {region.residual.rms + movement, region.residual.max + movement};
+  return result;
+}
+
+}  // namespace
+
+ConsistencySearch::ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+    : mesh_(mesh),
+      annotation_(annotation),
+      context_(context),
+      diagonal_(diagonal(mesh.vertices)),
+      tolerance_(annotation.tolerance * diagonal_),
+      rounding_(policy_.exact * (diagonal_ + mesh.vertices.cwiseAbs().maxCoeff())),
+      shapes_(mesh, policy_.reach * tolerance_) {
+  for (const Region& region : annotation.regions) {
+    regions_.push_back({region, shapes_.add(region.faces), place_of(region), State::waiting, -1});
+  }
+  for (const Pattern& pattern : annotation.patterns) {
+    KnownPattern known{pattern, {}, State::waiting};
+    for (const PatternInstance& instance : pattern.instances) known.shapes.push_back(shapes_.add(instance.faces));
+    patterns_.push_back(std::move(known));
+  }
+}
+
+std::string ConsistencySearch::label(std::size_t region) const {
+  const Region& known = regions_[region].region;
+  return "\"" + (known.name.empty() ? "region " + std::to_string(known.id) : known.name) + "\" (" +
+         known.group.symbol() + ")";
+}
+
+std::string ConsistencySearch::name_of(const Move& move) const {
+  if (move.region >= 0) return label(static_cast<std::size_t>(move.region));
+  const Pattern& pattern = patterns_[static_cast<std::size_t>(move.pattern)].pattern;
+  return "\"" + (pattern.name.empty() ? "pattern " + std::to_string(pattern.id) : pattern.name) + "\" (" +
+         to_string(pattern.kind) + ")";
+}
+
+void ConsistencySearch::leave_out_region(std::size_t region, const std::string& reason) {
+  KnownRegion& known = regions_[region];
+  known.state = State::out;
+  if (known.source >= 0) return;
+  left_out_.push_back({false, known.region.id, known.region.name, known.region.group.symbol(), reason});
+}
+
+void ConsistencySearch::leave_out_pattern(std::size_t number, const std::string& reason) {
+  KnownPattern& known = patterns_[number];
+  known.state = State::out;
+  left_out_.push_back({true, known.pattern.id, known.pattern.name, to_string(known.pattern.kind), reason});
+}
+
+void ConsistencySearch::add_moves_of_region(std::size_t region) {
+  const KnownRegion& known = regions_[region];
+  for (const Motion& motion : movers(*known.place)) {
+    moves_.push_back({known.shape, known.shape, motion, static_cast<int>(region), -1});
+  }
+}
+
+void ConsistencySearch::add_moves_of_pattern(std::size_t pattern) {
+  const KnownPattern& known = patterns_[pattern];
+  for (std::size_t t = 1; t < known.shapes.size(); ++t) {
+    const Motion& motion = known.pattern.instances[t].motion;
+    moves_.push_back({known.shapes[0], known.shapes[t], motion, -1, static_cast<int>(pattern)});
+    moves_.push_back({known.shapes[t], known.shapes[0], inverse(motion), -1, static_cast<int>(pattern)});
+  }
+}
+
+// The region to which a motion takes (what lies in `domain` of) another: of the same group, near enough, on the same
+// surface; and of all that are, the nearest, which has no nearer one that goes there.
+std::optional<std::size_t> ConsistencySearch::image_region(std::size_t region, int domain, const Motion& motion,
+                                                           int arrival) const {
+  const std::optional<std::size_t> there = nearest_image(region, domain, motion, arrival);
+  if (!there || *there == region) return there;
+  const std::optional<std::size_t> back = nearest_image(*there, arrival, inverse(motion), domain);
+  return back == region ? there : std::nullopt;
+}
+
+std::optional<std::size_t> ConsistencySearch::nearest_image(std::size_t region, int domain, const Motion& motion,
+                                                            int arrival) const {
+  std::optional<std::size_t> best;
+  double best_distance = std::numeric_limits<double>::infinity();
+  const KnownRegion& from = regions_[region];
+  for (std::size_t other = 0; other < regions_.size(); ++other) {
+    const KnownRegion& known = regions_[other];
+    if (known.state == State::out || !known.place || !(known.place->group == from.place->group)) continue;
+    if (!shapes_.meet(known.shape, arrival)) continue;
+    if (group_distance(*from.place, motion, *known.place, extent(other)) > length(policy_.same_group)) continue;
+    const RegionShapes::Match match = shapes_.match(from.shape, domain, motion, known.shape, arrival);
+    if (match.share < policy_.arrived || match.distance >= best_distance) continue;
+    best = other;
+    best_distance = match.distance;
+  }
+  return best;
+}
+
+// The image of the family's member `at` is missing: it is added where the surface has it.
+std::optional<std::string> ConsistencySearch::add_image(const Move& move, std::size_t at, Family& family) {
+  const Member member = family.members[at];
+  const int shape = regions_[member.region].shape;
+  const std::string nowhere = "the group of " + name_of(move) + " takes it where there is no such region";
+  if (!shapes_.within(shape, move.domain)) return nowhere;
+  const GroupPlace& first = *regions_[family.members.front().region].place;
+  const Motion way = move.motion * member.way;
+  const GroupPlace place = image_of(first, way);
+  const std::vector<int> faces = shapes_.image_faces(shape, move.domain, move.motion, move.arrival);
+  if (faces.empty()) return nowhere;
+  const int added = shapes_.add(faces);
+  const bool stands = shapes_.area(added) >= policy_.kept * shapes_.area(shape) &&
+                      shapes_.area(shape) >= policy_.kept * shapes_.area(added) &&
+                      shapes_.kept(added, members(place)) >= policy_.kept;
+  if (!stands) {
+    shapes_.keep(added);
+    return nowhere;
+  }
+  for (std::size_t other = 0; other < regions_.size(); ++other) {
+    const KnownRegion& known = regions_[other];
+    if (known.state == State::out || !shapes_.same(known.shape, added)) continue;
+    if (known.state == State::placed ||
+        std::ranges::any_of(family.members, [&](const Member& m) { return m.region == other; })) {
+      shapes_.keep(added);
+      return "its image under " + name_of(move) + " contradicts " + label(other);
+    }
+    family.replaced.push_back(other);
+  }
+  KnownRegion image;
+  image.region = regions_[member.region].region;
+  image.region.name = "image of " + image.region.name;
+  image.region.faces = faces;
+  image.shape = added;
+  image.place = place;
+  image.source = static_cast<int>(member.region);
+  image.region.residual = shapes_.residual(added, members(place));
+  regions_.push_back(std::move(image));
+  family.members.push_back({regions_.size() - 1, way});
+  return std::nullopt;
+}
+
+// Where a move takes a member: to itself or another, which asks something of the first; to a region placed before; or
+// to one that now belongs to the family.
+std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size_t at, Family& family) {
+  const Member member = family.members[at];
+  const int shape = regions_[member.region].shape;
+  if (!shapes_.meet(shape, move.domain)) return std::nullopt;
+  if (shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
+  const bool continuous = move.region >= 0 && regions_[static_cast<std::size_t>(move.region)].place->group.continuous();
+  Tie tie;
+  tie.lenient = continuous;
+  std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
+  // Of what turns with the surface the marks off the axis go anywhere.
+  if (!image && continuous && shapes_.match(shape, move.domain, move.motion, shape, move.arrival).share >= policy_.kept) {
+    image = member.region;
+  }
+  if (!image) return add_image(move, at, family);
+  if (regions_[*image].state == State::placed) {
+    tie.before = move.motion * member.way;
+    tie.to = regions_[*image].place;
+    tie.extent = extent(*image);
+    family.ties.push_back(tie);
+    return std::nullopt;
+  }
+  const auto known = std::ranges::find(family.members, *image, &Member::region);
+  if (known == family.members.end()) {
+    family.members.push_back({*image, move.motion * member.way});
+    return std::nullopt;
+  }
+  tie.before = inverse(known->way) * move.motion * member.way;
+  tie.extent = extent(family.members.front().region);
+  if (!is_identity(tie.before, tie.extent, rounding_)) family.ties.push_back(tie);
+  return std::nullopt;
+}
+
+std::optional<std::string> ConsistencySearch::gather(std::size_t first, Family& family) {
+  constexpr std::size_t kMostMembers = 2000;
+  family.members.push_back({first, Motion{}});
+  for (std::size_t at = 0; at < family.members.size(); ++at) {
+    context_.check();
+    for (std::size_t m = 0; m < moves_.size(); ++m) {
+      if (auto reason = follow(moves_[m], at, family)) return reason;
+    }
+    if (family.members.size() > kMostMembers) return "it has images without end";
+  }
+  return ask_of_overlaps(family);
+}
+
+// Where regions overlap and neither holds the other, the new one's motions take the other to images as well.
+std::optional<std::string> ConsistencySearch::ask_of_overlaps(Family& family) {
+  const std::size_t first = family.members.front().region;
+  const int shape = regions_[first].shape;
+  const std::vector<Motion> own = marks(*regions_[first].place);
+  const auto overlaps = [&](int other) {
+    return shapes_.meet(shape, other) && !shapes_.within(shape, other) &&
+           (!shapes_.within(other, shape) || shapes_.same(other, shape));
+  };
+  const auto missing = [&](std::size_t other) {
+    return "it overlaps " + label(other) + ", of which its group has no image";
+  };
+  for (std::size_t other = 0; other < regions_.size(); ++other) {
+    const KnownRegion& known = regions_[other];
+    const auto member = std::ranges::find(family.members, other, &Member::region);
+    const bool in_family = member != family.members.end();
+    if (other == first || !(known.state == State::placed || in_family) || !overlaps(known.shape)) continue;
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const auto image = image_region(other, shape, own[k], shape);
+      if (!image) return missing(other);
+      Tie tie;
+      tie.own = static_cast<int>(k);
+      tie.extent = extent(*image);
+      if (in_family) {
+        const auto to = std::ranges::find(family.members, *image, &Member::region);
+        if (to == family.members.end()) return missing(other);
+        tie.before = inverse(to->way);
+        tie.after = member->way;
+        tie.extent = extent(first);
+      } else {
+        if (regions_[*image].state != State::placed) return missing(other);
+        tie.from = known.place;
+        tie.to = regions_[*image].place;
+      }
+      family.ties.push_back(tie);
+    }
+  }
+  return std::nullopt;
+}
+
+// Places the first where all that is asked holds, and the others as its images.
+std::optional<std::string> ConsistencySearch::accept_family(const Family& family) {
+  const std::size_t first = family.members.front().region;
+  const GroupPlace start = *regions_[first].place;
+  std::vector<GroupPlace> wanted;
+  for (const Member& member : family.members) {
+    if (member.region == first || regions_[member.region].source >= 0) continue;
+    wanted.push_back(image_of(*regions_[member.region].place, inverse(member.way)));
+  }
+  const auto fit = fitted_place(start, wanted, family.ties, extent(first), length(policy_.same_group));
+  if (!fit) return "its group is not the one that larger groups take it to";
+  if (!(fit->unmet <= rounding_)) return "its placement cannot agree with those of larger regions";
+  std::vector<GroupPlace> places;
+  for (const Member& member : family.members) {
+    places.push_back(image_of(fit->place, member.way));
+    const KnownRegion& known = regions_[member.region];
+    if (known.source >= 0) continue;
+    const double moved = group_distance(*known.place, Motion{}, places.back(), extent(member.region));
+    if (moved > length(policy_.movement)) {
+      return "to agree with larger regions it would have to move by " +
+             std::to_string(100 * moved / diagonal_).substr(0, 5) + " % of the diagonal";
+    }
+  }
+  for (std::size_t k = 0; k < family.members.size(); ++k) {
+    KnownRegion& known = regions_[family.members[k].region];
+    known.state = State::placed;
+    const double moved = group_distance(*known.place, Motion{}, places[k], extent(family.members[k].region));
+    if (known.source < 0 && moved <= rounding_) continue;  // as it was
+    if (known.source < 0) largest_movement_ = std::max(largest_movement_, moved);
+    known.place = places[k];
+    known.region = at_place(known.region, places[k], known.source < 0 ? moved / diagonal_ : 0);
+  }
+  return std::nullopt;
+}
+
+void ConsistencySearch::place_family(std::size_t first) {
+  if (!regions_[first].place) {
+    leave_out_region(first, "its elements form no group of that symbol");
+    return;
+  }
+  const std::size_t regions_before = regions_.size();
+  const int shapes_before = shapes_.count();
+  Family family;
+  std::optional<std::string> reason = gather(first, family);
+  if (!reason) reason = accept_family(family);
+  if (reason) {
+    for (const Member& member : family.members) {
+      if (member.region < regions_before) leave_out_region(member.region, *reason);
+    }
+    regions_.resize(regions_before);
+    shapes_.keep(shapes_before);
+    return;
+  }
+  for (const std::size_t other : family.replaced) {
+    if (regions_[other].state == State::waiting) {
+      leave_out_region(other, "an image of " + label(first) + " takes its place");
+    }
+  }
+  for (const Member& member : family.members) add_moves_of_region(member.region);
+}
+
+// A last look at all pairs. \return whether anything had to go
+bool ConsistencySearch::drop_contradictions() {
+  for (const Move& move : moves_) {
+    context_.check();
+    for (std::size_t j = 0; j < regions_.size(); ++j) {
+      const KnownRegion& known = regions_[j];
+      if (known.state != State::placed || !shapes_.meet(known.shape, move.domain)) continue;
+      if (shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
+      const bool continuous =
+          move.region >= 0 && regions_[static_cast<std::size_t>(move.region)].place->group.continuous();
+      if (continuous) continue;
+      bool has_image = false;
+      for (std::size_t k = 0; k < regions_.size() && !has_image; ++k) {
+        const KnownRegion& other = regions_[k];
+        if (other.state != State::placed || !shapes_.meet(other.shape, move.arrival)) continue;
+        if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;
+        has_image = shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival).share >= 0.5;
+      }
+      if (has_image) continue;
+      const bool region = move.region >= 0;
+      const bool mover_is_smaller = shapes_.area(move.domain) < shapes_.area(known.shape);
+      const std::string reason = "it overlaps " + (mover_is_smaller ? label(j) : name_of(move)) +
+                                 ", and the one's group has no image of the other";
+      if (!mover_is_smaller) {
+        leave_out_region(j, reason);
+      } else if (region) {
+        leave_out_region(static_cast<std::size_t>(move.region), reason);
+      } else {
+        leave_out_pattern(static_cast<std::size_t>(move.pattern), reason);
+      }
+      return true;
+    }
+  }
+  return false;
+}
+
+ConsistentAnnotation ConsistencySearch::run() {
+  struct Item {
+    bool pattern;
+    std::size_t number;
+    double area;
+    int order;
+  };
+  std::vector<Item> items;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    const PointGroup& group = regions_[i].region.group;
+    const int order = group.continuous() ? std::numeric_limits<int>::max() : group.order();
+    items.push_back({false, i, shapes_.area(regions_[i].shape), order});
+  }
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    double area = 0;
+    for (const int shape : patterns_[i].shapes) area += shapes_.area(shape);
+    items.push_back({true, i, area, 0});
+  }
+  std::ranges::stable_sort(items, [](const Item& a, const Item& b) {
+    return a.area != b.area ? a.area > b.area : a.order > b.order;
+  });
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    context_.progress("consistency", static_cast<double>(i) / static_cast<double>(items.size()));
+    const Item& item = items[i];
+    if (item.pattern) {
+      if (patterns_[item.number].state == State::waiting) place_pattern(item.number);
+    } else if (regions_[item.number].state == State::waiting) {
+      place_family(item.number);
+    }
+  }
+  while (drop_contradictions()) {
+    moves_.clear();
+    for (std::size_t i = 0; i < regions_.size(); ++i) {
+      if (regions_[i].state == State::placed) add_moves_of_region(i);
+    }
+    for (std::size_t i = 0; i < patterns_.size(); ++i) {
+      if (patterns_[i].state == State::placed) add_moves_of_pattern(i);
+    }
+  }
+  return result();
+}
+
+ConsistentAnnotation ConsistencySearch::result() {
+  ConsistentAnnotation result;
+  result.annotation = annotation_;
+  result.annotation.regions.clear();
+  result.annotation.patterns.clear();
+  int next_id = 0;
+  for (const KnownRegion& known : regions_) {
+    if (known.source < 0) next_id = std::max(next_id, known.region.id + 1);
+  }
+  for (KnownRegion& known : regions_) {
+    if (known.state != State::placed) continue;
+    if (known.source >= 0) {
+      known.region.id = next_id++;
+      ++result.added;
+    }
+    result.annotation.regions.push_back(known.region);
+  }
+  for (const KnownPattern& known : patterns_) {
+    if (known.state == State::placed) result.annotation.patterns.push_back(known.pattern);
+  }
+  set_parents(result.annotation.regions);
+  result.left_out = std::move(left_out_);
+  result.largest_movement = largest_movement_ / diagonal_;
+  return result;
+}
+
+}  // namespace orbifit

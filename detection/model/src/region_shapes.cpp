@@ -1,0 +1,188 @@
+#include "region_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kSamples = 64;      // of a shape: shares to two per cent
+constexpr double kSliver = 0.02;  // of the smaller shape's area: what borders drawn face by face overlap by chance
+
+// The van der Corput sequence: evenly spread numbers in [0, 1).
+double spread(int number, int base) {
+  double result = 0;
+  double digit = 1;
+  for (int n = number; n > 0; n /= base) {
+    digit /= base;
+    result += digit * (n % base);
+  }
+  return result;
+}
+
+}  // namespace
+
+RegionShapes::RegionShapes(const Mesh& mesh, double near)
+    : mesh_(mesh),
+      near_(near),
+      diagonal_(diagonal(mesh.vertices)),
+      origin_(bounding_box_centre(mesh.vertices)),
+      areas_(face_areas(mesh)),
+      centroids_(face_centroids(mesh)) {}
+
+int RegionShapes::add(const std::vector<int>& faces) {
+  Shape shape;
+  shape.faces = faces;
+  shape.holds.assign(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  Vector3d sum = Vector3d::Zero();
+  for (const int face : faces) {
+    shape.holds[static_cast<std::size_t>(face)] = 1;
+    shape.area += areas_[face];
+    sum += areas_[face] * centroids_.row(face).transpose();
+    for (const int vertex : mesh_.faces.row(face)) shape.box.extend(mesh_.vertices.row(vertex).transpose());
+  }
+  if (faces.empty()) {
+    shape.extent = {Vector3d::Zero(), diagonal_};
+  } else {
+    shape.extent.centre = shape.area > 0 ? Vector3d(sum / shape.area) : shape.box.center();
+    for (const int face : faces) {
+      for (const int vertex : mesh_.faces.row(face)) {
+        const double reach = (mesh_.vertices.row(vertex).transpose() - shape.extent.centre).norm();
+        shape.extent.reach = std::max(shape.extent.reach, reach);
+      }
+    }
+    shape.extent.reach = std::max(shape.extent.reach, 1e-9 * diagonal_);
+  }
+  shape.moments = moments_of_faces(mesh_, faces, origin_);
+  sample(shape);
+  shapes_.push_back(std::move(shape));
+  return count() - 1;
+}
+
+// One sample in each of as many parts of equal area.
+void RegionShapes::sample(Shape& shape) const {
+  if (!(shape.area > 0)) return;
+  shape.samples.resize(kSamples, 3);
+  double before = 0;
+  std::size_t at = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const double due = (k + 0.5) / kSamples * shape.area;
+    while (at + 1 < shape.faces.size() && before + areas_[shape.faces[at]] < due) before += areas_[shape.faces[at++]];
+    const int face = shape.faces[at];
+    const double root = std::sqrt(spread(k + 1, 2));
+    const double side = spread(k + 1, 3);
+    const auto corner = [&](int c) { return Vector3d(mesh_.vertices.row(mesh_.faces(face, c)).transpose()); };
+    shape.samples.row(k) =
+        ((1 - root) * corner(0) + root * (1 - side) * corner(1) + root * side * corner(2)).transpose();
+    shape.sample_faces.push_back(face);
+  }
+}
+
+const SurfaceIndex& RegionShapes::index(int shape) const {
+  const Shape& known = at(shape);
+  if (!known.index) known.index = std::make_unique<SurfaceIndex>(mesh_, known.faces);
+  return *known.index;
+}
+
+double RegionShapes::common_area(int a, int b) const {
+  const Shape& later = at(std::max(a, b));
+  const auto other = static_cast<std::size_t>(std::min(a, b));
+  if (later.common.size() <= other) later.common.resize(static_cast<std::size_t>(std::max(a, b)) + 1, -1);
+  double& known = later.common[other];
+  if (known >= 0) return known;
+  const bool first = at(a).faces.size() < at(b).faces.size();
+  const Shape& few = first ? at(a) : at(b);
+  const Shape& many = first ? at(b) : at(a);
+  known = 0;
+  for (const int face : few.faces) {
+    if (many.holds[static_cast<std::size_t>(face)] != 0) known += areas_[face];
+  }
+  return known;
+}
+
+PieceMoments RegionShapes::common_moments(int a, int b) const {
+  if (at(b).faces.size() == static_cast<std::size_t>(mesh_.faces.rows())) return at(a).moments;
+  std::vector<int> common;
+  for (const int face : at(a).faces) {
+    if (at(b).holds[static_cast<std::size_t>(face)] != 0) common.push_back(face);
+  }
+  return common.size() == at(a).faces.size() ? at(a).moments : moments_of_faces(mesh_, common, origin_);
+}
+
+bool RegionShapes::meet(int a, int b) const {
+  return common_area(a, b) > kSliver * std::min(area(a), area(b));
+}
+
+bool RegionShapes::within(int inner, int outer) const {
+  return common_area(inner, outer) >= (1 - kSliver) * area(inner);
+}
+
+RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& motion, int to, int arrival) const {
+  const auto arriving = [&](int shape, int within, const Motion& way, int target) {
+    int taken = 0;
+    int arrived = 0;
+    const Shape& source = at(shape);
+    const std::vector<char>& holds = at(within).holds;
+    for (std::size_t k = 0; k < source.sample_faces.size(); ++k) {
+      if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
+      const Vector3d image = way(source.samples.row(static_cast<Eigen::Index>(k)).transpose());
+      ++taken;
+      if (at(target).box.exteriorDistance(image) > near_) continue;
+      if (index(target).within(image, near_)) ++arrived;
+    }
+    return taken > 0 ? static_cast<double>(arrived) / taken : 0.0;
+  };
+  Match result;
+  result.share = arriving(from, domain, motion, to);
+  if (result.share < 0.5) return result;  // hopeless
+  result.share = std::min(result.share, arriving(to, arrival, inverse(motion), from));
+  const Motion told{Eigen::Matrix3d::Identity(), -origin_};
+  result.distance = separation(common_moments(from, domain), told * motion * inverse(told),
+                               common_moments(to, arrival), diagonal_);
+  return result;
+}
+
+std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
+  const Motion back = inverse(motion);
+  std::vector<int> result;
+  for (const int face : at(arrival).faces) {
+    const Vector3d origin = back(centroids_.row(face).transpose());
+    if (at(from).box.exteriorDistance(origin) > near_) continue;
+    const auto nearest = index(domain).nearest(origin, near_);
+    if (nearest.face >= 0 && at(from).holds[static_cast<std::size_t>(nearest.face)] != 0) result.push_back(face);
+  }
+  return result;
+}
+
+double RegionShapes::kept(int shape, const std::vector<Motion>& motions) const {
+  const Shape& known = at(shape);
+  if (known.sample_faces.empty()) return 0;
+  int all = 0;
+  for (Eigen::Index k = 0; k < known.samples.rows(); ++k) {
+    const Vector3d sample = known.samples.row(k).transpose();
+    if (std::ranges::all_of(motions, [&](const Motion& motion) { return index(shape).within(motion(sample), near_); }))
+      ++all;
+  }
+  return static_cast<double>(all) / static_cast<double>(known.samples.rows());
+}
+
+Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) const {
+  Residual result;
+  double count = 0;
+  for (const Motion& motion : motions) {
+    for (Eigen::Index k = 0; k < at(shape).samples.rows(); ++k) {
+      const double distance =
+          index(shape).nearest(motion(at(shape).samples.row(k).transpose())).distance / diagonal_;
+      result.rms += distance * distance;
+      result.max = std::max(result.max, distance);
+      ++count;
+    }
+  }
+  if (count > 0) result.rms = std::sqrt(result.rms / count);
+  return result;
+}
+
+}  // namespace orbifit
