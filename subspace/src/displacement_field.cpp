@@ -22,18 +22,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kMet = 1e-9;  // of the diagonal: a vertex this near an image is the image
-
-// The places that hold a vertex, as its orbit has them.
-int set_of_vertex(const VertexOrbits& orbits, int vertex) {
-  const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(vertex)];
-  const auto r = static_cast<std::size_t>(follower.representative);
-  for (auto k = orbits.first_point[r]; k < orbits.first_point[r + 1]; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (orbits.point_words[at] == follower.word) return orbits.point_sets[at];
-  }
-  return orbits.point_sets[static_cast<std::size_t>(orbits.first_point[r])];
-}
+constexpr double kMet = 1e-13;  // of the diagonal: a vertex this near an image is the image, but for rounding
 
 // Evaluates the field at one point after another.
 class FieldEvaluator {
@@ -79,10 +68,12 @@ class FieldEvaluator {
         blend += weight * seen.rotation;
       }
     }
-    Matrix3d turn = Matrix3d::Identity();
+    Vector3d around = Vector3d::Zero();  // how what lies between the point and the one it is snapped to turns along
     if (!basis_.rotations.empty()) {
-      turn = blended_rotation(blend);
-      u += turn * (start - middle) - (start - middle);
+      u += blended_rotation(blend) * (start - middle) - (start - middle);
+      const int region = innermost_region(*subspace_.regions, set);
+      const Vector3d offset = point - (orbit.turned_by < 0 ? start : orbit.turn(start));
+      if (region >= 0) around = basis_.rotations[static_cast<std::size_t>(region)] * offset - offset;
     }
     if (!orbit.constraints.empty()) {
       std::vector<WordPair> pairs;
@@ -96,8 +87,7 @@ class FieldEvaluator {
       add_carried(binding.bound, bound);
       u = bound;
     }
-    // Where the point was snapped to, and what lies between goes along as the surface turns.
-    if (orbit.turned_by < 0) return u + turn * (point - start) - (point - start);
+    if (orbit.turned_by < 0) return u + around;
     const Transport rest = step_transport(*subspace_.regions, orbit.turned_by, -1, orbit.turn, floating());
     Transport now = rest;
     if (!basis_.rotations.empty()) {
@@ -106,8 +96,7 @@ class FieldEvaluator {
     }
     Vector3d turned = now.frame * (start + u) + now.shift - (rest.frame * start + rest.shift);
     add_carried(now.carried, turned);
-    const Vector3d rest_offset = point - orbit.turn(start);
-    return turned + now.frame * turn * rest.frame.transpose() * rest_offset - rest_offset;
+    return turned + around;
   }
 
  private:

@@ -202,21 +202,26 @@ class Closure {
   void arrive(int at, int place, int element, const Motion& motion) {
     const OrbitPoint from = orbit_.points[static_cast<std::size_t>(at)];
     const int arrival = regions_.arrival(place, element);
-    Eigen::Vector3d position = motion(from.position);
-    int word = words_.extended(from.word, place, element, motion);
+    const Eigen::Vector3d image = motion(from.position);
+    const int image_word = words_.extended(from.word, place, element, motion);
     const int carried = regions_.carried_set(from.set, place, element);
+    Eigen::Vector3d position = image;
+    int word = image_word;
+    // Points are compared at their canonical places: on a circle two may be near one another and differ by a turn.
+    const auto turn_back = [&](int turning) {
+      if (turning < 0) return;
+      const Continuum& continuum = *regions_.continuum(turning);
+      const Motion back = inverse(continuum.turn_to(image));
+      position = settled(back(image), continuum);
+      word = words_.extended(image_word, turning, -1, back);
+    };
     int set = carried;
-    int known = doublets_.find(position, carried);
+    turn_back(continuous_place(set));
+    int known = doublets_.find(position, set);
     if (known < 0) {
-      set = set_at(position, carried);
-      const int turning = continuous_place(set);
-      if (turning >= 0) {
-        const Continuum& continuum = *regions_.continuum(turning);
-        const Motion back = inverse(continuum.turn_to(position));
-        position = settled(back(position), continuum);
-        word = words_.extended(word, turning, -1, back);
-        known = doublets_.find(position, set);
-      }
+      set = set_at(image, carried);
+      if (continuous_place(set) != continuous_place(carried)) turn_back(continuous_place(set));
+      if (set != carried) known = doublets_.find(position, set);
     }
     const Motion& whole = words_.motion(word);
     const Eigen::Vector3d& start = orbit_.points.front().position;

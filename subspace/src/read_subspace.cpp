@@ -271,7 +271,7 @@ Subspace read_subspace(const std::filesystem::path& file, const Mesh& mesh, cons
   get_sampling(stored.section("sampling"), *subspace.regions, words, subspace.sampling);
   get_orbits(stored.section("orbits"), *subspace.regions, words, size_of(mesh.vertices.rows()), subspace.orbits);
   if (subspace.mode == GroupMode::moving) {
-    subspace.orbits.offsets = follower_offsets(mesh, subspace.orbits, *subspace.words);
+    subspace.orbits.offsets = follower_offsets(mesh, *subspace.regions, subspace.orbits, *subspace.words);
   }
   get_lift(stored.section("lift"), subspace, subspace.lift);
   get_basis(stored.section("basis"), subspace, subspace.basis);

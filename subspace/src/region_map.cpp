@@ -221,6 +221,14 @@ int RegionMap::arrival(int place, int element) const {
   return at(place).pattern_first < 0 ? place : at(place).pattern_first + element;
 }
 
+int RegionMap::inverse_element(int place, int element) const {
+  if (at(place).pattern_first >= 0) return place - at(place).pattern_first;
+  const std::vector<Motion>& motions = at(place).motions;
+  const Eigen::Matrix3d back = motions[static_cast<std::size_t>(element)].linear.transpose();
+  const auto nearest = std::ranges::min_element(motions, {}, [&](const Motion& m) { return (m.linear - back).norm(); });
+  return static_cast<int>(nearest - motions.begin());
+}
+
 Carried RegionMap::carried(int place, int element, const Matrix3d& linear) const {
   if (at(place).pattern_first < 0) return {{place, Matrix3d::Identity() - linear}};
   // u_b = O (u_a - tau_a) + tau_b

@@ -42,16 +42,14 @@ void bind(const Binding& binding, const Vector3d& position, const Eigen::VectorX
   u = bound;
 }
 
-// The part of the lift that turns with the regions (method notes 2.2): (R - 1) (p - sum of w x), R blended. Returns R.
-Matrix3d add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, int representative, Vector3d& u) {
+// The part of the lift that turns with the regions (method notes 2.2): (R - 1) (p - sum of w x), R blended.
+void add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, int representative, Vector3d& u) {
   Matrix3d blend = Matrix3d::Zero();
   subspace.lift.visit(representative, [&](int atom, double weight) {
     blend += weight * basis.atom_rotations[static_cast<std::size_t>(atom)];
   });
   const Vector3d rest = subspace.lift.rest.row(representative).transpose();
-  const Matrix3d rotation = blended_rotation(blend);
-  u += rotation * rest - rest;
-  return rotation;
+  u += blended_rotation(blend) * rest - rest;
 }
 
 // Everything that one lift needs of the state.
@@ -84,39 +82,28 @@ LiftState lift_state(const CarriedBasis& basis, const SubspaceState& state) {
 
 // What the copy of a vertex lacks: how its word turns the place itself, the turn on its circle, and how what lies
 // between that place and the vertex turns along.
-// \param rotation  of the surface around the representative, where groups are turned
 Vector3d finished(const Subspace& subspace, const CarriedBasis& basis, int vertex, const Eigen::VectorXd& carriers,
-                  const Matrix3d& rotation, const Vector3d& copied) {
+                  const Vector3d& copied) {
   const bool turned = !basis.rotations.empty();
   const VertexOrbits::Follower& follower = subspace.orbits.followers[static_cast<std::size_t>(vertex)];
   const Vector3d start = subspace.orbits.positions.row(follower.representative).transpose();
   Vector3d u = copied;
-  Matrix3d around = rotation;
-  const auto turn_along = [&](const Transport& now, const Transport& rest) {
-    around = now.frame * around * rest.frame.transpose();
-  };
+  Vector3d around = Vector3d::Zero();
   if (turned) {
     const auto word = static_cast<std::size_t>(follower.word);
-    const Transport& now = basis.transports.words[word];
-    const Transport& rest = basis.transports.rest_words[word];
-    u += (now.frame - rest.frame) * start;
-    turn_along(now, rest);
+    u += (basis.transports.words[word].frame - basis.transports.rest_words[word].frame) * start;
+    const auto& [offset, region] = subspace.orbits.offsets[static_cast<std::size_t>(vertex)];
+    if (region >= 0) around = basis.rotations[static_cast<std::size_t>(region)] * offset - offset;
   }
-  const auto with_offset = [&](const Vector3d& moved) {
-    if (!turned) return moved;
-    const Vector3d offset = subspace.orbits.offsets.row(vertex).transpose();
-    return Vector3d(moved + around * offset - offset);
-  };
-  if (follower.turn < 0) return with_offset(u);
+  if (follower.turn < 0) return u + around;
   const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
   const bool floating = subspace.mode != GroupMode::fixed;
   const Transport rest = step_transport(*subspace.regions, place, -1, motion, floating);
   const Transport now = turned ? step_transport(*subspace.regions, place, -1, motion, floating,
                                                 basis.rotations[static_cast<std::size_t>(place)])
                                : rest;
-  if (turned) turn_along(now, rest);
-  return with_offset(
-      carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers));
+  return around +
+         carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers);
 }
 
 }  // namespace
@@ -181,7 +168,6 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
   constexpr std::size_t kLanes = OrbitLift::kLanes;
   const std::size_t blocks = lift.first.size() - 1;
   const std::unique_ptr<double[]> sources(new double[4 * kLanes * blocks]);
-  std::vector<Matrix3d> rotations(turned ? orbits.bound.size() : 0);
   parallel_for(
       context, blocks,
       [&](std::size_t begin, std::size_t end) {
@@ -193,7 +179,7 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
           if (bound < 0 && !turned) continue;
           Eigen::Map<Vector3d> source(sources.get() + 4 * r);
           Vector3d u = source;
-          if (turned) rotations[r] = add_turned_rest(subspace, basis, static_cast<int>(r), u);
+          if (turned) add_turned_rest(subspace, basis, static_cast<int>(r), u);
           if (bound >= 0) {
             bind(basis.bindings[static_cast<std::size_t>(bound)],
                  orbits.positions.row(static_cast<Eigen::Index>(r)).transpose(), now.carriers, u);
@@ -216,11 +202,9 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
           const VertexOrbits::Follower& follower = orbits.followers[v];
           if (!turned && follower.turn < 0) continue;
           const auto row = static_cast<Eigen::Index>(v);
-          const Matrix3d rotation =
-              turned ? rotations[static_cast<std::size_t>(follower.representative)] : Matrix3d(Matrix3d::Identity());
-          displacements.row(row) = finished(subspace, basis, static_cast<int>(v), now.carriers, rotation,
-                                            displacements.row(row).transpose())
-                                       .transpose();
+          displacements.row(row) =
+              finished(subspace, basis, static_cast<int>(v), now.carriers, displacements.row(row).transpose())
+                  .transpose();
         }
       },
       kLeastCopies);

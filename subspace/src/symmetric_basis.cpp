@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "orbifit/model/dense.h"
 
@@ -19,6 +21,8 @@ using Eigen::VectorXd;
 
 // Directions whose squared singular value is below this, relative to matrices of orthogonal entries, are free.
 constexpr double kRank = 1e-7;
+// What is left of a row of such entries by rounding alone.
+constexpr double kRowRounding = 1e-11;
 
 // The constraints of one orbit on its seed and on the carriers that they name: C_s s + C_t t + c = 0.
 struct Constraints {
@@ -93,20 +97,22 @@ SeedSpace solve_seed(const Constraints& constraints) {
   return space;
 }
 
-// The constraints on carriers alone, as normal equations.
+// The constraints on carriers alone.
 class CarrierSystem {
  public:
   explicit CarrierSystem(int carriers)
       : gram_(MatrixXd::Zero(3 * carriers, 3 * carriers)), side_(VectorXd::Zero(3 * carriers)) {}
 
-  void add(const Constraints& constraints, const SeedSpace& space) {
+  // \param known  whether rows of the same pairs of words were added before: then only their constants are new
+  void add(const Constraints& constraints, const SeedSpace& space, bool known) {
     const MatrixXd pure = constraints.carried + constraints.seeds * space.bound;
     const VectorXd constant = constraints.constant + constraints.seeds * space.offset;
-    const MatrixXd gram = pure.transpose() * pure;
-    const VectorXd side = pure.transpose() * constant;
     if (constant.size() > 0 && constant.cwiseAbs().maxCoeff() > 0)
       rows_.push_back({constraints.carriers, pure, constant});
-    if (gram.size() == 0 || gram.cwiseAbs().maxCoeff() < 1e-20) return;
+    if (pure.size() == 0 || pure.cwiseAbs().maxCoeff() < kRowRounding) return;
+    if (!known) add_rows(constraints.carriers, pure);
+    const MatrixXd gram = pure.transpose() * pure;
+    const VectorXd side = pure.transpose() * constant;
     for (std::size_t i = 0; i < constraints.carriers.size(); ++i) {
       side_.segment<3>(3 * constraints.carriers[i]) += side.segment<3>(3 * static_cast<Eigen::Index>(i));
       for (std::size_t j = 0; j < constraints.carriers.size(); ++j) {
@@ -116,13 +122,16 @@ class CarrierSystem {
     }
   }
 
-  // Columns that span the carriers' free directions, few entries each.
-  MatrixXd free() const {
-    if (gram_.size() == 0) return MatrixXd::Zero(0, 0);
-    Eigen::FullPivLU<MatrixXd> lu(gram_);
-    lu.setThreshold(kRank);
-    if (lu.rank() == gram_.cols()) return MatrixXd::Zero(gram_.cols(), 0);
-    if (lu.rank() == 0) return MatrixXd::Identity(gram_.cols(), gram_.cols());
+  // Columns that span the carriers' free directions, few entries each. Of the rows themselves: of their squares, axes
+  // that are off each other by little would seem free.
+  MatrixXd free() {
+    const Eigen::Index size = gram_.cols();
+    if (size == 0) return MatrixXd::Zero(0, 0);
+    compress();
+    Eigen::FullPivLU<MatrixXd> lu(stacked_.topRows(used_));
+    lu.setThreshold(kRowRounding);
+    if (used_ == 0 || lu.rank() == 0) return MatrixXd::Identity(size, size);
+    if (lu.rank() == size) return MatrixXd::Zero(size, 0);
     MatrixXd kernel = lu.kernel();
     // Elimination leaves rounding's crumbs where zeros belong.
     kernel = kernel.unaryExpr([](double entry) { return std::abs(entry) < 1e-13 ? 0.0 : entry; });
@@ -153,6 +162,30 @@ class CarrierSystem {
     MatrixXd pure;
     VectorXd constant;
   };
+
+  void add_rows(const std::vector<int>& carriers, const MatrixXd& rows) {
+    const Eigen::Index size = gram_.cols();
+    if (stacked_.rows() < 2 * size + rows.rows()) stacked_.conservativeResize(2 * size + rows.rows(), size);
+    if (used_ + rows.rows() > stacked_.rows()) compress();
+    stacked_.middleRows(used_, rows.rows()).setZero();
+    for (std::size_t i = 0; i < carriers.size(); ++i) {
+      stacked_.block(used_, 3 * carriers[i], rows.rows(), 3) = rows.middleCols<3>(3 * static_cast<Eigen::Index>(i));
+    }
+    used_ += rows.rows();
+  }
+
+  // As many rows as columns, with the same squares; rounding stays that of the largest.
+  void compress() {
+    const Eigen::Index size = gram_.cols();
+    if (used_ <= size) return;
+    const Eigen::HouseholderQR<MatrixXd> qr(stacked_.topRows(used_));
+    const MatrixXd upper = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+    stacked_.topRows(size) = upper;
+    used_ = size;
+  }
+
+  MatrixXd stacked_;        // rows of all constraints
+  Eigen::Index used_ = 0;   // of these
   MatrixXd gram_;
   VectorXd side_;
   std::vector<Row> rows_;  // those with a constant
@@ -201,6 +234,7 @@ SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, const CarriedT
     pairs[static_cast<std::size_t>(orbit)].push_back({left, right});
   }
   CarrierSystem system(carriers);
+  std::set<std::vector<WordPair>> known;
   std::vector<SeedSpace> seeds(orbits);
   for (std::size_t orbit = 0; orbit < orbits; ++orbit) {
     std::ranges::sort(pairs[orbit]);
@@ -208,11 +242,11 @@ SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, const CarriedT
     const Vector3d position = sampling.points.row(sampling.first_sample[orbit]).transpose();
     const Constraints constraints = constraints_of(pairs[orbit], transports, position);
     seeds[orbit] = solve_seed(constraints);
-    system.add(constraints, seeds[orbit]);
+    system.add(constraints, seeds[orbit], !known.insert(pairs[orbit]).second);
   }
   for (const BoundPoint& point : elsewhere) {
     const Constraints constraints = constraints_of(point.words, transports, point.position);
-    system.add(constraints, solve_seed(constraints));
+    system.add(constraints, solve_seed(constraints), !known.insert(point.words).second);
   }
 
   // What the carriers do to a sample: B_k + O_k bound. Directions that move no sample are no freedom.

@@ -173,13 +173,26 @@ VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWord
   return OrbitBuilder(mesh, regions, words, tolerance).run(context);
 }
 
-Points follower_offsets(const Mesh& mesh, const VertexOrbits& orbits, const GroupWords& words) {
-  Points result(mesh.vertices.rows(), 3);
-  for (Eigen::Index v = 0; v < result.rows(); ++v) {
+int set_of_vertex(const VertexOrbits& orbits, int vertex) {
+  const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(vertex)];
+  const auto r = static_cast<std::size_t>(follower.representative);
+  for (auto k = orbits.first_point[r]; k < orbits.first_point[r + 1]; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (orbits.point_words[at] == follower.word) return orbits.point_sets[at];
+  }
+  return orbits.point_sets[static_cast<std::size_t>(orbits.first_point[r])];
+}
+
+std::vector<VertexOrbits::Offset> follower_offsets(const Mesh& mesh, const RegionMap& regions,
+                                                   const VertexOrbits& orbits, const GroupWords& words) {
+  std::vector<VertexOrbits::Offset> result;
+  result.reserve(orbits.followers.size());
+  for (int v = 0; v < static_cast<int>(orbits.followers.size()); ++v) {
     const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(v)];
     Eigen::Vector3d place = words.motion(follower.word)(orbits.positions.row(follower.representative).transpose());
     if (follower.turn >= 0) place = orbits.turns[static_cast<std::size_t>(follower.turn)].motion(place);
-    result.row(v) = mesh.vertices.row(v) - place.transpose();
+    result.push_back(
+        {mesh.vertices.row(v).transpose() - place, innermost_region(regions, set_of_vertex(orbits, v))});
   }
   return result;
 }

@@ -135,6 +135,15 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
   const auto set_of = [&](int vertex) -> int& {
     return points.sets[static_cast<std::size_t>(points.root[static_cast<std::size_t>(vertex)])];
   };
+  const auto join = [&](int vertex, int set) {
+    const int joined = regions.joined(set_of(vertex), set);
+    if (joined == set_of(vertex)) return;
+    set_of(vertex) = joined;
+    const int root = points.root[static_cast<std::size_t>(vertex)];
+    if (queued[static_cast<std::size_t>(root)] != 0) return;
+    queued[static_cast<std::size_t>(root)] = 1;
+    queue.push_back(root);
+  };
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const int vertex = queue[head];
     queued[static_cast<std::size_t>(vertex)] = 0;
@@ -152,14 +161,10 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
         });
         if (same) continue;
         for (const int other : met) {
-          const int joined = regions.joined(set_of(other), carried);
-          if (joined == set_of(other)) continue;
-          set_of(other) = joined;
-          const int root = points.root[static_cast<std::size_t>(other)];
-          if (queued[static_cast<std::size_t>(root)] == 0) {
-            queued[static_cast<std::size_t>(root)] = 1;
-            queue.push_back(root);
-          }
+          join(other, carried);
+          // The two are images of one another, also where the other's image has more vertices than this one.
+          const int arrival = regions.arrival(place, element);
+          join(vertex, regions.carried_set(set_of(other), arrival, regions.inverse_element(place, element)));
         }
       }
     }

@@ -13,6 +13,17 @@ bool is_identity(const Motion& motion, const Extent& extent, double tolerance) {
   return motion_distance(motion, Motion{}, extent.centre, extent.reach) <= tolerance;
 }
 
+// Whether the region's elements are, to `tolerance`, those of its group at `place`.
+bool stands_at(const Region& region, const GroupPlace& place, const Extent& extent, double tolerance) {
+  if (region.group.continuous()) return true;  // the place was made of its axis and centre
+  const std::vector<Motion> due = members(place);
+  return std::ranges::all_of(region.elements, [&](const Motion& element) {
+    return std::ranges::any_of(due, [&](const Motion& motion) {
+      return motion_distance(element, motion, extent.centre, extent.reach) <= tolerance;
+    });
+  });
+}
+
 // The region with its group at `place`, as it was but for that.
 Region at_place(const Region& region, const GroupPlace& place, double movement) {
   Region result = make_region(place.group, place.centre, place.frame, region.faces, region.name);
@@ -266,8 +277,9 @@ std::optional<std::string> ConsistencySearch::accept_family(const Family& family
   for (std::size_t k = 0; k < family.members.size(); ++k) {
     KnownRegion& known = regions_[family.members[k].region];
     known.state = State::placed;
-    const double moved = group_distance(*known.place, Motion{}, places[k], extent(family.members[k].region));
-    if (known.source < 0 && moved <= rounding_) continue;  // as it was
+    const Extent& around = extent(family.members[k].region);
+    const double moved = group_distance(*known.place, Motion{}, places[k], around);
+    if (known.source < 0 && moved <= rounding_ && stands_at(known.region, places[k], around, rounding_)) continue;
     if (known.source < 0) largest_movement_ = std::max(largest_movement_, moved);
     known.place = places[k];
     known.region = at_place(known.region, places[k], known.source < 0 ? moved / diagonal_ : 0);

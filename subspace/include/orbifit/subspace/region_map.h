@@ -68,6 +68,9 @@ class RegionMap {
   /// The place where element number `element` of `place` arrives.
   int arrival(int place, int element) const;
 
+  /// The number, at the place of arrival, of the motion that takes back what that element takes there.
+  int inverse_element(int place, int element) const;
+
   /// What a motion of `place` adds to a displacement besides turning it: (1 - O) t for a region.
   Carried carried(int place, int element, const Eigen::Matrix3d& linear) const;
 

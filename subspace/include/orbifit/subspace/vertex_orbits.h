@@ -36,8 +36,13 @@ struct VertexOrbits {
   std::vector<int> point_words;           ///< from the canonical place; the first of each orbit is the identity
   std::vector<int> point_sets;            ///< places that hold the point
   bool images_are_vertices = true;        ///< of every point of every orbit
-  /// #V by 3, from where its word takes a vertex to where it is; no rows where groups do not turn. At most `tolerance`
-  Points offsets;
+  /// From where its word takes a vertex to where it is, at most `tolerance`, and the region that this turns with; -1:
+  /// none.
+  struct Offset {
+    Eigen::Vector3d offset;
+    int region = -1;
+  };
+  std::vector<Offset> offsets;  ///< #V; empty where groups do not turn
 
   int representatives() const { return static_cast<int>(bound.size()); }
 };
@@ -48,8 +53,12 @@ struct VertexOrbits {
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
                            const RunContext& context);
 
+/// The set of places that holds a vertex, as its orbit has it.
+int set_of_vertex(const VertexOrbits& orbits, int vertex);
+
 /// The offsets of a mesh's vertices.
-Points follower_offsets(const Mesh& mesh, const VertexOrbits& orbits, const GroupWords& words);
+std::vector<VertexOrbits::Offset> follower_offsets(const Mesh& mesh, const RegionMap& regions,
+                                                   const VertexOrbits& orbits, const GroupWords& words);
 
 /// Every vertex its own representative, without symmetry.
 VertexOrbits lone_vertices(const Mesh& mesh);
