@@ -27,8 +27,7 @@ constexpr double kMet = 1e-13;  // of the diagonal: a vertex this near an image 
 // Evaluates the field at one point after another.
 class FieldEvaluator {
  public:
-  /// \param grid of the mesh's vertices, whose places are known; null: the nearest surface decides
-  FieldEvaluator(const Subspace& subspace, const SubspaceState& state, const VertexGrid* grid = nullptr)
+  FieldEvaluator(const Subspace& subspace, const SubspaceState& state)
       : subspace_(subspace),
         basis_(basis_of(subspace, state)),
         words_(*subspace.words),
@@ -37,12 +36,6 @@ class FieldEvaluator {
     carriers_ = basis_.carried * state.q;
     if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
     closure_.doublet = kDoublet * subspace.diagonal;
-    if (grid != nullptr && subspace.lift_kind == LiftKind::orbit) {
-      const auto count = static_cast<int>(subspace.orbits.followers.size());
-      for (int v = 0; v < count; ++v) sets_.push_back(set_of_vertex(subspace.orbits, v));
-      near_.emplace(*subspace.regions, *grid, sets_);
-      closure_.set_at = [this](const Vector3d& place, int carried) { return near_->set_at(place, carried); };
-    }
     transports_ = basis_.transports;
   }
 
@@ -161,8 +154,6 @@ class FieldEvaluator {
   CarriedTransports transports_;
   ClosureOptions closure_;
   std::size_t points_seen_ = 0;
-  std::vector<int> sets_;  // of the vertices
-  std::optional<PlacesOfVertices> near_;
   PlainLift::Scratch scratch_;
   std::map<std::array<int, 4>, Seen> seen_;
 };
@@ -175,8 +166,7 @@ class PairResidual {
         mesh_(mesh),
         baked_(vertex_displacements(subspace, state)),
         images_(mesh.vertices, kMet * subspace.diagonal),
-        grid_(mesh.vertices, subspace.orbits.tolerance),
-        field_(subspace, state, &grid_) {}
+        field_(subspace, state) {}
 
   /// Images at vertices are measured at once, others by finish().
   /// \param motion that of element number `element` of the place, or with a rotation of its continuum after it
@@ -251,7 +241,6 @@ class PairResidual {
   std::vector<Pair> off_vertices_;
   Points baked_;
   VertexGrid images_;  // vertices that may be images
-  VertexGrid grid_;    // vertices whose places are those of what is near
   FieldEvaluator field_;
   Residual residual_;
   double squares_ = 0, count_ = 0;

@@ -53,11 +53,9 @@ class OrbitBuilder {
         regions_(regions),
         words_(words),
         grid_(mesh.vertices, tolerance),
-        sets_(closed_sets_of_vertices(mesh, regions, grid_)),
-        near_(regions, grid_, sets_) {
+        sets_(closed_sets_of_vertices(mesh, regions, grid_)) {
     closure_.doublet = std::min(tolerance, kDoublet * diagonal(mesh.vertices));
     result_.tolerance = tolerance;
-    closure_.set_at = [this](const Eigen::Vector3d& place, int carried) { return near_.set_at(place, carried); };
     result_.followers.assign(sets_.size(), {-1, 0, -1});
     for (std::size_t v = 0; v < sets_.size(); ++v) {
       continuous_ = continuous_ || continuum_of(sets_[v]) >= 0;
@@ -119,7 +117,10 @@ class OrbitBuilder {
       const bool turned = continuum_of(point.set) >= 0;
       bool met = false;
       const VertexGrid& grid = turned ? *canonical_grid_ : grid_;
-      const bool same_only = PlacesOfVertices(regions_, grid, sets_).has_same(point.position, point.set);
+      bool same_only = !turned;  // on a circle vertices may lie in more places than the point
+      grid.visit(point.position, [&](int other) {
+        same_only = same_only || sets_[static_cast<std::size_t>(other)] == point.set;
+      });
       const auto follow = [&](int other) {
         const auto w = static_cast<std::size_t>(other);
         if (continuous_ && (turn_of_vertex_[w] >= 0) != turned) return;
@@ -155,7 +156,6 @@ class OrbitBuilder {
   GroupWords& words_;
   VertexGrid grid_;
   std::vector<int> sets_;
-  PlacesOfVertices near_;
   ClosureOptions closure_;
   VertexOrbits result_;
   bool continuous_ = false;

@@ -125,6 +125,9 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
   bool partial = false;
   for (int place = 0; place < regions.places(); ++place) partial = partial || !regions.whole(place);
   if (!partial) return by_vertex(points);
+  // Parts that touch have vertices at one place; their surfaces face different ways there.
+  constexpr double kSameSide = 0.7;  // cosine: the corners of a part and of what it stands on are farther apart
+  const Points normals = vertex_normals(mesh);
   std::vector<int> queue;
   std::vector<char> queued(points.root.size(), 0);
   for (std::size_t v = 0; v < points.root.size(); ++v) {
@@ -148,16 +151,20 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
     const int vertex = queue[head];
     queued[static_cast<std::size_t>(vertex)] = 0;
     const Eigen::Vector3d position = mesh.vertices.row(vertex).transpose();
+    const Eigen::Vector3d normal = normals.row(vertex).transpose();
     const std::vector<int> places = regions.set_places(set_of(vertex));
     for (const int place : places) {
       for (int element = 0; element < static_cast<int>(regions.elements(place).size()); ++element) {
         const int carried = regions.carried_set(set_of(vertex), place, element);
-        const Eigen::Vector3d image = regions.elements(place)[static_cast<std::size_t>(element)](position);
+        const Motion& motion = regions.elements(place)[static_cast<std::size_t>(element)];
+        const Eigen::Vector3d image = motion(position);
+        const Eigen::Vector3d turned = motion.linear * normal;
         bool same = false;
         std::vector<int> met;
         grid.visit(image, [&](int other) {
           same = same || set_of(other) == carried;
-          if (regions.comparable(set_of(other), carried)) met.push_back(other);
+          const bool faces_alike = turned.dot(normals.row(other).transpose()) > kSameSide;
+          if (faces_alike && regions.comparable(set_of(other), carried)) met.push_back(other);
         });
         if (same) continue;
         for (const int other : met) {
@@ -170,23 +177,6 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
     }
   }
   return by_vertex(points);
-}
-
-bool PlacesOfVertices::has_same(const Eigen::Vector3d& position, int set) const {
-  bool result = false;
-  grid_.visit(position, [&](int vertex) { result = result || sets_[static_cast<std::size_t>(vertex)] == set; });
-  return result;
-}
-
-int PlacesOfVertices::set_at(const Eigen::Vector3d& position, int carried) const {
-  int result = -1;
-  bool same = false;
-  grid_.visit(position, [&](int vertex) {
-    const int here = sets_[static_cast<std::size_t>(vertex)];
-    same = same || here == carried;
-    if (regions_.comparable(here, carried)) result = regions_.joined(result < 0 ? carried : result, here);
-  });
-  return same ? carried : result;
 }
 
 }  // namespace orbifit

@@ -24,24 +24,4 @@ std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions);
 /// its image, the vertices of both are decided alike here, once for all of an orbit.
 std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid);
 
-/// Tells the places at positions where there are vertices.
-class PlacesOfVertices {
- public:
-  /// All are kept by reference. `grid` holds the vertices, `sets` their places.
-  PlacesOfVertices(const RegionMap& regions, const VertexGrid& grid, const std::vector<int>& sets)
-      : regions_(regions), grid_(grid), sets_(sets) {}
-
-  /// Whether one of the vertices there has this very set.
-  bool has_same(const Eigen::Vector3d& position, int set) const;
-
-  /// The set at an image to which motions carry `carried`: that one, where a vertex has it; else with the places of
-  /// vertices that have it in part or others besides; -1 where there are none.
-  int set_at(const Eigen::Vector3d& position, int carried) const;
-
- private:
-  const RegionMap& regions_;
-  const VertexGrid& grid_;
-  const std::vector<int>& sets_;
-};
-
 }  // namespace orbifit

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -80,9 +82,9 @@ void ConsistencySearch::leave_out_pattern(std::size_t number, const std::string&
 
 void ConsistencySearch::add_moves_of_region(std::size_t region) {
   const KnownRegion& known = regions_[region];
-  for (const Motion& motion : movers(*known.place)) {
-    moves_.push_back({known.shape, known.shape, motion, static_cast<int>(region), -1});
-  }
+  const auto number = static_cast<int>(region);
+  if (known.place->group.continuous()) moves_.push_back({known.shape, known.shape, Motion{}, number, -1, true});
+  for (const Motion& motion : movers(*known.place)) moves_.push_back({known.shape, known.shape, motion, number, -1});
 }
 
 void ConsistencySearch::add_moves_of_pattern(std::size_t pattern) {
@@ -164,6 +166,27 @@ std::optional<std::string> ConsistencySearch::add_image(const Move& move, std::s
   return std::nullopt;
 }
 
+// What lies on a surface of revolution turns with it: its own motions keep the axis, or all directions would be turned
+// into one another.
+std::optional<std::string> ConsistencySearch::turn_with(const Move& move, std::size_t at, Family& family) const {
+  const Member& member = family.members[at];
+  const int shape = regions_[member.region].shape;
+  const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
+  const Motion some = turning.group.has_axis() ? Motion::rotation(turning.frame.col(2), 1, turning.centre) : Motion{};
+  if (shapes_.match(shape, move.domain, some, shape, move.arrival).share < policy_.arrived) {
+    return "it lies on " + name_of(move) + " and does not turn with it";
+  }
+  Tie tie;
+  tie.from = tie.to = image_of(turning_part(turning), inverse(member.way));
+  tie.extent = extent(family.members.front().region);
+  const std::size_t marks_of_first = marks(*regions_[family.members.front().region].place).size();
+  for (std::size_t k = 0; k < marks_of_first; ++k) {
+    tie.own = static_cast<int>(k);
+    family.ties.push_back(tie);
+  }
+  return std::nullopt;
+}
+
 // Where a move takes a member: to itself or another, which asks something of the first; to a region placed before; or
 // to one that now belongs to the family.
 std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size_t at, Family& family) {
@@ -171,14 +194,9 @@ std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size
   const int shape = regions_[member.region].shape;
   if (!shapes_.meet(shape, move.domain)) return std::nullopt;
   if (shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
-  const bool continuous = move.region >= 0 && regions_[static_cast<std::size_t>(move.region)].place->group.continuous();
+  if (move.turning) return turn_with(move, at, family);
   Tie tie;
-  tie.lenient = continuous;
-  std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
-  // Of what turns with the surface the marks off the axis go anywhere.
-  if (!image && continuous && shapes_.match(shape, move.domain, move.motion, shape, move.arrival).share >= policy_.kept) {
-    image = member.region;
-  }
+  const std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
   if (!image) return add_image(move, at, family);
   if (regions_[*image].state == State::placed) {
     tie.before = move.motion * member.way;
@@ -321,10 +339,13 @@ bool ConsistencySearch::drop_contradictions() {
       const KnownRegion& known = regions_[j];
       if (known.state != State::placed || !shapes_.meet(known.shape, move.domain)) continue;
       if (shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
-      const bool continuous =
-          move.region >= 0 && regions_[static_cast<std::size_t>(move.region)].place->group.continuous();
-      if (continuous) continue;
       bool has_image = false;
+      if (move.turning) {
+        const GroupPlace turning = turning_part(*regions_[static_cast<std::size_t>(move.region)].place);
+        has_image = std::ranges::all_of(marks(*known.place), [&](const Motion& mark) {
+          return group_distance(turning, mark, turning, extent(j)) <= 10 * rounding_;
+        });
+      }
       for (std::size_t k = 0; k < regions_.size() && !has_image; ++k) {
         const KnownRegion& other = regions_[k];
         if (other.state != State::placed || !shapes_.meet(other.shape, move.arrival)) continue;
@@ -363,9 +384,10 @@ ConsistentAnnotation ConsistencySearch::run() {
     items.push_back({false, i, shapes_.area(regions_[i].shape), order});
   }
   for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    // After the regions that hold an instance, which take instances to instances, and before those within one.
     double area = 0;
-    for (const int shape : patterns_[i].shapes) area += shapes_.area(shape);
-    items.push_back({true, i, area, 0});
+    for (const int shape : patterns_[i].shapes) area = std::max(area, shapes_.area(shape));
+    items.push_back({true, i, area / (1 - RegionShapes::kSliver), 0});
   }
   std::ranges::stable_sort(items, [](const Item& a, const Item& b) {
     return a.area != b.area ? a.area > b.area : a.order > b.order;
@@ -391,7 +413,50 @@ ConsistentAnnotation ConsistencySearch::run() {
   return result();
 }
 
+// Of two that overlap by a sliver the smaller loses it, and what it has outside of one that holds all but a sliver of it:
+// then each pair is disjoint, nested, or overlaps as the search has seen it.
+void ConsistencySearch::trim_slivers() {
+  struct Part {
+    std::vector<int>* faces;
+    double area;
+  };
+  const Eigen::VectorXd areas = face_areas(mesh_);
+  const auto area_of = [&](const std::vector<int>& faces) {
+    double sum = 0;
+    for (const int face : faces) sum += areas[face];
+    return sum;
+  };
+  std::vector<Part> parts;
+  for (KnownRegion& known : regions_) {
+    if (known.state == State::placed) parts.push_back({&known.region.faces, area_of(known.region.faces)});
+  }
+  for (KnownPattern& known : patterns_) {
+    if (known.state != State::placed) continue;
+    for (PatternInstance& instance : known.pattern.instances) {
+      parts.push_back({&instance.faces, area_of(instance.faces)});
+    }
+  }
+  std::ranges::stable_sort(parts, std::greater<>(), &Part::area);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    context_.check();
+    for (std::size_t j = i + 1; j < parts.size(); ++j) {
+      std::vector<int> common;
+      std::ranges::set_intersection(*parts[i].faces, *parts[j].faces, std::back_inserter(common));
+      if (common.empty() || common.size() == parts[j].faces->size()) continue;
+      const double shared = area_of(common);
+      if (shared <= RegionShapes::kSliver * parts[j].area) {
+        std::vector<int> rest;
+        std::ranges::set_difference(*parts[j].faces, common, std::back_inserter(rest));
+        *parts[j].faces = std::move(rest);
+      } else if (shared >= (1 - RegionShapes::kSliver) * parts[j].area) {
+        *parts[j].faces = std::move(common);
+      }
+    }
+  }
+}
+
 ConsistentAnnotation ConsistencySearch::result() {
+  trim_slivers();
   ConsistentAnnotation result;
   result.annotation = annotation_;
   result.annotation.regions.clear();

@@ -55,7 +55,8 @@ class ConsistencySearch {
   struct Move {
     int domain, arrival;
     Motion motion;
-    int region, pattern;  // whose it is; -1
+    int region, pattern;   // whose it is; -1
+    bool turning = false;  // stands for all rotations of a continuous group
   };
   struct Member {
     std::size_t region;
@@ -76,6 +77,7 @@ class ConsistencySearch {
   void place_family(std::size_t first);
   std::optional<std::string> gather(std::size_t first, Family& family);
   std::optional<std::string> follow(const Move& move, std::size_t from, Family& family);
+  std::optional<std::string> turn_with(const Move& move, std::size_t at, Family& family) const;
   std::optional<std::string> add_image(const Move& move, std::size_t at, Family& family);
   std::optional<std::string> ask_of_overlaps(Family& family);
   std::optional<std::size_t> image_region(std::size_t region, int domain, const Motion& motion, int arrival) const;
@@ -95,6 +97,7 @@ class ConsistencySearch {
   void add_moves_of_region(std::size_t region);
   void add_moves_of_pattern(std::size_t pattern);
   bool drop_contradictions();
+  void trim_slivers();
   ConsistentAnnotation result();
 
   const Mesh& mesh_;

@@ -234,6 +234,11 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
   std::vector<int> roots(count, -1);
   std::vector<std::vector<Motion>> stabilisers(count);  // of the roots
   std::vector<Motion> normalisers;
+  struct Edge {
+    std::size_t from, to;
+    Motion motion;
+  };
+  std::vector<Edge> edges;
   for (std::size_t root = 0; root < count; ++root) {
     if (roots[root] >= 0) continue;
     roots[root] = static_cast<int>(root);
@@ -242,6 +247,7 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
       const std::size_t t = queue[head];
       for (const Move& move : moves_) {
         if (!shapes_.meet(known.shapes[t], move.domain)) continue;
+        if (move.turning && shapes_.same(known.shapes[t], move.domain)) continue;
         if (shapes_.within(move.domain, known.shapes[t]) && !shapes_.within(known.shapes[t], move.domain)) continue;
         std::size_t to = count;
         double best = std::numeric_limits<double>::infinity();
@@ -255,6 +261,7 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
         }
         if (to == count) return "the group of " + name_of(move) + " takes its instances where it has none";
         if (move.region >= 0) normalisers.push_back(move.motion);
+        edges.push_back({t, to, move.motion});
         if (roots[to] < 0) {
           roots[to] = static_cast<int>(root);
           ways[to] = move.motion * ways[t];
@@ -267,10 +274,17 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
       }
     }
   }
-  if (known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty()) {
-    return fit_copies(known, ways, roots, stabilisers);
+  const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
+  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers)) return reason;
+  // To go by the groups around and come back by the steps keeps the first instance: in finitely many ways.
+  std::vector<Motion> returns;
+  const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };
+  for (const Edge& edge : edges) returns.push_back(inverse(place(edge.to)) * edge.motion * place(edge.from));
+  const Extent& first = shapes_.extent(known.shapes[0]);
+  if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMostStabilisers) {
+    return "its steps and the groups around it do not close";
   }
-  return fit_lattice(known, normalisers);
+  return std::nullopt;
 }
 
 void ConsistencySearch::place_pattern(std::size_t number) {

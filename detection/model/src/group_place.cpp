@@ -124,30 +124,25 @@ std::vector<Motion> members(const GroupPlace& place) {
 }
 
 std::vector<Motion> movers(const GroupPlace& place) {
-  if (!place.group.continuous()) return marks(place);
-  const auto turn = [&](Index column, double angle) {
-    return Motion::rotation(place.frame.col(column), angle, place.centre);
-  };
-  std::vector<Motion> result{turn(2, kTurn), turn(2, std::numbers::pi)};
   switch (place.group.family) {
+    case Family::Cinf:
+    case Family::Cinfv:
     case Family::K:
-      result.push_back(turn(0, kTurn));
-      break;
+      return {};
     case Family::Kh:
-      result.push_back(turn(0, kTurn));
-      result.push_back(Motion::about(-Matrix3d::Identity(), place.centre));
-      break;
+      return {Motion::about(-Matrix3d::Identity(), place.centre)};
     case Family::Cinfh:
     case Family::Dinfh:
-      result.push_back(Motion::reflection(place.frame.col(2), place.centre));
-      break;
+      return {Motion::reflection(place.frame.col(2), place.centre)};
     case Family::Dinf:
-      result.push_back(turn(0, std::numbers::pi));
-      break;
+      return {Motion::rotation(place.frame.col(0), std::numbers::pi, place.centre)};
     default:
-      break;
+      return marks(place);
   }
-  return result;
+}
+
+GroupPlace turning_part(const GroupPlace& place) {
+  return {{spherical(place.group) ? Family::K : Family::Cinf, 1}, place.centre, place.frame};
 }
 
 GroupPlace image_of(const GroupPlace& place, const Motion& motion) {
@@ -220,11 +215,8 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
     for (std::size_t m = 0; m < from.size(); ++m) {
       double best = 0;
       const int member = nearest(conjugate(way, from[m]), among, tie.extent, best);
-      if (best <= near) {
-        matches.push_back({&tie, m, static_cast<std::size_t>(member)});
-      } else if (!tie.lenient) {
-        return std::nullopt;
-      }
+      if (best > near) return std::nullopt;
+      matches.push_back({&tie, m, static_cast<std::size_t>(member)});
     }
   }
   std::vector<std::pair<Motion, std::size_t>> aims;  // a motion, and the member of x that it is

@@ -36,9 +36,12 @@ std::vector<Motion> marks(const GroupPlace& place);
 /// Motions among which the images of marks are found: all elements; of a continuous group marks and their inverses.
 std::vector<Motion> members(const GroupPlace& place);
 
-/// Motions by which the group takes other regions to their images: as marks(), and for an axis also the half turn about
-/// it, which tells planes that contain it.
+/// Motions by which the group takes other regions to their images: as marks(); of a continuous group one of each
+/// component but the identity's and mirrors through the axis, since its rotations leave regions where they are.
 std::vector<Motion> movers(const GroupPlace& place);
+
+/// All rotations about a continuous group's axis, or centre, alone.
+GroupPlace turning_part(const GroupPlace& place);
 
 /// The place as `motion` moves it.
 GroupPlace image_of(const GroupPlace& place, const Motion& motion);
@@ -54,8 +57,6 @@ struct Tie {
   std::optional<GroupPlace> from;  ///< nothing: x
   std::optional<GroupPlace> to;    ///< nothing: x
   Extent extent;                   ///< around `to`
-  /// Marks of `from` that have no counterpart in `to` do not matter, as of groups about the axis of a continuous one.
-  bool lenient = false;
 };
 
 struct PlaceFit {

@@ -9,8 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSamples = 64;      // of a shape: shares to two per cent
-constexpr double kSliver = 0.02;  // of the smaller shape's area: what borders drawn face by face overlap by chance
+constexpr int kSamples = 64;  // of a shape: shares to two per cent
 
 // The van der Corput sequence: evenly spread numbers in [0, 1).
 double spread(int number, int base) {

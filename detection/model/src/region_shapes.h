@@ -17,7 +17,8 @@
 
 namespace orbifit {
 
-/// Sets of faces of one mesh, called shapes, and whether motions take one to another.
+/// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by
+/// less than a fiftieth of the smaller one's area is a sliver: borders drawn face by face overlap by that much by chance.
 class RegionShapes {
  public:
   /// \param near how far an image may lie from the surface, mesh units
@@ -28,6 +29,8 @@ class RegionShapes {
   /// Takes away the shapes from number `count` on.
   void keep(int count) { shapes_.resize(static_cast<std::size_t>(count)); }
   int count() const { return static_cast<int>(shapes_.size()); }
+
+  static constexpr double kSliver = 0.02;
 
   const std::vector<int>& faces(int shape) const { return at(shape).faces; }
   double area(int shape) const { return at(shape).area; }
