@@ -11,7 +11,6 @@ namespace orbifit {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr double kTie = 1e-6;        // of the diagonal: places of the same faces
 constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
 
 bool is_identity(const Motion& motion) {
@@ -20,11 +19,15 @@ bool is_identity(const Motion& motion) {
 
 }  // namespace
 
-// Of the faces that both places hold.
+// Of the faces that both places hold; of all of the second where they merely touch.
 PieceMoments RegionMap::common_moments(int a, int b) const {
   PieceMoments result;
   for (std::size_t set = 0; set < moments_.size(); ++set) {
     if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
+  }
+  if (result.area > 0) return result;
+  for (std::size_t set = 0; set < moments_.size(); ++set) {
+    if (holds(static_cast<int>(set), b)) result += moments_[set];
   }
   return result;
 }
@@ -84,8 +87,8 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
     }
     candidates.push_back(p);
   }
-  // Of the places whose group is the image of its group, the nearest to its image, to which no other is nearer;
-  // instances of patterns have no group.
+  // One for each of those whose group is the image of its group, nearest pairs first; instances of patterns have no
+  // group.
   Eigen::MatrixXd off = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(candidates.size()),
                                                   static_cast<Eigen::Index>(there.size()), kFar);
   for (Eigen::Index i = 0; i < off.rows(); ++i) {
@@ -97,13 +100,25 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
       off(i, k) = separation(piece, told, common[static_cast<std::size_t>(k)], size_);
     }
   }
+  struct Pair {
+    double off;
+    Eigen::Index from, to;
+  };
+  std::vector<Pair> pairs;
   for (Eigen::Index i = 0; i < off.rows(); ++i) {
     for (Eigen::Index k = 0; k < off.cols(); ++k) {
-      const double nearest = std::min(off.row(i).minCoeff(), off.col(k).minCoeff());
-      if (off(i, k) < kFar && off(i, k) <= nearest + kTie) {
-        result.pairs.emplace_back(candidates[static_cast<std::size_t>(i)], there[static_cast<std::size_t>(k)]);
-      }
+      if (off(i, k) < kFar) pairs.push_back({off(i, k), i, k});
     }
+  }
+  std::ranges::stable_sort(pairs, {}, &Pair::off);
+  std::vector<char> gone(candidates.size(), 0);
+  std::vector<char> come(there.size(), 0);
+  for (const Pair& pair : pairs) {
+    char& from = gone[static_cast<std::size_t>(pair.from)];
+    char& to = come[static_cast<std::size_t>(pair.to)];
+    if (from != 0 || to != 0) continue;
+    from = to = 1;
+    result.pairs.emplace_back(candidates[static_cast<std::size_t>(pair.from)], there[static_cast<std::size_t>(pair.to)]);
   }
   std::ranges::sort(result.pairs);
   return result;

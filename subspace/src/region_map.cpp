@@ -10,6 +10,7 @@
 #include "orbifit/model/point_group.h"
 
 #include "lattice.h"
+#include "vertex_places.h"
 
 namespace orbifit {
 
@@ -124,7 +125,12 @@ RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, con
   origin_ = bounding_box_centre(mesh.vertices);
   moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
   meeting_.resize(places_.size());
-  for (int set = 0; set < set_count(); ++set) {
+  // Also those that share no face but vertices: what lies on both must keep both.
+  std::vector<int> sets = sets_of_vertices(mesh, *this);
+  sets.insert(sets.end(), set_of_face_.begin(), set_of_face_.end());
+  std::ranges::sort(sets);
+  sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+  for (const int set : sets) {
     for (const int place : set_places(set)) {
       auto& met = meeting_[static_cast<std::size_t>(place)];
       met.insert(met.end(), set_places(set).begin(), set_places(set).end());

@@ -172,8 +172,18 @@ std::optional<std::string> ConsistencySearch::turn_with(const Move& move, std::s
   const Member& member = family.members[at];
   const int shape = regions_[member.region].shape;
   const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
+  if (!shapes_.meet(shape, move.domain)) {
+    // What touches it need not turn with it; but no vertex lies on circles about two axes.
+    if (!regions_[member.region].place->group.continuous()) return std::nullopt;
+    const GroupPlace& own = *regions_[member.region].place;
+    const GroupPlace part = turning_part(own);
+    if (group_distance(part, Motion{}, turning_part(turning), extent(member.region)) > length(policy_.same_group)) {
+      return "it touches " + name_of(move) + ", which turns about another axis";
+    }
+  }
   const Motion some = turning.group.has_axis() ? Motion::rotation(turning.frame.col(2), 1, turning.centre) : Motion{};
-  if (shapes_.match(shape, move.domain, some, shape, move.arrival).share < policy_.arrived) {
+  if (shapes_.meet(shape, move.domain) &&
+      shapes_.match(shape, move.domain, some, shape, move.arrival).share < policy_.arrived) {
     return "it lies on " + name_of(move) + " and does not turn with it";
   }
   Tie tie;
@@ -192,9 +202,11 @@ std::optional<std::string> ConsistencySearch::turn_with(const Move& move, std::s
 std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size_t at, Family& family) {
   const Member member = family.members[at];
   const int shape = regions_[member.region].shape;
-  if (!shapes_.meet(shape, move.domain)) return std::nullopt;
-  if (shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
+  const bool meets = shapes_.meet(shape, move.domain);
+  if (!meets && !shapes_.touch(shape, move.domain)) return std::nullopt;
+  if (meets && shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
   if (move.turning) return turn_with(move, at, family);
+  if (!meets) return std::nullopt;
   Tie tie;
   const std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
   if (!image) return add_image(move, at, family);

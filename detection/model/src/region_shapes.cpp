@@ -1,7 +1,9 @@
 #include "region_shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace orbifit {
 
@@ -10,6 +12,21 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kSamples = 64;  // of a shape: shares to two per cent
+
+// Vertices at the very same position have the same number.
+std::vector<int> numbered_positions(const Points& vertices) {
+  std::vector<int> order(static_cast<std::size_t>(vertices.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int v) { return std::array<double, 3>{vertices(v, 0), vertices(v, 1), vertices(v, 2)}; };
+  std::ranges::sort(order, {}, key);
+  std::vector<int> result(order.size());
+  int number = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && key(order[i]) != key(order[i - 1])) ++number;
+    result[static_cast<std::size_t>(order[i])] = number;
+  }
+  return result;
+}
 
 // The van der Corput sequence: evenly spread numbers in [0, 1).
 double spread(int number, int base) {
@@ -29,6 +46,7 @@ RegionShapes::RegionShapes(const Mesh& mesh, double near)
       near_(near),
       diagonal_(diagonal(mesh.vertices)),
       origin_(bounding_box_centre(mesh.vertices)),
+      point_of_vertex_(numbered_positions(mesh.vertices)),
       areas_(face_areas(mesh)),
       centroids_(face_centroids(mesh)) {}
 
@@ -41,8 +59,13 @@ int RegionShapes::add(const std::vector<int>& faces) {
     shape.holds[static_cast<std::size_t>(face)] = 1;
     shape.area += areas_[face];
     sum += areas_[face] * centroids_.row(face).transpose();
-    for (const int vertex : mesh_.faces.row(face)) shape.box.extend(mesh_.vertices.row(vertex).transpose());
+    for (const int vertex : mesh_.faces.row(face)) {
+      shape.box.extend(mesh_.vertices.row(vertex).transpose());
+      shape.points.push_back(point_of_vertex_[static_cast<std::size_t>(vertex)]);
+    }
   }
+  std::ranges::sort(shape.points);
+  shape.points.erase(std::unique(shape.points.begin(), shape.points.end()), shape.points.end());
   if (faces.empty()) {
     shape.extent = {Vector3d::Zero(), diagonal_};
   } else {
@@ -113,6 +136,19 @@ PieceMoments RegionShapes::common_moments(int a, int b) const {
 
 bool RegionShapes::meet(int a, int b) const {
   return common_area(a, b) > kSliver * std::min(area(a), area(b));
+}
+
+bool RegionShapes::touch(int a, int b) const {
+  if (meet(a, b)) return true;
+  const std::vector<int>& here = at(a).points;
+  const std::vector<int>& there = at(b).points;
+  auto i = here.begin();
+  auto j = there.begin();
+  while (i != here.end() && j != there.end()) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
 }
 
 bool RegionShapes::within(int inner, int outer) const {

@@ -42,6 +42,8 @@ class RegionShapes {
 
   /// Whether they share more than a sliver.
   bool meet(int a, int b) const;
+  /// Whether they meet, or have vertices at one position.
+  bool touch(int a, int b) const;
   /// Whether `outer` holds all of `inner` but a sliver, or everything.
   bool within(int inner, int outer) const;
   bool same(int a, int b) const { return within(a, b) && within(b, a); }
@@ -68,6 +70,7 @@ class RegionShapes {
   struct Shape {
     std::vector<int> faces;  // ascending
     std::vector<char> holds;
+    std::vector<int> points;  // numbers of the vertices' positions, ascending
     double area = 0;
     Extent extent;
     Eigen::AlignedBox3d box;
@@ -86,6 +89,7 @@ class RegionShapes {
   double near_;
   double diagonal_;
   Eigen::Vector3d origin_;  // of the moments
+  std::vector<int> point_of_vertex_;
   Eigen::VectorXd areas_;
   Points centroids_;
   std::vector<Shape> shapes_;

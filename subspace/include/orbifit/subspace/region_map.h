@@ -119,7 +119,7 @@ class RegionMap {
   /// `place`, where their moments leave no doubt; -1 for others.
   std::vector<int> exact_images(int place, int element) const;
 
-  /// Places that share faces with a place, itself among them, ascending.
+  /// Places that share faces or vertices with a place, itself among them, ascending.
   const std::vector<int>& meeting(int place) const { return meeting_[static_cast<std::size_t>(place)]; }
 
   /// Distance to the place's surface, at most `most` (infinity beyond). For use by several threads after prepare().
