@@ -156,7 +156,6 @@ std::vector<Mistake> mistakes() {
        "regions[0].faces[0]: the run [-1, 2] is outside the mesh"},
       {"RunShape", "\"faces\": [[0, 8]]", "\"faces\": [0, 8]", "regions[0].faces[0]: must be a run [first, count]"},
       {"NoFaces", "\"faces\": [[0, 8]]", "\"faces\": []", "regions[0].faces: must name at least one face"},
-      {"Parent", "\"parent\": null", "\"parent\": 3", "regions[0].parent: names region 3, which does not exist"},
       {"ParentSelf", "\"parent\": null", "\"parent\": 0", "regions[0].parent: leads back to the region itself"},
       {"Residual", "\"rms\": 0,", "\"rms\": -1,", "regions[0].residual: must not be negative"},
       {"NotANumber", "\"rms\": 0,", "\"rms\": 1e999,", "is not JSON"},
