@@ -240,6 +240,23 @@ TEST_F(ElementsOfARegion, BeginWithTheIdentity) {
   EXPECT_NE(refusal(swap).find("regions[0].elements[0]: must be the identity"), std::string::npos) << refusal(swap);
 }
 
+TEST(Annotation, FindsParentsAnewWhereOneWasDeletedByHand) {
+  const TemporaryFolder folder;
+  const Mesh mesh = polygon_mesh();
+  SymmetryAnnotation written = sample_annotation(mesh);
+  written.regions.resize(3);
+  written.regions[1].faces = {0, 1, 2, 5, 7};
+  written.regions[2].faces = {0, 1};
+  set_parents(written.regions);
+  ASSERT_EQ(written.regions[2].parent, 1);
+  written.regions.erase(written.regions.begin() + 1);
+  write_annotation(folder.file("a.json"), written);
+  const SymmetryAnnotation read = read_annotation(folder.file("a.json"), mesh);
+  ASSERT_EQ(read.regions.size(), 2U);
+  EXPECT_FALSE(read.regions[0].parent);
+  EXPECT_EQ(read.regions[1].parent, 0);
+}
+
 TEST(Annotation, DamageGivesAnAnnotationOrAnError) {
   const TemporaryFolder folder;
   const Mesh mesh = polygon_mesh();
