@@ -96,7 +96,7 @@ TEST_F(OrbifitDeform, WritesNothingAboveTheLargestResidualAsked) {
   }
   write_annotation(file("cube.json"), part);
   const std::string corner =
-      R"({"name": "corner", "centre": [0.5, 0.5, 0.5], "radius": 0.3, "translation": [0, 0.1, 0]})";
+      left_ + R"(}, {"name": "corner", "centre": [0.5, 0.5, 0.5], "radius": 0.3, "translation": [0, 0.1, 0]})";
   const ProgramResult warned = deform(corner, "--lift paper");
   EXPECT_EQ(warned.code, 0) << warned.errors;
   EXPECT_NE(warned.errors.find("warning: the edit is only symmetric to "), std::string::npos) << warned.errors;
