@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
-#include "orbifit/model/disjoint_sets.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/topology.h"
 
@@ -17,25 +15,12 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-// Faces that hang together by their own vertices.
-std::vector<std::vector<int>> pieces_of(const Mesh& patch) {
-  DisjointSets sets(static_cast<std::size_t>(patch.vertices.rows()));
-  for (Index f = 0; f < patch.faces.rows(); ++f) {
-    sets.unite(patch.faces(f, 0), patch.faces(f, 1));
-    sets.unite(patch.faces(f, 0), patch.faces(f, 2));
-  }
-  std::map<int, std::vector<int>> pieces;
-  for (Index f = 0; f < patch.faces.rows(); ++f) pieces[sets.root(patch.faces(f, 0))].push_back(static_cast<int>(f));
-  std::vector<std::vector<int>> result;
-  result.reserve(pieces.size());
-  for (auto& [root, faces] : pieces) result.push_back(std::move(faces));
-  return result;
-}
-
-// Of how the faces of a patch, which are `faces` in the mesh, are divided.
-std::optional<RegionParts::Division> divide(const Mesh& mesh, const Mesh& patch, const std::vector<int>& faces,
-                                            const std::vector<std::vector<int>>& parts, double reach) {
-  // Triangles with vertices of their own, as an STL has them, are no parts.
+// Divides a patch, whose faces are `faces` in the mesh.
+std::optional<RegionParts::Division> divided(const Mesh& mesh, const Mesh& patch, const std::vector<int>& faces,
+                                             double reach) {
+  const std::vector<std::vector<int>> parts =
+      touching_parts(patch, weld_vertices(patch.vertices), DoubledParts::apart).faces;
+  // Loose triangles are no parts.
   constexpr std::size_t kFacesOfAPart = 4;
   if (parts.size() < 2 || kFacesOfAPart * parts.size() > faces.size()) return std::nullopt;
   RegionParts::Division division;
@@ -96,9 +81,7 @@ class Pairer {
     const std::size_t count = from_.whole().vertices().size();
     pairing_.places.resize(motions_.size() * count);
     done_.assign(pairing_.places.size(), false);
-    for (int way = 0; way < RegionParts::kWays; ++way) {
-      if (from_.division(way) && to_.division(way)) pair_division(*from_.division(way), *to_.division(way));
-    }
+    if (from_.division() && to_.division()) pair_division(*from_.division(), *to_.division());
     std::vector<std::size_t> rest;
     for (std::size_t i = 0; i < done_.size(); ++i) {
       if (!done_[i]) rest.push_back(i);
@@ -186,7 +169,7 @@ class Pairer {
     std::vector<Candidate> fit;
     double facing = -1;
     for (const Candidate& candidate : candidates) {
-      if (candidate.farthest > 2 * tolerance_ || candidate.count == 0) continue;
+      if (candidate.farthest > tolerance_ || candidate.count == 0) continue;
       fit.push_back(candidate);
       facing = std::max(facing, candidate.facing / candidate.count);
     }
@@ -215,10 +198,8 @@ class Pairer {
       Pairing::Choice choice;
       for (const int vertex : from.parts[c % from.parts.size()].vertices) {
         const std::size_t pair = pair_of(c / from.parts.size(), vertex);
-        if (!done_[pair]) choice.pairs.push_back(pair);
-        done_[pair] = true;
+        choice.pairs.push_back(pair);
       }
-      if (choice.pairs.empty()) continue;
       choice.alternatives.resize(parts.size());
       for (std::size_t a = 0; a < parts.size(); ++a) {
         wanted[static_cast<std::size_t>(parts[a])].push_back({choices.size(), a});
@@ -239,12 +220,25 @@ class Pairer {
       }
     }
     for (Pairing::Choice& choice : choices) {
+      std::erase_if(choice.alternatives, [&](const auto& places) { return !near_all(to_, choice.pairs, places); });
+      if (choice.alternatives.empty()) continue;
       for (std::size_t i = 0; i < choice.pairs.size(); ++i) {
         pairing_.places[choice.pairs[i]] = choice.alternatives.front()[i];
+        done_[choice.pairs[i]] = true;
       }
       choice.alternatives.erase(choice.alternatives.begin());
       if (!choice.alternatives.empty()) pairing_.choices.push_back(std::move(choice));
     }
+  }
+
+  // Whether the places are within the tolerance of their images: of a part that is no counterpart some are not.
+  bool near_all(const RegionParts& to, const std::vector<std::size_t>& pairs,
+                const std::vector<SurfacePlace>& places) const {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const Vector3d image = images_.row(static_cast<Index>(pairs[i]));
+      if ((to.whole().point_at(places[i]) - image).norm() > tolerance_) return false;
+    }
+    return true;
   }
 
   const RegionParts& from_;
@@ -262,11 +256,7 @@ class Pairer {
 }  // namespace
 
 RegionParts::RegionParts(const Mesh& mesh, const std::vector<int>& faces, double reach) : whole_(mesh, faces, reach) {
-  const Mesh& patch = whole_.patch();
-  divisions_[0] = divide(mesh, patch, faces, pieces_of(patch), reach);
-  divisions_[1] = divide(mesh, patch, faces, touching_parts(patch, weld_vertices(patch.vertices)).faces, reach);
-  const auto parts = [&](int way) { return divisions_[way] ? divisions_[way]->parts.size() : 1; };
-  if (parts(0) == parts(1)) divisions_[1].reset();  // the same ones
+  division_ = divided(mesh, whole_.patch(), faces, reach);
 }
 
 Pairing pair_parts(const RegionParts& from, const RegionParts& to, const std::vector<Motion>& motions,

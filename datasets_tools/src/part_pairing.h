@@ -23,7 +23,7 @@ class RegionParts {
     double area = 0;
   };
 
-  /// The faces divided in one way: each vertex counts to one part.
+  /// Each vertex counts to one part.
   struct Division {
     std::vector<Part> parts;
     std::vector<int> part_of_vertex;  ///< by number within whole().vertices()
@@ -34,14 +34,13 @@ class RegionParts {
 
   const RegionSurface& whole() const { return whole_; }
 
-  /// The ways of dividing, the finest first: by the mesh's own vertices, then with vertices at one place welded
-  /// (touching_parts). None where it finds a single part, or hardly more than single triangles.
-  const std::optional<Division>& division(int way) const { return divisions_[way]; }
-  static constexpr int kWays = 2;
+  /// None where there is a single part, or hardly more than single triangles. Parts are touching_parts(), those in one
+  /// place each by itself.
+  const std::optional<Division>& division() const { return division_; }
 
  private:
   RegionSurface whole_;
-  std::optional<Division> divisions_[kWays];
+  std::optional<Division> division_;
 };
 
 /// Points q on one surface for points p of another under some motions.
