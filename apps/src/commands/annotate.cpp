@@ -210,8 +210,7 @@ CommandBody annotate(CLI::App& app) {
   auto* given =
       app.add_option("--annotation", arguments->annotation, "Annotation to change, or to which the region is added")
           ->type_name("FILE");
-  app.add_flag("--list", arguments->list, "Show the annotation's regions and patterns, with their ids")
-      ->needs(given);
+  app.add_flag("--list", arguments->list, "Show the annotation's regions and patterns, with their ids")->needs(given);
   app.add_option("--remove", arguments->edits.remove, "Remove these regions (their ids); the others keep theirs")
       ->delimiter(',')
       ->needs(given)
@@ -227,11 +226,12 @@ CommandBody annotate(CLI::App& app) {
       ->type_name("N");
   app.add_option("--group", arguments->group, "The group itself, such as C4v (default: Cs, Ci, or the largest found)")
       ->type_name("SYMBOL");
-  app.add_option("--seed-face", arguments->seeds, "Face of the region, numbered from 0; may be given again")
+  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be given again")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("F");
-  add_place(app, "--near", arguments->near, 3, "Point at the region, whose nearest face is of it", "X Y Z");
+  add_place(app, "--near", arguments->near, 3,
+            "A point at the region: the face nearest to it is taken as one of the region's", "X Y Z");
   app.add_option("--name", arguments->name, "Name of the region")->type_name("TEXT");
   app.add_option("--tolerance", arguments->tolerance,
                  "Largest distance that counts as symmetric, as a fraction of the diagonal "
