@@ -35,6 +35,11 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark baselines\n"
             "orbifit-benchmark baselines --families armchair --sizes 1 --json baselines.json",
             benchmarks::baselines},
+    Command{"real", "Meshes of any kind, from detection to an edit in every mode: what builds, how fast, how exactly.",
+            "orbifit-benchmark real meshes\n"
+            "orbifit-benchmark real meshes --annotations detected --csv real.csv\n"
+            "orbifit-benchmark real chair.obj --modes moving --stage-limit 60",
+            benchmarks::real},
 };
 
 int run(const CommandBody& body, bool quiet) {

@@ -28,12 +28,16 @@ constexpr std::array kCommands{
             "orbifit detect noisy.ply -o noisy.json --tolerance 0.02 --max-seconds 30\n"
             "orbifit detect --points scan.pcd -o scan.json",
             commands::detect},
-    Command{"annotate",
-            "Add a region to an annotation by hand: where its symmetry sits, roughly, and a face that has it.",
-            "orbifit annotate cup.obj -o cup.json --plane 0 0 0 1 0 0 --seed-face 812\n"
-            "orbifit annotate cup.obj -o cup.json --annotation cup.json --axis 0 0 0 0 0 1 --order inf --seed-face 12\n"
-            "orbifit annotate wheel.stl -o wheel.json --axis 3 0 1 0 1 0 --group C5v --seed-face 40 --name hub",
-            commands::annotate},
+    Command{
+        "annotate",
+        "Correct an annotation by hand: add a region (where its symmetry sits, roughly, and a face or point that has "
+        "it), remove regions, rename them, list them.",
+        "orbifit annotate cup.obj -o cup.json --plane 0 0 0 1 0 0 --seed-face 812\n"
+        "orbifit annotate cup.obj -o cup.json --annotation cup.json --axis 0 0 0 0 0 1 --order inf --seed-face 12\n"
+        "orbifit annotate wheel.stl -o wheel.json --axis 3 0 1 0 1 0 --group C5v --near 3 0.2 1 --name hub\n"
+        "orbifit annotate cup.obj --annotation cup.json --list\n"
+        "orbifit annotate cup.obj --annotation cup.json -o cup.json --remove 3,5 --rename 2 handle",
+        commands::annotate},
     Command{"check", "Measure how symmetric the regions of a mesh are, at rest or after a deformation.",
             "orbifit check chair.obj chair.json\n"
             "orbifit check chair.obj chair.json --deformed edited.obj --max-residual 1e-9",

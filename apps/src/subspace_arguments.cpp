@@ -1,5 +1,6 @@
 #include "subspace_arguments.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -48,6 +49,22 @@ void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
 
 void exclude_subspace_options(CLI::App& app, CLI::Option& option) {
   for (const char* name : kNames) option.excludes(app.get_option(name));
+}
+
+void add_without_option(CLI::App& app, std::vector<int>& ids) {
+  app.add_option("--without", ids, "Do not keep the groups of these regions (their ids)")
+      ->delimiter(',')
+      ->type_name("ID,...");
+}
+
+SymmetryAnnotation without(const std::vector<int>& ids, SymmetryAnnotation annotation) {
+  if (ids.empty()) return annotation;
+  for (const int id : ids) {
+    if (std::ranges::find(annotation.regions, id, &Region::id) == annotation.regions.end()) {
+      throw UsageError("--without: the annotation has no region " + std::to_string(id));
+    }
+  }
+  return without_regions(std::move(annotation), ids);
 }
 
 SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh& mesh, const RunContext& context) {

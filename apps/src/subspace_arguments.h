@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/subspace.h"
@@ -24,6 +26,12 @@ void add_subspace_options(CLI::App& app, SubspaceArguments& arguments);
 
 /// Makes an option useless together with any of those.
 void exclude_subspace_options(CLI::App& app, CLI::Option& option);
+
+/// Adds --without, which takes the ids of regions.
+void add_without_option(CLI::App& app, std::vector<int>& ids);
+
+/// The annotation without the regions that --without names. \throw UsageError naming one that it has not
+SymmetryAnnotation without(const std::vector<int>& ids, SymmetryAnnotation annotation);
 
 /// The options with the radius field, if there is one, drawn up for a mesh: for the radius given, or else for the one
 /// that the number of samples suggests.

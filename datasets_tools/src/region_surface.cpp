@@ -26,6 +26,20 @@ std::uint64_t mixed(std::int64_t key) {
   return value ^ (value >> 32);
 }
 
+// Costs nothing for the rest of the mesh, unlike submesh().
+Mesh patch_of(const Mesh& mesh, const std::vector<int>& faces, const std::vector<int>& vertices) {
+  Mesh patch;
+  patch.vertices = mesh.vertices(vertices, Eigen::all);
+  patch.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto at = std::ranges::lower_bound(vertices, mesh.faces(faces[f], k));
+      patch.faces(static_cast<Eigen::Index>(f), k) = static_cast<int>(at - vertices.begin());
+    }
+  }
+  return patch;
+}
+
 }  // namespace
 
 Eigen::Vector3d SurfacePlace::operator()(const Mesh& mesh) const {
@@ -35,7 +49,8 @@ Eigen::Vector3d SurfacePlace::operator()(const Mesh& mesh) const {
 }
 
 RegionSurface::RegionSurface(const Mesh& mesh, const std::vector<int>& faces, double reach)
-    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(kCell * reach), patch_(submesh(mesh, faces, &vertices_)) {
+    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(kCell * reach), vertices_(vertices_of_faces(mesh, faces)) {
+  patch_ = patch_of(mesh, faces, vertices_);
   normals_ = vertex_normals(patch_);
   origin_ = bounding_box_centre(patch_.vertices);
   const std::size_t count = vertices_.size();
@@ -113,24 +128,28 @@ std::vector<SurfacePlace> RegionSurface::places(const Points& points, const Poin
     if (result[i].vertex < 0) missed.push_back(i);
   }
   if (missed.empty()) return result;
-  const SurfaceIndex surface(mesh_, faces_);
-  const Points face_normal = face_normals(patch_);
+  const SurfaceIndex surface(patch_);
+  const Points facing_of = face_normals(patch_);
   parallel_for(context, missed.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Index row = static_cast<Eigen::Index>(missed[i]);
       const Eigen::Vector3d point = points.row(row);
       const Eigen::Vector3d normal = normals.row(row);
       SurfaceIndex::Nearest nearest = surface.nearest(point);
-      const auto number = std::ranges::lower_bound(faces_, nearest.face) - faces_.begin();
-      if (face_normal.row(number).dot(normal) < kOtherSide) {
+      if (facing_of.row(nearest.face).dot(normal) < kOtherSide) {
         const SurfaceIndex::Nearest facing =
             surface.nearest_facing(point, normal, kSameSide, nearest.distance + kThinness * reach_);
         if (facing.face >= 0) nearest = facing;
       }
-      result[missed[i]] = {-1, nearest.face, nearest.barycentric.tail<2>()};
+      result[missed[i]] = {-1, faces_[static_cast<std::size_t>(nearest.face)], nearest.barycentric.tail<2>()};
     }
   });
   return result;
+}
+
+Eigen::Vector3d RegionSurface::normal_at(const SurfacePlace& place) const {
+  if (place.vertex < 0) return face_normal(mesh_, place.face);
+  return normals_.row(std::ranges::lower_bound(vertices_, place.vertex) - vertices_.begin());
 }
 
 }  // namespace orbifit

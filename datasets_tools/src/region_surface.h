@@ -28,10 +28,14 @@ class RegionSurface {
   const std::vector<int>& vertices() const { return vertices_; }  ///< of the mesh, ascending
   const Points& positions() const { return patch_.vertices; }     ///< of vertices(), #R by 3
   const Points& normals() const { return normals_; }              ///< of vertices() within the region, #R by 3
+  const Mesh& patch() const { return patch_; }                    ///< the faces alone, in their order, on vertices()
 
   /// The vertex within reach, of several the one whose normal agrees best; else the nearest point of the faces, on
   /// the side that faces as `normals` do where a thin part has both sides near.
   std::vector<SurfacePlace> places(const Points& points, const Points& normals, const RunContext& context) const;
+
+  Eigen::Vector3d point_at(const SurfacePlace& place) const { return place(mesh_); }
+  Eigen::Vector3d normal_at(const SurfacePlace& place) const;  ///< of one of places(): unit, or zero
 
  private:
   struct Cell {
@@ -42,7 +46,7 @@ class RegionSurface {
   int vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 
   const Mesh& mesh_;
-  const std::vector<int>& faces_;
+  std::vector<int> faces_;
   double reach_;
   double cell_size_;
   Eigen::Vector3d origin_;

@@ -10,6 +10,7 @@
 #include "orbifit/model/random.h"
 
 #include "carried_motion.h"
+#include "part_pairing.h"
 #include "region_surface.h"
 #include "tested_elements.h"
 
@@ -29,20 +30,25 @@ constexpr int kFitBudget = 200000;
 
 // All (p, g, q) of one region.
 struct RegionPairs {
-  std::vector<int> vertices;         // p
-  std::vector<Motion> elements;      // g, told from the region's centre
-  std::vector<SurfacePlace> places;  // q: of element e and vertex v at e * #vertices + v
+  std::vector<int> vertices;             // p
+  std::vector<Motion> elements;          // g, told from the region's centre
+  std::vector<SurfacePlace> places;      // q: of element e and vertex v at e * #vertices + v
+  std::vector<Pairing::Choice> choices;  // what else q may be
 };
 
-RegionPairs pair_up(const Mesh& mesh, const Region& region, double rest_diagonal, const RunContext& context) {
+RegionPairs pair_up(const Mesh& mesh, const Region& region, double tolerance, double rest_diagonal,
+                    const RunContext& context) {
   RegionPairs pairs;
   if (region.faces.empty()) return pairs;
-  const RegionSurface surface(mesh, region.faces, kOntoVertex * rest_diagonal);
+  const double reach = kOntoVertex * rest_diagonal;
+  const RegionParts parts(mesh, region.faces, reach);
+  const RegionSurface& surface = parts.whole();
   pairs.vertices = surface.vertices();
   pairs.elements = tested_elements(region, surface);
   const Index count = surface.positions().rows();
   Points images(count * static_cast<Index>(pairs.elements.size()), 3);
   Points normals(images.rows(), 3);
+  std::vector<Motion> motions;
   for (std::size_t e = 0; e < pairs.elements.size(); ++e) {
     const Motion& g = pairs.elements[e];
     const Index row = static_cast<Index>(e) * count;
@@ -51,9 +57,40 @@ RegionPairs pair_up(const Mesh& mesh, const Region& region, double rest_diagonal
         ((surface.positions().rowwise() - region.centre.transpose()) * g.linear.transpose()).rowwise() +
         shift.transpose();
     normals.middleRows(row, count) = surface.normals() * g.linear.transpose();
+    motions.push_back({g.linear, shift - g.linear * region.centre});
   }
-  pairs.places = surface.places(images, normals, context);
+  const double apart = std::max(tolerance, region.residual.max) * rest_diagonal;
+  Pairing pairing = pair_parts(parts, parts, motions, images, normals, apart, reach, context);
+  pairs.places = std::move(pairing.places);
+  pairs.choices = std::move(pairing.choices);
   return pairs;
+}
+
+// Of parts at one place the deformed ones tell which are images of which: takes what leaves the least.
+// \return whether that changed anything
+bool choose(const Mesh& deformed, const CarriedFrame& carried, RegionPairs& pairs) {
+  bool changed = false;
+  const std::size_t count = pairs.vertices.size();
+  for (Pairing::Choice& choice : pairs.choices) {
+    const auto squares = [&](const auto& place_of) {
+      double sum = 0;
+      for (std::size_t i = 0; i < choice.pairs.size(); ++i) {
+        const std::size_t pair = choice.pairs[i];
+        const Vector3d p = carried(deformed.vertices.row(pairs.vertices[pair % count]));
+        sum += (pairs.elements[pair / count](p) - carried(place_of(i)(deformed))).squaredNorm();
+      }
+      return sum;
+    };
+    double least = squares([&](std::size_t i) { return pairs.places[choice.pairs[i]]; });
+    for (std::vector<SurfacePlace>& other : choice.alternatives) {
+      const double sum = squares([&](std::size_t i) { return other[i]; });
+      if (sum >= least) continue;
+      least = sum;
+      changed = true;
+      for (std::size_t i = 0; i < choice.pairs.size(); ++i) std::swap(pairs.places[choice.pairs[i]], other[i]);
+    }
+  }
+  return changed;
 }
 
 // |g N y(p) - N y(q)| for all pairs, in mesh units.
@@ -196,7 +233,7 @@ RegionResidual region_residual(const Shape& rest, const Shape* deformed, const R
   return result;
 }
 
-PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const Pattern& pattern,
+PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const Pattern& pattern, double tolerance,
                                  const RunContext& context) {
   PatternResidual result;
   result.id = pattern.id;
@@ -205,7 +242,9 @@ PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const P
   const double rest_diagonal = diagonal(mesh.vertices);
   const double deformed_diagonal = deformed != nullptr ? diagonal(deformed->vertices) : 0;
   const double reach = kOntoVertex * rest_diagonal;
-  const RegionSurface first(mesh, pattern.instances.front().faces, reach);
+  const double apart = std::max(tolerance, pattern.residual.max) * rest_diagonal;
+  const RegionParts first_parts(mesh, pattern.instances.front().faces, reach);
+  const RegionSurface& first = first_parts.whole();
   const Motion back = inverse(pattern.instances.front().motion);
   double floor_sum = 0;
   double deformed_sum = 0;
@@ -215,9 +254,11 @@ PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const P
     if (instance.faces.empty()) continue;
     const Motion motion = instance.motion * back;
     const Points images = (first.positions() * motion.linear.transpose()).rowwise() + motion.translation.transpose();
-    const RegionSurface surface(mesh, instance.faces, reach);
+    const RegionParts parts(mesh, instance.faces, reach);
     const std::vector<SurfacePlace> places =
-        surface.places(images, first.normals() * motion.linear.transpose(), context);
+        pair_parts(first_parts, parts, {motion}, images, first.normals() * motion.linear.transpose(), apart, reach,
+                   context)
+            .places;
     Points from(images.rows(), 3);
     Points to(images.rows(), 3);
     for (Index i = 0; i < images.rows(); ++i) {
@@ -268,10 +309,16 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
   std::vector<RegionPairs> pairs;
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
     context.progress("pairs", static_cast<double>(r) / static_cast<double>(annotation.regions.size()));
-    pairs.push_back(pair_up(mesh, annotation.regions[r], rest.size, context));
+    pairs.push_back(pair_up(mesh, annotation.regions[r], annotation.tolerance, rest.size, context));
   }
   std::vector<CarriedFrame> frames(annotation.regions.size());
-  if (deformed != nullptr) frames = carried_frames(mesh, *deformed, annotation.regions, pairs, motions, context);
+  constexpr int kRounds = 4;  // of frames and choices, each of which rests on the other
+  for (int round = 0; deformed != nullptr && round < kRounds; ++round) {
+    frames = carried_frames(mesh, *deformed, annotation.regions, pairs, motions, context);
+    bool changed = false;
+    for (std::size_t r = 0; r < pairs.size(); ++r) changed = choose(*deformed, frames[r], pairs[r]) || changed;
+    if (!changed) break;
+  }
 
   SymmetryReport report;
   report.vertices_onto_vertices = true;
@@ -285,7 +332,7 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
     report.worst_excess = std::max(report.worst_excess, region.excess.max);
   }
   for (const Pattern& pattern : annotation.patterns) {
-    report.patterns.push_back(pattern_residual(mesh, deformed, pattern, context));
+    report.patterns.push_back(pattern_residual(mesh, deformed, pattern, annotation.tolerance, context));
   }
   return report;
 }

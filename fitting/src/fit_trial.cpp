@@ -26,7 +26,7 @@ namespace {
 // want of a turn, comes back, which no point of the scan asks for.
 void let_groups_turn(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
                      const FitOptions& options, const RunContext& context, FitResult& result) {
-  MovingSystem system(subspace, input.mesh, options.stretch);
+  MovingSystem system(subspace, input.mesh, options.stretch, context);
   if (!system.turns()) return;
   FitOptions more = options;
   more.most_iterations += result.iterations_in_all;

@@ -42,14 +42,14 @@ LiftWeights rows_of(const LiftWeights& weights, const std::vector<int>& rows) {
 
 }  // namespace
 
-MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
+MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, const RunContext& context)
     : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
       subspace_(subspace),
       mesh_(mesh),
       regions_(subspace),
       stiffness_(energy_.matrix()),
       rigid_(rigid_modes(subspace.sampling.points)),
-      spread_(lift_weights(mesh.vertices, subspace.sampling.points, subspace.sampling.radius, RunContext{})),
+      spread_(lift_weights(mesh.vertices, subspace.sampling.points, subspace.sampling.radius, context)),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)} {}
 
 VectorXd MovingSystem::at_rest(const VectorXd& coordinates) const {

@@ -23,7 +23,7 @@ namespace orbifit {
 class MovingSystem final : public DeformationSystem {
  public:
   /// References are kept. \param subspace  of mode moving
-  MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch);
+  MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, const RunContext& context = RunContext{});
 
   /// Groups as at rest, at these coordinates of the subspace's own basis.
   Eigen::VectorXd at_rest(const Eigen::VectorXd& coordinates) const;

@@ -1,8 +1,11 @@
 #include "orbifit/subspace/handles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -87,6 +90,19 @@ Motion read_motion(const HandleReader& reader, const Json& object, const std::st
   return motion;
 }
 
+std::string nothing_within(const Mesh& mesh, const Eigen::Vector3d& centre, double radius) {
+  Eigen::Index nearest = 0;
+  const double distance =
+      std::sqrt((mesh.vertices.rowwise() - centre.transpose()).rowwise().squaredNorm().minCoeff(&nearest));
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "takes no vertex of the mesh: the nearest, %lld at %.4g %.4g %.4g, is %.4g from the centre, the radius "
+                "is %.4g",
+                static_cast<long long>(nearest), mesh.vertices(nearest, 0), mesh.vertices(nearest, 1),
+                mesh.vertices(nearest, 2), distance, radius);
+  return text.data();
+}
+
 Handle read_handle(const HandleReader& reader, const Json& object, const std::string& key, const Mesh& mesh) {
   if (!object.is_object()) reader.fail(key, "must be an object");
   const std::string inside = key + ".";
@@ -104,7 +120,9 @@ Handle read_handle(const HandleReader& reader, const Json& object, const std::st
     }
     const double radius = reader.number(object, "radius", inside, 0);
     if (!(radius > 0)) reader.fail(inside + "radius", "must be positive");
-    handle.vertices = vertices_within(mesh, reader.vector(object, "centre", inside), radius);
+    const Eigen::Vector3d centre = reader.vector(object, "centre", inside);
+    handle.vertices = vertices_within(mesh, centre, radius);
+    if (handle.vertices.empty()) reader.fail(key + " \"" + handle.name + "\"", nothing_within(mesh, centre, radius));
   }
   if (handle.vertices.empty()) reader.fail(key + " \"" + handle.name + "\"", "takes no vertex of the mesh");
   const Eigen::Vector3d centroid = mesh.vertices(handle.vertices, Eigen::all).colwise().mean();

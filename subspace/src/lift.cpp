@@ -1,5 +1,6 @@
 #include "orbifit/subspace/lift.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -9,7 +10,8 @@ namespace orbifit {
 
 namespace {
 constexpr double kCutOff = 0.001;
-}
+constexpr std::size_t kAtOnce = 256;  // points between two looks at the time
+}  // namespace
 
 LiftWeights lift_weights(const Points& points, const Points& samples, double sigma, const RunContext& context) {
   const PointIndex index(samples);
@@ -18,6 +20,7 @@ LiftWeights lift_weights(const Points& points, const Points& samples, double sig
   std::vector<std::vector<Eigen::Triplet<double>>> rows(count);
   parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
+      if (p % kAtOnce == 0) context.check();
       const auto row = static_cast<Eigen::Index>(p);
       const Eigen::Vector3d point = points.row(row);
       double total = 0;
@@ -32,6 +35,7 @@ LiftWeights lift_weights(const Points& points, const Points& samples, double sig
         total = 1;
       }
       for (auto& entry : rows[p]) entry = Eigen::Triplet<double>(row, entry.col(), entry.value() / total);
+      std::ranges::sort(rows[p], {}, [](const auto& entry) { return entry.col(); });
     }
   });
   LiftWeights weights(points.rows(), samples.rows());
@@ -39,7 +43,7 @@ LiftWeights lift_weights(const Points& points, const Points& samples, double sig
   for (std::size_t p = 0; p < count; ++p) sizes[static_cast<Eigen::Index>(p)] = static_cast<int>(rows[p].size());
   weights.reserve(sizes);
   for (const auto& row : rows) {
-    for (const auto& entry : row) weights.insert(entry.row(), entry.col()) = entry.value();
+    for (const auto& entry : row) weights.insert(entry.row(), entry.col()) = entry.value();  // at the row's end
   }
   weights.makeCompressed();
   return weights;

@@ -128,6 +128,67 @@ TEST_F(OrbifitAnnotate, TakesAPlaneAsItIsGiven) {
   EXPECT_DOUBLE_EQ(annotation("out.json").regions[0].centre.x(), 0.001);
 }
 
+TEST_F(OrbifitAnnotate, SaysAtWhichToleranceARejectedRegionWouldPass) {
+  const std::string line =
+      "annotate cubes.ply -o out.json --seed-face 0 --no-refine --plane 0.01 0 0 1 0 0 --tolerance ";
+  const ProgramResult refused = program_.run(line + "0.002");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.errors.find("fits, at least 96 % must"), std::string::npos) << refused.errors;
+  const std::string advice = "it would pass with --tolerance ";
+  const std::size_t at = refused.errors.find(advice);
+  ASSERT_NE(at, std::string::npos) << refused.errors;
+  const std::string tolerance =
+      refused.errors.substr(at + advice.size(), refused.errors.find(';', at) - at - advice.size());
+  EXPECT_EQ(program_.run(line + tolerance).code, 0) << tolerance;
+}
+
+TEST_F(OrbifitAnnotate, TakesTheFaceNearestToAPoint) {
+  const std::string place = "--group C4 --axis 1.3 0.4 0.9 ";
+  const Eigen::Vector3d axis = axis_rotation(Eigen::Vector3d(0.48, 0.6, 0.64), 0.7).col(2);
+  const std::string direction =
+      std::to_string(axis.x()) + " " + std::to_string(axis.y()) + " " + std::to_string(axis.z()) + " ";
+  const ProgramResult result = program_.run("annotate cubes.ply -o out.json --near 1.3 0.4 1.2 " + place + direction);
+  ASSERT_EQ(result.code, 0) << result.errors;
+  const SymmetryAnnotation found = annotation("out.json");
+  ASSERT_EQ(found.regions.size(), 1U);
+  EXPECT_EQ(found.regions[0].faces.front(), cube_faces_) << "the small cube, which follows the large one";
+}
+
+TEST_F(OrbifitAnnotate, ListsRemovesAndRenames) {
+  SymmetryAnnotation three = empty_annotation(mesh_, 0.005);
+  std::vector<int> faces(static_cast<std::size_t>(cube_faces_));
+  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = static_cast<int>(f);
+  for (const int count : {cube_faces_, cube_faces_ / 6, cube_faces_ / 12}) {
+    Region region = make_region({PointGroup::Family::Cs, 1}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),
+                                {faces.begin(), faces.begin() + count}, "part of " + std::to_string(count));
+    region.id = static_cast<int>(three.regions.size());
+    three.regions.push_back(region);
+  }
+  set_parents(three.regions);
+  ASSERT_EQ(three.regions[2].parent, 1);
+  write_annotation(file("three.json"), three);
+  const std::string call = "annotate cubes.ply --annotation three.json ";
+  const ProgramResult list = program_.run(call + "--list");
+  EXPECT_EQ(list.code, 0) << list.errors;
+  for (const Region& region : three.regions) EXPECT_NE(list.output.find(region.name), std::string::npos) << list.output;
+
+  const ProgramResult edited = program_.run(call + "--remove 1 --rename 2 small -o edited.json --json");
+  ASSERT_EQ(edited.code, 0) << edited.errors;
+  const json report = json::parse(edited.output);
+  EXPECT_EQ(report["changes"].size(), 2U);
+  ASSERT_EQ(report["regions"].size(), 2U);
+  const SymmetryAnnotation rest = annotation("edited.json");
+  ASSERT_EQ(rest.regions.size(), 2U);
+  EXPECT_EQ(rest.regions[0].id, 0);
+  EXPECT_EQ(rest.regions[1].id, 2);
+  EXPECT_EQ(rest.regions[1].name, "small");
+  EXPECT_EQ(rest.regions[1].parent, 0);
+
+  ASSERT_EQ(program_.run(call + "--remove 0,1,2 -o none.json").code, 0);
+  EXPECT_TRUE(annotation("none.json").regions.empty());
+  EXPECT_EQ(program_.run(call + "--list").output, list.output) << "without -o nothing is written";
+}
+
 struct Bad {
   std::string name, arguments;
   int code;
@@ -150,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Bad{"FaceTooHigh", "cubes.ply --plane 0 0 0 0 0 1 --seed-face 480", 2, "the seed face is 480"},
         Bad{"FaceNegative", "cubes.ply --plane 0 0 0 0 0 1 --seed-face -1", 2, "the seed face is -1"},
-        Bad{"NoFace", "cubes.ply --plane 0 0 0 0 0 1", 2, "--seed-face is required"},
+        Bad{"NoFace", "cubes.ply --plane 0 0 0 0 0 1", 2, "a face of the region is needed"},
         Bad{"ZeroDirection", "cubes.ply --plane 0 0 0 0 0 0 --seed-face 0", 2, "the direction is 0 0 0"},
         Bad{"NotFinite", "cubes.ply --axis 0 nan 0 0 0 1 --seed-face 0", 2, "is not finite"},
         Bad{"NoPlace", "cubes.ply --seed-face 0", 2, "one of --plane, --axis and --centre is needed"},
@@ -161,6 +222,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"UnknownGroup", "cubes.ply --axis 0 0 0 0 0 1 --group Q4 --seed-face 0", 2, "--group is 'Q4'"},
         Bad{"GroupOfPlane", "cubes.ply --plane 0 0 0 0 0 1 --group C4 --seed-face 0", 2, "a plane's group is Cs"},
         Bad{"GroupAndOrder", "cubes.ply --axis 0 0 0 0 0 1 --group C4 --order 4 --seed-face 0", 2, "says it already"},
+        Bad{"RemoveUnknown", "cubes.ply --annotation old.json --remove 0,4", 2,
+            "--remove: the annotation has no region 4"},
+        Bad{"RenameUnknown", "cubes.ply --annotation old.json --rename 4 seat", 2,
+            "--rename: the annotation has no region 4"},
+        Bad{"ListOfNothing", "cubes.ply --list", 2, "--list requires --annotation"},
+        Bad{"NearNowhere", "cubes.ply --plane 0 0 0 0 0 1 --near nan 0 0", 2, "--near"},
         Bad{"Tolerance", "cubes.ply --plane 0 0 0 0 0 1 --tolerance 0.5 --seed-face 0", 2, "tolerance"},
         Bad{"OtherMesh", "other.ply --annotation old.json --plane 0 0 0 0 0 1 --seed-face 0", 3,
             "the annotation is of a mesh with"},

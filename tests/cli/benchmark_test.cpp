@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/file.h"
+#include "orbifit/model/mesh_io.h"
 
+#include "cube.h"
 #include "program.h"
 
 namespace orbifit {
@@ -141,17 +143,64 @@ TEST_F(BenchmarkProgram, DetectionWritesTheSameFilesForTheSameSeed) {
   EXPECT_TRUE(truth["optional_regions"].is_array());
 }
 
+TEST_F(BenchmarkProgram, RealMeshesAreFoundInFoldersDetectedAndDragged) {
+  const TemporaryFolder& folder = program_.folder();
+  for (const char* name : {"meshes", "meshes/original", "meshes/further"}) {
+    std::filesystem::create_directory(folder.file(name));
+  }
+  const Mesh cube = cube_mesh();
+  write_mesh(folder.file("meshes/cube.obj"), cube);
+  write_mesh(folder.file("meshes/further/cube.off"), cube);
+  write_mesh(folder.file("meshes/original/box.obj"), cube);
+  folder.write("meshes/scan.ply",
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+               "end_header\n0 0 0\n");
+  folder.write("meshes/torn.stl", "solid torn\n");
+  folder.write("meshes/notes.txt", "no mesh\n");
+  const std::string line = "real meshes --annotations detected --csv real.csv";
+  const ProgramResult result = program_.run(line);
+  EXPECT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(result.errors.find("1 file without faces passed over"), std::string::npos) << result.errors;
+  EXPECT_NE(result.output.find("3 meshes, 2 of 3 (66.7 %) without any failure"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("torn"), std::string::npos);
+  EXPECT_EQ(result.output.find("box"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("detected/meshes_cube.json")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("detected/further_cube.json")));
+  std::istringstream rows(read_file(folder.file("real.csv")));
+  std::string row;
+  std::getline(rows, row);
+  int exact = 0;
+  while (std::getline(rows, row)) {
+    std::vector<std::string> cells;
+    std::istringstream columns(row);
+    for (std::string one; std::getline(columns, one, ',');) cells.push_back(one);
+    if (cells[0] == "\"torn\"") continue;
+    ASSERT_GE(cells.size(), 18U) << row;
+    EXPECT_EQ(cells[4], cells[10]) << "of a cube all is kept: " << row;
+    EXPECT_EQ(cells[12], "1") << row;
+    EXPECT_LE(std::stod(cells[15]), 1e-12) << row;
+    EXPECT_LE(std::stod(cells[16]), 1e-12) << row;
+    EXPECT_GE(std::stol(cells[17]), 48 * cube.vertices.rows()) << "each image of each vertex is a vertex: " << row;
+    ++exact;
+  }
+  EXPECT_EQ(exact, 6);
+  const ProgramResult again = program_.run(line);
+  EXPECT_NE(again.output.find("  read"), std::string::npos) << again.output;
+}
+
 TEST_F(BenchmarkProgram, RefusesWhatItCannotMeasure) {
   for (const char* line :
        {"", "table2", "table1 --models teapot", "table1 --repeat 0", "table1 --threads 0", "scaling --most 3",
-        "scaling --most nan", "scaling --model teapot", "detection --models cube", "detection --forms soup",
-        "detection --noise -1", "detection --noise nan", "detection --threads 0", "detection --tolerance 1"}) {
+        "scaling --most nan", "scaling --model teapot", "detection --models cube", "detection --forms soup", "real",
+        "real . --modes turned", "real . --threads 0", "real . --stage-limit -1", "detection --noise -1",
+        "detection --noise nan", "detection --threads 0", "detection --tolerance 1"}) {
     const ProgramResult result = program_.run(line);
     EXPECT_EQ(result.code, 2) << line;
     EXPECT_TRUE(result.errors.starts_with("orbifit")) << result.errors;
   }
   EXPECT_EQ(program_.run("table1 --models bar --json missing/table.json").code, 3);
   EXPECT_EQ(program_.run("detection --models boulder --write missing/cases").code, 3);
+  EXPECT_EQ(program_.run("real missing").code, 3);
 }
 
 }  // namespace

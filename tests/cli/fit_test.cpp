@@ -57,6 +57,15 @@ TEST_F(OrbifitFit, LeavesOutTheGroupsThatAreNamed) {
   for (const Region& region : after.regions) EXPECT_NE(region.id, whole);
 }
 
+TEST_F(OrbifitFit, WritesNoMeshAboveTheLargestResidualAsked) {
+  EXPECT_NE(run(fit_ + "-o fitted.ply --max-residual 1e-9").find("symmetric to "), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(file("fitted.ply")));
+  const ProgramResult refused = program_.run(fit_ + "-o rough.ply --lift paper --max-residual 1e-9");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.errors.find("no mesh was written"), std::string::npos) << refused.errors;
+  EXPECT_FALSE(std::filesystem::exists(file("rough.ply")));
+}
+
 TEST_F(OrbifitFit, RelaxesNothingThatTheScanHas) {
   const json report = json::parse(run(fit_ + "-o fitted.ply --auto-relax --json"));
   EXPECT_EQ(report["relaxed"], json::array());

@@ -221,6 +221,121 @@ TEST(SymmetryResidual, IsTheSameOnTwoThreads) {
   }
 }
 
+// A box from `low` to `high` with vertices of its own, each side a grid of `cells` by `cells`.
+void add_box(Mesh& mesh, const Vector3d& low, const Vector3d& high, int cells) {
+  std::vector<Eigen::RowVector3d> vertices;
+  std::vector<Eigen::RowVector3i> faces;
+  const int first = static_cast<int>(mesh.vertices.rows());
+  // One surface: a vertex on the border of two sides is one.
+  const auto vertex = [&](const Eigen::Vector3i& at) {
+    const Vector3d share = at.cast<double>() / cells;
+    const Eigen::RowVector3d point = (low + share.cwiseProduct(high - low)).transpose();
+    const auto known = std::ranges::find(vertices, point);
+    if (known != vertices.end()) return first + static_cast<int>(known - vertices.begin());
+    vertices.push_back(point);
+    return first + static_cast<int>(vertices.size()) - 1;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int side : {0, cells}) {
+      for (int i = 0; i < cells; ++i) {
+        for (int j = 0; j < cells; ++j) {
+          const auto corner = [&](int a, int b) {
+            Eigen::Vector3i at;
+            at[axis] = side;
+            at[(axis + 1) % 3] = i + a;
+            at[(axis + 2) % 3] = j + b;
+            return vertex(at);
+          };
+          const int ring[4] = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+          const bool out = side != 0;
+          faces.emplace_back(ring[0], ring[out ? 1 : 2], ring[out ? 2 : 1]);
+          faces.emplace_back(ring[0], ring[out ? 2 : 3], ring[out ? 3 : 2]);
+        }
+      }
+    }
+  }
+  mesh.vertices.conservativeResize(first + static_cast<Eigen::Index>(vertices.size()), 3);
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    mesh.vertices.row(first + static_cast<Eigen::Index>(v)) = vertices[v];
+  const Eigen::Index before = mesh.faces.rows();
+  mesh.faces.conservativeResize(before + static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t f = 0; f < faces.size(); ++f) mesh.faces.row(before + static_cast<Eigen::Index>(f)) = faces[f];
+}
+
+// Boxes, and the mirror x -> -x of all of them.
+class Boxes : public testing::Test {
+ protected:
+  // A box from `low` to `high` and one in its mirror image, each face of which has other vertices.
+  void add_pair(Vector3d low, Vector3d high, int cells, int mirrored_cells) {
+    add_box(model_.mesh, low, high, cells);
+    ends_.push_back(model_.mesh.vertices.rows());
+    const double left = low.x();
+    low.x() = -high.x();
+    high.x() = -left;
+    add_box(model_.mesh, low, high, mirrored_cells);
+    ends_.push_back(model_.mesh.vertices.rows());
+  }
+
+  void annotate() {
+    model_.truth = empty_annotation(model_.mesh, 0.005);
+    std::vector<int> faces(static_cast<std::size_t>(model_.mesh.faces.rows()));
+    std::iota(faces.begin(), faces.end(), 0);
+    model_.truth.regions.push_back(
+        make_region({PointGroup::Family::Cs, 1}, Vector3d::Zero(), frame_about(Vector3d::UnitX()), faces, "boxes"));
+  }
+
+  void move_box(Mesh& mesh, std::size_t box, const Vector3d& step) const {
+    for (Eigen::Index v = box == 0 ? 0 : ends_[box - 1]; v < ends_[box]; ++v) mesh.vertices.row(v) += step.transpose();
+  }
+
+  GeneratedModel model_;
+  std::vector<Eigen::Index> ends_;  // of the boxes' vertices
+};
+
+TEST_F(Boxes, ThatTouchArePairedWithTheirCounterparts) {
+  // Two planks side by side, their mirror images with a joint a little off: there images of one plank's vertices lie on
+  // the other's counterpart.
+  constexpr double kJoint = 1e-3;
+  add_pair({0.5, 0, 0}, {1.5 + kJoint, 1, 0.1}, 2, 3);
+  add_pair({1.5, 0, 0}, {2.5, 1, 0.1}, 3, 4);
+  model_.mesh.vertices = model_.mesh.vertices.eval();
+  for (Eigen::Index v = ends_[0]; v < ends_[1]; ++v) {
+    if (model_.mesh.vertices(v, 0) < -1.5) model_.mesh.vertices(v, 0) = -1.5;
+  }
+  annotate();
+  const double size = diagonal(model_.mesh.vertices);
+  Mesh deformed = model_.mesh;
+  const Vector3d up(0, 0, 0.2);
+  for (const std::size_t plank : {0U, 1U}) move_box(deformed, plank, up);
+  const RegionResidual region = measure(model_, &deformed, CarriedMotions::fixed).regions.front();
+  EXPECT_LE(region.floor.max, 1.01 * kJoint / size);
+  EXPECT_LE(region.deformed.max, 1.01 * kJoint / size);
+  // A plank that goes up alone is still seen in full.
+  deformed = model_.mesh;
+  move_box(deformed, 0, up);
+  EXPECT_NEAR(measure(model_, &deformed, CarriedMotions::fixed).regions.front().deformed.max * size, up.z(), 0.02);
+}
+
+TEST_F(Boxes, InOnePlaceAreToldApartOnceTheyAreDeformed) {
+  for (const CarriedMotions motions : {CarriedMotions::fixed, CarriedMotions::floating, CarriedMotions::moving}) {
+    model_ = {};
+    ends_.clear();
+    add_pair({0.5, 0, 0}, {1.5, 1, 0.5}, 2, 3);
+    add_pair({2, 0, 0}, {3, 1, 0.5}, 3, 3);
+    add_pair({2, 0, 0}, {3, 1, 0.5}, 4, 4);
+    annotate();
+    // Of the boxes in one place the first on one side is the image of the second on the other.
+    Mesh deformed = model_.mesh;
+    const Vector3d step(0.1, 0.2, 0.3);
+    move_box(deformed, 2, step);
+    move_box(deformed, 5, step.cwiseProduct(Vector3d(-1, 1, 1)));
+    const SymmetryReport report = measure(model_, &deformed, motions);
+    EXPECT_LT(report.worst_deformed, 1e-12);
+    move_box(deformed, 5, Vector3d(0, 0.01, 0));
+    EXPECT_GT(measure(model_, &deformed, motions).worst_deformed * diagonal(deformed.vertices), 0.002);
+  }
+}
+
 TEST(SymmetryResidual, RefusesAnotherConnectivity) {
   const GeneratedModel model = square();
   Mesh deformed = model.mesh;

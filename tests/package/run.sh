@@ -9,3 +9,10 @@ cmake --install "$build" --prefix "$work/prefix" >/dev/null
 cmake -S "$here" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build "$work/build"
 "$work/build/consumer"
+
+# The example edits a chair, which then has the symmetries that detection finds in it at rest.
+orbifit=$work/prefix/bin/orbifit
+"$orbifit" generate chair -o "$work" --quiet >/dev/null
+"$work/build/edit" "$work/chair.ply" "$work/edited.ply"
+"$orbifit" detect "$work/chair.ply" -o "$work/chair.json" --quiet >/dev/null
+"$orbifit" check "$work/chair.ply" "$work/chair.json" --deformed "$work/edited.ply" --max-residual 1e-9

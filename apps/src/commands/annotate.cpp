@@ -15,6 +15,7 @@
 #include "orbifit/subspace/shared_axes.h"
 
 #include "../commands.h"
+#include "annotation_edits.h"
 
 namespace orbifit::commands {
 
@@ -24,10 +25,14 @@ constexpr int kHighestOrder = 1000;
 
 struct AnnotateArguments {
   std::string mesh, output, annotation, order, group, name;
-  std::vector<double> plane, axis, centre;
+  std::vector<double> plane, axis, centre, near;
   std::vector<int> seeds;
+  AnnotationEdits edits;
   double tolerance = 0.005;
   bool as_given = false;
+  bool list = false;
+
+  bool adds() const { return !plane.empty() || !axis.empty() || !centre.empty() || !seeds.empty() || !near.empty(); }
 };
 
 // "PX PY PZ" or "PX PY PZ DX DY DZ": a point, and where there are six a direction.
@@ -59,6 +64,9 @@ RegionHint to_hint(const AnnotateArguments& arguments) {
   const int places = static_cast<int>(!arguments.plane.empty()) + static_cast<int>(!arguments.axis.empty()) +
                      static_cast<int>(!arguments.centre.empty());
   if (places != 1) throw UsageError("one of --plane, --axis and --centre is needed, and no more than one");
+  if (arguments.seeds.empty() && arguments.near.empty()) {
+    throw UsageError("a face of the region is needed: --seed-face F, or a point near it: --near X Y Z");
+  }
   if (!arguments.plane.empty()) {
     read_place("--plane", arguments.plane, hint);
   } else if (!arguments.axis.empty()) {
@@ -84,13 +92,48 @@ double area_fraction(const PreparedMesh& prepared, const std::vector<int>& faces
   return area / prepared.area;
 }
 
-std::string reason_against(const GuidedRegion& found, const Mesh& mesh) {
+// What of the verification falls short, and of how much.
+std::string shortfall(const GuidedRegion& found) {
+  const Verification& got = found.verification;
+  const VerificationLimits asked;
+  const std::string faces = count_of(static_cast<long long>(found.region.faces.size()), "face");
+  if (passes(got)) return "it holds on " + faces + " elsewhere, but not where the seed faces are";
+  if (!got.complete || got.joint < asked.joint) {
+    return percent(got.joint) + " of the area of " + faces + " fits, at least " + percent(asked.joint) + " must";
+  }
+  if (got.worst < asked.worst) {
+    return "one of its motions fits " + percent(got.worst) + " of the area of " + faces + ", each must fit " +
+           percent(asked.worst);
+  }
+  if (got.cluster > asked.cluster) {
+    return "a piece of " + percent(got.cluster) + " of the area of " + faces + " has no image, at most " +
+           percent(asked.cluster) + " may be without";
+  }
+  return "of one part " + percent(got.part) + " of the area fits, at least " + percent(asked.part) + " must";
+}
+
+// The least tolerance tried at which the region stands; none up to the largest that detection takes.
+std::optional<double> larger_tolerance(const PreparedMesh& prepared, const std::shared_ptr<const SurfaceIndex>& whole,
+                                       const RegionHint& hint, GuidedRegionOptions options, const RunContext& context) {
+  constexpr double kStep = 1.5;
+  constexpr double kLargest = 0.1;  // DetectOptions::tolerance
+  while (options.tolerance * kStep <= kLargest) {
+    // As it will be printed.
+    options.tolerance = std::stod(short_number(options.tolerance * kStep, 2));
+    if (guided_region(prepared, whole, hint, options, context).stands) return options.tolerance;
+  }
+  return std::nullopt;
+}
+
+std::string reason_against(const GuidedRegion& found, const Mesh& mesh, const std::optional<double>& passing) {
   const std::string group = found.region.placement.group.symbol();
-  if (found.region.faces.empty()) return group + " does not hold: the surface around the seed faces is empty";
-  return group + " does not hold around the seed faces: " + percent(found.verification.joint) + " of the area of " +
-         count_of(static_cast<long long>(found.region.faces.size()), "face") + " fits, the residual is " +
+  const std::string advice = passing ? "it would pass with --tolerance " + short_number(*passing, 2)
+                                     : "no tolerance up to 0.1 of the diagonal would help";
+  const std::string end = "; " + advice + "; nothing was written";
+  if (found.region.faces.empty()) return group + " does not hold: the surface around the seed faces is empty" + end;
+  return group + " does not hold around the seed faces: " + shortfall(found) + "; the residual is " +
          percent(found.residual.rms) + " rms and " + percent(found.residual.max) + " at most of the diagonal, " +
-         short_number(diagonal(mesh.vertices), 6) + "; nothing was written";
+         short_number(diagonal(mesh.vertices), 6) + end;
 }
 
 nlohmann::ordered_json to_json(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
@@ -130,6 +173,27 @@ std::string to_text(const Region& region, const RegionAddition& addition, const 
   return text;
 }
 
+std::string lines(const std::vector<std::string>& changes) {
+  std::string text;
+  for (const std::string& change : changes) text += change + "\n";
+  return text;
+}
+
+nlohmann::ordered_json edits_json(const std::vector<std::string>& changes, const SymmetryAnnotation& annotation,
+                                  const Mesh& mesh) {
+  nlohmann::ordered_json result = annotation_list(annotation, mesh);
+  result["changes"] = changes;
+  return result;
+}
+
+std::string edits_text(const std::vector<std::string>& changes, const SymmetryAnnotation& annotation, const Mesh& mesh,
+                       bool list) {
+  return lines(changes) +
+         (list ? annotation_table(annotation, mesh)
+               : count_of(static_cast<long long>(annotation.regions.size()), "region") + " and " +
+                     count_of(static_cast<long long>(annotation.patterns.size()), "pattern") + " in the annotation\n");
+}
+
 void add_place(CLI::App& app, const std::string& option, std::vector<double>& values, int count,
                const std::string& help, const std::string& type) {
   app.add_option(option, values, help)->type_size(count)->expected(1)->type_name(type);
@@ -140,9 +204,20 @@ void add_place(CLI::App& app, const std::string& option, std::vector<double>& va
 CommandBody annotate(CLI::App& app) {
   const auto arguments = std::make_shared<AnnotateArguments>();
   app.add_option("MESH", arguments->mesh, "Mesh to annotate")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it the region is only shown")
+  app.add_option("-o,--output", arguments->output,
+                 "Annotation to write (.json); without it what would become of it is only shown")
       ->type_name("FILE");
-  app.add_option("--annotation", arguments->annotation, "Annotation to which the region is added")->type_name("FILE");
+  auto* given =
+      app.add_option("--annotation", arguments->annotation, "Annotation to change, or to which the region is added")
+          ->type_name("FILE");
+  app.add_flag("--list", arguments->list, "Show the annotation's regions and patterns, with their ids")->needs(given);
+  app.add_option("--remove", arguments->edits.remove, "Remove these regions (their ids); the others keep theirs")
+      ->delimiter(',')
+      ->needs(given)
+      ->type_name("ID,...");
+  app.add_option("--rename", arguments->edits.rename, "Give a region another name; may be given again")
+      ->needs(given)
+      ->type_name("ID NAME");
   add_place(app, "--plane", arguments->plane, 6, "Mirror plane, roughly: a point and the normal", "PX PY PZ NX NY NZ");
   add_place(app, "--axis", arguments->axis, 6, "Axis, roughly: a point and the direction", "PX PY PZ DX DY DZ");
   add_place(app, "--centre,--center", arguments->centre, 3, "Centre, roughly", "X Y Z");
@@ -151,24 +226,28 @@ CommandBody annotate(CLI::App& app) {
       ->type_name("N");
   app.add_option("--group", arguments->group, "The group itself, such as C4v (default: Cs, Ci, or the largest found)")
       ->type_name("SYMBOL");
-  app.add_option("--seed-face", arguments->seeds, "Face of the region, numbered from 0; may be given again")
-      ->required()
+  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be given again")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("F");
+  add_place(app, "--near", arguments->near, 3,
+            "A point at the region: the face nearest to it is taken as one of the region's", "X Y Z");
   app.add_option("--name", arguments->name, "Name of the region")->type_name("TEXT");
   app.add_option("--tolerance", arguments->tolerance,
                  "Largest distance that counts as symmetric, as a fraction of the diagonal "
                  "(default: that of --annotation, or 0.005)");
   app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as it is given");
   return [arguments, &app](CommandContext& context) {
-    const RegionHint hint = to_hint(*arguments);
+    const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list);
+    RegionHint hint;
+    if (adds) hint = to_hint(*arguments);
+    const Eigen::Vector3d near =
+        arguments->near.empty() ? Eigen::Vector3d::Zero() : to_point("--near", arguments->near);
     if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
     DetectOptions limits;
     limits.tolerance = arguments->tolerance;
     limits.validate();
     const Mesh mesh = read_mesh(arguments->mesh);
-    hint.validate(static_cast<int>(mesh.faces.rows()));
     GuidedRegionOptions options;
     options.tolerance = arguments->tolerance;
     SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
@@ -176,19 +255,37 @@ CommandBody annotate(CLI::App& app) {
       annotation = read_annotation(arguments->annotation, mesh);
       if (app.count("--tolerance") == 0) options.tolerance = annotation.tolerance;
     }
+    const std::vector<std::string> changes = apply_edits(arguments->edits, annotation);
     context.run.check();
+    if (!adds) {
+      if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
+      print(context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
+                         : edits_text(changes, annotation, mesh, arguments->list));
+      return kDone;
+    }
     const PreparedMesh prepared = prepare(mesh);
     const auto whole = std::make_shared<const SurfaceIndex>(prepared.mesh);
+    if (!arguments->near.empty()) hint.seeds.push_back(whole->nearest(near).face);
+    hint.validate(static_cast<int>(mesh.faces.rows()));
     GuidedRegion found = guided_region(prepared, whole, hint, options, context.run);
-    if (!found.stands) throw NoResultError(reason_against(found, mesh));
+    if (!found.stands) {
+      throw NoResultError(reason_against(found, mesh, larger_tolerance(prepared, whole, hint, options, context.run)));
+    }
     found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
     const RegionAddition addition = add_region(prepared, found.region, found.residual, options.tolerance, annotation);
     if (hint.refine) annotation = share_axes(mesh, annotation, options.tolerance, MayMove::inexact);
     if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
     const Region& region = annotation.regions[static_cast<std::size_t>(addition.id)];
     const std::size_t count = annotation.regions.size();
-    print(context.json ? to_json(region, addition, found, prepared, count).dump(2) + "\n"
-                       : to_text(region, addition, found, prepared, count));
+    if (context.json) {
+      nlohmann::ordered_json result = to_json(region, addition, found, prepared, count);
+      if (!changes.empty()) result["changes"] = changes;
+      if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
+      print(result.dump(2) + "\n");
+      return kDone;
+    }
+    print(lines(changes) + to_text(region, addition, found, prepared, count) +
+          (arguments->list ? annotation_table(annotation, mesh) : ""));
     return kDone;
   };
 }

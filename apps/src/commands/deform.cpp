@@ -13,6 +13,7 @@
 #include "orbifit/subspace/subspace_io.h"
 
 #include "../commands.h"
+#include "../edit_warnings.h"
 #include "../subspace_arguments.h"
 
 namespace orbifit::commands {
@@ -23,6 +24,8 @@ struct DeformArguments {
   std::string mesh, annotation, handles, output, annotation_output, basis;
   std::string laplacian = "graph";
   int iterations = 0;
+  std::vector<int> without;
+  double max_residual = 0;
   SubspaceArguments subspace;
 };
 
@@ -50,10 +53,18 @@ CommandBody deform(CLI::App& app) {
       ->capture_default_str();
   auto* basis =
       app.add_option("--basis", arguments->basis, "Stored basis to load instead of building one")->type_name("FILE");
+  app.add_option("--max-residual", arguments->max_residual,
+                 "Write nothing and exit with 1 where the edit is less symmetric than this fraction of the diagonal")
+      ->type_name("R");
+  add_without_option(app, arguments->without);
   add_subspace_options(app, arguments->subspace);
   exclude_subspace_options(app, *basis);
-  return [arguments](CommandContext& context) {
+  return [arguments, &app](CommandContext& context) {
     arguments->subspace.options.validate();
+    const bool limited = app.count("--max-residual") > 0;
+    if (limited && !(arguments->max_residual >= 0)) {
+      throw UsageError("--max-residual is " + short_number(arguments->max_residual) + ": must be at least 0");
+    }
     const std::string& radius_field = arguments->subspace.radius_field;
     check_output(arguments->output, {}, {arguments->annotation, arguments->handles, arguments->basis, radius_field});
     if (!arguments->annotation_output.empty()) {
@@ -61,7 +72,7 @@ CommandBody deform(CLI::App& app) {
                    {arguments->mesh, arguments->handles, arguments->output, arguments->basis, radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = without(arguments->without, read_annotation(arguments->annotation, mesh));
     HandleSet set = read_handles(arguments->handles, mesh);
     if (arguments->iterations > 0) set.iterations = arguments->iterations;
 
@@ -83,9 +94,15 @@ CommandBody deform(CLI::App& app) {
     edited.vertices += vertex_displacements(built, deformation.state, context.run);
     const auto lifted = Clock::now();
     const double worst_field = worst_field_residual(built, mesh, annotation, deformation.state, context.run);
+    const std::vector<std::string> warnings = edit_warnings(mesh, annotation, built, set.handles, edited, worst_field);
+    for (const std::string& warning : warnings) context.run.message("warning: " + warning);
     context.run.check();
-    write_mesh(arguments->output, edited);
-    if (!arguments->annotation_output.empty()) {
+    const bool within = !limited || worst_field <= arguments->max_residual;
+    const std::string refusal = "the edit is only " + exactness(worst_field) + ", above --max-residual " +
+                                short_number(arguments->max_residual) + "; nothing was written";
+    if (!within && !context.json) throw NoResultError(refusal);
+    if (within) write_mesh(arguments->output, edited);
+    if (within && !arguments->annotation_output.empty()) {
       write_annotation(arguments->annotation_output, carried_annotation(annotation, built, deformation.state, edited));
     }
 
@@ -103,21 +120,24 @@ CommandBody deform(CLI::App& app) {
                                            {"handle_error", missed},
                                            {"last_change", deformation.last_change / size},
                                            {"field_residual", worst_field},
+                                           {"warnings", warnings},
+                                           {"written", within},
                                            {"milliseconds",
                                             {{"subspace", milliseconds(start, with_subspace)},
                                              {"prefactor", milliseconds(with_subspace, factorised)},
                                              {"solve", milliseconds(factorised, solved)},
                                              {"lift", milliseconds(solved, lifted)}}}};
       print(summary.dump(2) + "\n");
+      if (!within) throw NoResultError(refusal);
       return kDone;
     }
     print(arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
-          count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", handles missed by " +
-          short_number(100 * missed, 3) + " % of the diagonal\n" + (loads ? "basis loaded " : "subspace ") +
-          short_number(milliseconds(start, with_subspace), 3) + " ms, prefactor " +
-          short_number(milliseconds(with_subspace, factorised), 3) + " ms, " + count_of(set.iterations, "iteration") +
-          " " + short_number(milliseconds(factorised, solved), 3) + " ms, lift " +
-          short_number(milliseconds(solved, lifted), 3) + " ms\n");
+          count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", " +
+          exactness(worst_field) + ", handles missed by " + short_number(100 * missed, 3) + " % of the diagonal\n" +
+          (loads ? "basis loaded " : "subspace ") + short_number(milliseconds(start, with_subspace), 3) +
+          " ms, prefactor " + short_number(milliseconds(with_subspace, factorised), 3) + " ms, " +
+          count_of(set.iterations, "iteration") + " " + short_number(milliseconds(factorised, solved), 3) +
+          " ms, lift " + short_number(milliseconds(solved, lifted), 3) + " ms\n");
     return kDone;
   };
 }

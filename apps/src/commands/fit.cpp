@@ -18,6 +18,7 @@
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
+#include "../edit_warnings.h"
 #include "../fit_report.h"
 #include "../subspace_arguments.h"
 
@@ -31,6 +32,7 @@ struct FitArguments {
   std::vector<double> viewpoint;
   bool aligned = false;
   std::vector<int> without;
+  double max_residual = 0;
   FitOptions options;
   SubspaceArguments subspace;
 };
@@ -43,25 +45,15 @@ void check_outputs(const FitArguments& arguments) {
   if (!arguments.annotation_output.empty()) check_output(arguments.annotation_output, {".json"}, inputs);
 }
 
-SymmetryAnnotation without(const std::vector<int>& ids, const Mesh& mesh, const SymmetryAnnotation& annotation,
-                           const RunContext& context) {
-  for (const int id : ids) {
-    if (std::ranges::find(annotation.regions, id, &Region::id) == annotation.regions.end()) {
-      throw UsageError("--without: the annotation has no region " + std::to_string(id));
-    }
-  }
-  return closable(mesh, without_regions(annotation, ids), context);
-}
-
 std::string to_text(const FitArguments& arguments, const FitResult& result, const SymmetryReport& symmetry) {
   double seconds = 0;
   for (const StageTime& time : result.times) seconds += time.seconds;
   std::string text = arguments.output + ": " + percent(result.inlier_fraction) + " of the scan " +
                      (result.used_fraction < 1 ? "(" + percent(1 - result.used_fraction) + " left out) " : "") +
                      "within " + percent(arguments.options.inlier_distance) + " of the diagonal (rms " +
-                     percent(result.rms) + "), " + percent(result.hidden_fraction) + " of the surface not seen\n";
-  text += "symmetry residual added " + short_number(symmetry.worst_excess, 3) + ", field residual " +
-          short_number(result.field_residual, 3) + "\n";
+                     percent(result.rms) + "), " + percent(result.hidden_fraction) + " of the surface not seen; " +
+                     exactness(result.field_residual) + "\n";
+  text += "symmetry residual added to the mesh " + short_number(symmetry.worst_excess, 3) + "\n";
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
           count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
@@ -98,17 +90,22 @@ CommandBody fit(CLI::App& app) {
                  "From where all of the scan was seen, where its file does not say: 0 0 0 in a camera's frame")
       ->expected(3)
       ->type_name("X Y Z");
-  app.add_option("--without", arguments->without, "Do not keep the groups of these regions (their ids)")
-      ->delimiter(',')
-      ->type_name("ID,...");
+  app.add_option("--max-residual", arguments->max_residual,
+                 "Write no mesh and exit with 1 where the fit is less symmetric than this fraction of the diagonal")
+      ->type_name("R");
+  add_without_option(app, arguments->without);
   app.add_flag("--auto-relax", options.relax, "Do not keep the groups that the scan has not, as a fit without shows");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
   app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
   add_subspace_options(app, arguments->subspace);
-  return [arguments](CommandContext& context) {
+  return [arguments, &app](CommandContext& context) {
     FitOptions& chosen = arguments->options;
+    const bool limited = app.count("--max-residual") > 0;
+    if (limited && !(arguments->max_residual >= 0)) {
+      throw UsageError("--max-residual is " + short_number(arguments->max_residual) + ": must be at least 0");
+    }
     chosen.place = !arguments->aligned && arguments->landmarks.empty() && arguments->handles.empty();
     chosen.align = !arguments->aligned;
     chosen.subspace = arguments->subspace.options;
@@ -129,7 +126,7 @@ CommandBody fit(CLI::App& app) {
     SymmetryAnnotation annotation =
         arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
                                       : read_annotation(arguments->annotation, mesh);
-    if (!arguments->without.empty()) annotation = without(arguments->without, mesh, annotation, context.run);
+    if (!arguments->without.empty()) annotation = closable(mesh, without(arguments->without, annotation), context.run);
     using Clock = std::chrono::steady_clock;
     const auto began = Clock::now();
     const auto subspace = std::make_shared<Subspace>(build_closable(mesh, annotation, chosen.subspace, context.run));
@@ -153,6 +150,13 @@ CommandBody fit(CLI::App& app) {
     if (!result.converged) {
       throw NoResultError("the fit of " + arguments->mesh + " to " + arguments->scan +
                           " failed: " + result.stopped_because);
+    }
+    if (limited && !(result.field_residual <= arguments->max_residual)) {
+      throw NoResultError("the fit is only " + exactness(result.field_residual) + ", above --max-residual " +
+                          short_number(arguments->max_residual) + "; no mesh was written");
+    }
+    if (result.field_residual > kExactResidual) {
+      context.run.message("warning: the fit is only " + exactness(result.field_residual));
     }
     write_mesh(arguments->output, result.fitted);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);

@@ -23,6 +23,7 @@ namespace {
 
 struct Arguments {
   std::string mesh, annotation, output;
+  std::vector<int> without;
   SubspaceArguments subspace;
   bool compare_lifts = false;
 };
@@ -97,6 +98,7 @@ CommandBody subspace(CLI::App& app) {
   app.add_option("MESH", arguments->mesh, "Mesh")->required();
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required();
   app.add_option("-o,--output", arguments->output, "Basis to write, for deform --basis")->type_name("FILE");
+  add_without_option(app, arguments->without);
   add_subspace_options(app, arguments->subspace);
   app.add_flag("--compare-lifts", arguments->compare_lifts, "Report the residuals of the other lift as well");
   return [arguments](CommandContext& context) {
@@ -106,7 +108,7 @@ CommandBody subspace(CLI::App& app) {
       check_output(arguments->output, {}, {arguments->mesh, arguments->annotation, arguments->subspace.radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = without(arguments->without, read_annotation(arguments->annotation, mesh));
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = std::chrono::steady_clock::now();
     const Subspace built = build_closable(mesh, annotation, options, context.run);

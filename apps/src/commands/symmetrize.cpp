@@ -12,6 +12,7 @@
 
 #include "../commands.h"
 #include "../residual_json.h"
+#include "../subspace_arguments.h"
 
 namespace orbifit::commands {
 
@@ -19,6 +20,7 @@ namespace {
 
 struct SymmetrizeArguments {
   std::string mesh, annotation, output, annotation_output;
+  std::vector<int> without;
 };
 
 nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryReport& after) {
@@ -70,13 +72,14 @@ CommandBody symmetrize(CLI::App& app) {
   app.add_option("--annotation-out", arguments->annotation_output,
                  "Annotation of the symmetric mesh to write, with its residuals (.json)")
       ->type_name("FILE");
+  add_without_option(app, arguments->without);
   return [arguments](CommandContext& context) {
     check_output(arguments->output, {}, {arguments->annotation});
     if (!arguments->annotation_output.empty()) {
       check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->output});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = without(arguments->without, read_annotation(arguments->annotation, mesh));
     SymmetrizeReport report;
     const Mesh result = symmetrized(mesh, annotation, context.run, &report);
     const SymmetryReport after = symmetry_residual(result, annotation, nullptr, CarriedMotions::fixed, context.run);

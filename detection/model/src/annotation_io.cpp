@@ -311,23 +311,23 @@ class AnnotationReader {
     }
   }
 
-  void check_parents(const std::vector<Region>& regions) const {
+  // Where a parent has been taken out of the file by hand, all parents are found anew.
+  void check_parents(std::vector<Region>& regions) const {
     for (std::size_t r = 0; r < regions.size(); ++r) {
       const auto same_id = [&](const Region& other) { return other.id == regions[r].id; };
       if (std::any_of(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(r), same_id)) {
         refuse(item("regions", r) + ".id", "is " + std::to_string(regions[r].id) + ", as that of an earlier region");
       }
     }
+    const bool complete = std::ranges::all_of(regions, [&](const Region& region) {
+      return !region.parent || std::ranges::find(regions, *region.parent, &Region::id) != regions.end();
+    });
+    if (!complete) return set_parents(regions);
     for (std::size_t r = 0; r < regions.size(); ++r) {
       std::optional<int> ancestor = regions[r].parent;
       for (std::size_t steps = 0; ancestor.has_value(); ++steps) {
-        const auto found = std::ranges::find(regions, *ancestor, &Region::id);
-        if (found == regions.end() || steps > regions.size()) {
-          refuse(item("regions", r) + ".parent",
-                 found == regions.end() ? "names region " + std::to_string(*ancestor) + ", which does not exist"
-                                        : "leads back to the region itself");
-        }
-        ancestor = found->parent;
+        if (steps > regions.size()) refuse(item("regions", r) + ".parent", "leads back to the region itself");
+        ancestor = std::ranges::find(regions, *ancestor, &Region::id)->parent;
       }
     }
   }

@@ -282,7 +282,7 @@ Components connected_components(const Mesh& mesh, const Weld& weld) {
   return components_of(sets);
 }
 
-Components touching_parts(const Mesh& mesh, const Weld& weld) {
+Components touching_parts(const Mesh& mesh, const Weld& weld, DoubledParts doubled) {
   DisjointSets sets(static_cast<std::size_t>(mesh.faces.rows()));
   std::vector<EdgeUse> uses = edge_uses(mesh, weld, true);
   for (std::size_t first = 0; first < uses.size();) {
@@ -295,7 +295,7 @@ Components touching_parts(const Mesh& mesh, const Weld& weld) {
     }
     first = last;
   }
-  unite_doubled(mesh, weld, sets);
+  if (doubled == DoubledParts::united) unite_doubled(mesh, weld, sets);
   return components_of(sets);
 }
 

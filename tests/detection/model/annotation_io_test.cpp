@@ -156,7 +156,6 @@ std::vector<Mistake> mistakes() {
        "regions[0].faces[0]: the run [-1, 2] is outside the mesh"},
       {"RunShape", "\"faces\": [[0, 8]]", "\"faces\": [0, 8]", "regions[0].faces[0]: must be a run [first, count]"},
       {"NoFaces", "\"faces\": [[0, 8]]", "\"faces\": []", "regions[0].faces: must name at least one face"},
-      {"Parent", "\"parent\": null", "\"parent\": 3", "regions[0].parent: names region 3, which does not exist"},
       {"ParentSelf", "\"parent\": null", "\"parent\": 0", "regions[0].parent: leads back to the region itself"},
       {"Residual", "\"rms\": 0,", "\"rms\": -1,", "regions[0].residual: must not be negative"},
       {"NotANumber", "\"rms\": 0,", "\"rms\": 1e999,", "is not JSON"},
@@ -239,6 +238,23 @@ TEST_F(ElementsOfARegion, MustDiffer) {
 TEST_F(ElementsOfARegion, BeginWithTheIdentity) {
   const auto swap = [](Region& region) { std::swap(region.elements[0], region.elements[1]); };
   EXPECT_NE(refusal(swap).find("regions[0].elements[0]: must be the identity"), std::string::npos) << refusal(swap);
+}
+
+TEST(Annotation, FindsParentsAnewWhereOneWasDeletedByHand) {
+  const TemporaryFolder folder;
+  const Mesh mesh = polygon_mesh();
+  SymmetryAnnotation written = sample_annotation(mesh);
+  written.regions.resize(3);
+  written.regions[1].faces = {0, 1, 2, 5, 7};
+  written.regions[2].faces = {0, 1};
+  set_parents(written.regions);
+  ASSERT_EQ(written.regions[2].parent, 1);
+  written.regions.erase(written.regions.begin() + 1);
+  write_annotation(folder.file("a.json"), written);
+  const SymmetryAnnotation read = read_annotation(folder.file("a.json"), mesh);
+  ASSERT_EQ(read.regions.size(), 2U);
+  EXPECT_FALSE(read.regions[0].parent);
+  EXPECT_EQ(read.regions[1].parent, 0);
 }
 
 TEST(Annotation, DamageGivesAnAnnotationOrAnError) {

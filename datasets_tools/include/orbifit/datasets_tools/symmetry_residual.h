@@ -24,7 +24,8 @@ struct RegionResidual {
   int vertices = 0;  ///< of the region
   int mapped = 0;    ///< of its (vertex, element) pairs, how many map onto a vertex to 1e-6 of the diagonal
   int pairs = 0;
-  /// Of the rest shape: distances |g p - q|, q the region's surface point nearest to g p. Fractions of its diagonal.
+  /// Of the rest shape: distances |g p - q|, q the point nearest to g p of the region's connected part to which g takes
+  /// that of p, or of the region where g takes it onto none. Fractions of its diagonal.
   Residual floor;
   /// Of the deformed shape: |g' y(p) - y(q)| by the same q, g' the carried motion. Fractions of its diagonal.
   Residual deformed;
@@ -48,9 +49,10 @@ struct SymmetryReport {
 };
 
 /// How far the regions and patterns are from symmetric, at rest and, if `deformed` is not null, after a deformation
-/// that kept the connectivity. Continuous groups are measured on mirrors, half turns and the rotations that the
-/// tessellation has.
-/// \throw InputError when the deformed mesh's counts differ
+/// that kept the connectivity. Points are paired at rest, within parts, so that what touches a part or lies in the same
+/// place does not matter; where several parts do lie in one place, the deformed shape tells them apart. Continuous
+/// groups are measured on mirrors, half turns and the rotations that the tessellation has. \throw InputError when the
+/// deformed mesh's counts differ
 SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
                                  CarriedMotions motions, RunContext& context);
 

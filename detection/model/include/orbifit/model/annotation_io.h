@@ -10,7 +10,8 @@ namespace orbifit {
 /// Reads an annotation of `mesh`.
 /// \throw InputError naming the file and the key: not JSON, another format or version, a missing or ill-typed key, a
 ///        matrix that is not orthogonal to 1e-6, a face run outside the mesh, counts that differ from the mesh's, an
-///        unknown group, a list of elements of the wrong length or not closed to 1e-5. Unknown keys are ignored.
+///        unknown group, a list of elements of the wrong length or not closed to 1e-5. Unknown keys are ignored. Where
+///        a region's parent is not in the file, as when it was deleted by hand, all parents are found anew.
 SymmetryAnnotation read_annotation(const std::filesystem::path& file, const Mesh& mesh);
 
 /// The same from a file's text. \param name of the file, for messages

@@ -24,10 +24,12 @@ struct Components {
 
 Components connected_components(const Mesh& mesh, const Weld& weld);
 
+/// What becomes of sets of faces most of which repeat those of another set, as the two sides of a sheet do.
+enum class DoubledParts { united, apart };
+
 /// The same, but solids that touch along an edge stay apart: where more than two faces meet at an edge of the welded
-/// mesh and the mesh's own vertices pair them, they are connected within these pairs only. Sets most of whose faces
-/// repeat those of another set are one with it: the two sides of a sheet.
-Components touching_parts(const Mesh& mesh, const Weld& weld);
+/// mesh and the mesh's own vertices pair them, they are connected within these pairs only.
+Components touching_parts(const Mesh& mesh, const Weld& weld, DoubledParts doubled = DoubledParts::united);
 
 /// An edge of the welded mesh with the faces at it; `faces` is empty for none, 1 at a boundary, > 2 non-manifold.
 struct Edge {
