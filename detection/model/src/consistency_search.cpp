@@ -114,9 +114,12 @@ std::optional<std::size_t> ConsistencySearch::nearest_image(std::size_t region, 
   for (std::size_t other = 0; other < regions_.size(); ++other) {
     const KnownRegion& known = regions_[other];
     if (known.state == State::out || !known.place || !(known.place->group == from.place->group)) continue;
-    if (!shapes_.meet(known.shape, arrival)) continue;
+    if (!shapes_.touch(known.shape, arrival)) continue;
     if (group_distance(*from.place, motion, *known.place, extent(other)) > length(policy_.same_group)) continue;
-    const RegionShapes::Match match = shapes_.match(from.shape, domain, motion, known.shape, arrival);
+    // Of what merely touches, all.
+    const bool meets = shapes_.meet(from.shape, domain) && shapes_.meet(known.shape, arrival);
+    const RegionShapes::Match match = meets ? shapes_.match(from.shape, domain, motion, known.shape, arrival)
+                                            : shapes_.match(from.shape, from.shape, motion, known.shape, known.shape);
     if (match.share < policy_.arrived || match.distance >= best_distance) continue;
     best = other;
     best_distance = match.distance;
@@ -206,7 +209,6 @@ std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size
   if (!meets && !shapes_.touch(shape, move.domain)) return std::nullopt;
   if (meets && shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
   if (move.turning) return turn_with(move, at, family);
-  if (!meets) return std::nullopt;
   Tie tie;
   const std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
   if (!image) return add_image(move, at, family);
@@ -349,8 +351,10 @@ bool ConsistencySearch::drop_contradictions() {
     context_.check();
     for (std::size_t j = 0; j < regions_.size(); ++j) {
       const KnownRegion& known = regions_[j];
-      if (known.state != State::placed || !shapes_.meet(known.shape, move.domain)) continue;
-      if (shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
+      if (known.state != State::placed || !shapes_.touch(known.shape, move.domain)) continue;
+      const bool meets = shapes_.meet(known.shape, move.domain);
+      if (!meets && move.turning && !known.place->group.continuous()) continue;
+      if (meets && shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
       bool has_image = false;
       if (move.turning) {
         const GroupPlace turning = turning_part(*regions_[static_cast<std::size_t>(move.region)].place);
@@ -360,9 +364,12 @@ bool ConsistencySearch::drop_contradictions() {
       }
       for (std::size_t k = 0; k < regions_.size() && !has_image; ++k) {
         const KnownRegion& other = regions_[k];
-        if (other.state != State::placed || !shapes_.meet(other.shape, move.arrival)) continue;
+        if (other.state != State::placed || !shapes_.touch(other.shape, move.arrival)) continue;
         if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;
-        has_image = shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival).share >= 0.5;
+        const RegionShapes::Match match =
+            meets ? shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival)
+                  : shapes_.match(known.shape, known.shape, move.motion, other.shape, other.shape);
+        has_image = match.share >= 0.5;
       }
       if (has_image) continue;
       const bool region = move.region >= 0;

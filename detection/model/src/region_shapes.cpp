@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "orbifit/model/disjoint_sets.h"
 
 namespace orbifit {
 
@@ -13,18 +16,49 @@ using Eigen::Vector3d;
 
 constexpr int kSamples = 64;  // of a shape: shares to two per cent
 
-// Vertices at the very same position have the same number.
-std::vector<int> numbered_positions(const Points& vertices) {
-  std::vector<int> order(static_cast<std::size_t>(vertices.rows()));
+// A number for each vertex; the same for those at one position whose faces meet in an edge of two faces.
+std::vector<int> numbered_points(const Mesh& mesh) {
+  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
+  std::vector<int> order(count);
   std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int v) { return std::array<double, 3>{vertices(v, 0), vertices(v, 1), vertices(v, 2)}; };
+  const auto key = [&](int v) {
+    return std::array<double, 3>{mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
+  };
   std::ranges::sort(order, {}, key);
-  std::vector<int> result(order.size());
+  std::vector<int> position(count);
   int number = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i > 0 && key(order[i]) != key(order[i - 1])) ++number;
-    result[static_cast<std::size_t>(order[i])] = number;
+    position[static_cast<std::size_t>(order[i])] = number;
   }
+  struct Side {
+    std::array<int, 2> ends, vertices;
+  };
+  std::vector<Side> sides;
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (int k = 0; k < 3; ++k) {
+      std::array<int, 2> vertices{mesh.faces(face, k), mesh.faces(face, (k + 1) % 3)};
+      std::array<int, 2> ends{position[static_cast<std::size_t>(vertices[0])],
+                              position[static_cast<std::size_t>(vertices[1])]};
+      if (ends[0] > ends[1]) {
+        std::swap(ends[0], ends[1]);
+        std::swap(vertices[0], vertices[1]);
+      }
+      if (ends[0] != ends[1]) sides.push_back({ends, vertices});
+    }
+  }
+  std::ranges::sort(sides, {}, &Side::ends);
+  DisjointSets sets(count);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    for (std::size_t k = 0; end == i + 2 && k < 2; ++k) {
+      sets.unite(sides[i].vertices[k], sides[i + 1].vertices[k]);
+    }
+    i = end;
+  }
+  std::vector<int> result(count);
+  for (std::size_t v = 0; v < count; ++v) result[v] = sets.root(static_cast<int>(v));
   return result;
 }
 
@@ -46,7 +80,7 @@ RegionShapes::RegionShapes(const Mesh& mesh, double near)
       near_(near),
       diagonal_(diagonal(mesh.vertices)),
       origin_(bounding_box_centre(mesh.vertices)),
-      point_of_vertex_(numbered_positions(mesh.vertices)),
+      point_of_vertex_(numbered_points(mesh)),
       areas_(face_areas(mesh)),
       centroids_(face_centroids(mesh)) {}
 

@@ -42,7 +42,7 @@ class RegionShapes {
 
   /// Whether they share more than a sliver.
   bool meet(int a, int b) const;
-  /// Whether they meet, or have vertices at one position.
+  /// Whether they meet, or share a vertex: of soups, vertices at one position whose faces have an edge in common there.
   bool touch(int a, int b) const;
   /// Whether `outer` holds all of `inner` but a sliver, or everything.
   bool within(int inner, int outer) const;
