@@ -33,6 +33,7 @@ nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryRep
                        {"mapped", change.mapped},
                        {"before", to_json(change.before)},
                        {"after", to_json(change.after)},
+                       {"worse", change.worse},
                        {"checked", to_json(after.regions[r].floor)}});
   }
   return {{"largest_movement", report.largest_movement},
@@ -40,6 +41,7 @@ nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryRep
           {"vertices_in_regions", report.in_regions},
           {"mapped", report.mapped},
           {"unclosed", report.unclosed},
+          {"held", report.held},
           {"iterations", report.iterations},
           {"vertices_onto_vertices", after.vertices_onto_vertices},
           {"residual", after.worst_floor},
