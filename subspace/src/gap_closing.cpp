@@ -14,13 +14,14 @@ using Eigen::Vector3d;
 
 // A strain of 1 everywhere counts as much as so many times all gaps of a region at rest.
 constexpr double kStiffness[] = {1e2, 1, 1e-2, 1e-4};
-constexpr int kMaxIterations = 20;  // at each stiffness
-constexpr int kMaxSolverSteps = 40;
-constexpr double kShortest = 1e-4;  // of the diagonal: shorter edges strain like this
-constexpr double kSolved = 1e-3;    // of the gradient at the start
-constexpr double kDamping = 1e-3;   // of what the pairs in which an orbit has part weigh
-constexpr double kStill = 1e-14;    // of the diagonal
-constexpr double kStalled = 0.98;   // of the sum before
+constexpr int kMaxIterations = 10;  // at each stiffness
+constexpr int kMaxSolverSteps = 20;
+constexpr std::size_t kMaxTerms = 30000;  // a step of the solver takes some milliseconds
+constexpr double kShortest = 1e-4;         // of the diagonal: shorter edges strain like this
+constexpr double kSolved = 1e-3;           // of the gradient at the start
+constexpr double kDamping = 1e-3;          // of what the pairs in which an orbit has part weigh
+constexpr double kStill = 1e-14;           // of the diagonal
+constexpr double kStalled = 0.9;           // of the sum before
 
 // A pair that takes part.
 struct Term {
@@ -238,6 +239,7 @@ int close_gaps(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const G
   if (std::ranges::none_of(wanted, [](const auto& probes) { return std::ranges::find(probes, 1) != probes.end(); })) {
     return 0;
   }
+  const std::size_t most = std::max<std::size_t>(1, kMaxTerms / pairs.demands().size());
   Step step(orbits, weights, positions.rows());
   const double scale = diagonal(positions);
   int iterations = 0;
@@ -246,7 +248,7 @@ int close_gaps(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const G
     for (int iteration = 0; iteration < kMaxIterations; ++iteration, ++iterations) {
       context.progress("surface", 0.5);
       const std::vector<Term> terms =
-          gap_terms(step, pairs, pairs.match(positions, &wanted, context, reach), weights, positions);
+          gap_terms(step, pairs, pairs.match(positions, &wanted, context, reach, most), weights, positions);
       const std::vector<Edge> edges = strained_edges(step, places, weights.stiff, stiffness, positions);
       double sum = 0;
       for (const Term& term : terms) sum += term.weight * term.gap.squaredNorm();

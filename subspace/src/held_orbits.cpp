@@ -29,13 +29,13 @@ std::vector<GapSummary> summarised(const ImagePairs& pairs, const std::vector<Su
 }  // namespace
 
 HeldOrbits::HeldOrbits(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const Points& rest,
-                       const RunContext& context)
+                       const std::vector<SurfaceMatch>& at_rest)
     : pairs_(pairs),
       orbits_(orbits),
       orbit_of_(static_cast<std::size_t>(rest.rows()), -1),
       rest_(rest),
       rounding_(kRounding * diagonal(rest)),
-      at_rest_(pairs.match(rest, nullptr, context)),
+      at_rest_(at_rest),
       before_(summarised(pairs, at_rest_)),
       held_(orbits.size(), 0) {
   for (std::size_t o = 0; o < orbits.size(); ++o) {
@@ -105,7 +105,7 @@ bool HeldOrbits::hold_folded(const Points& positions) {
   return result;
 }
 
-bool HeldOrbits::hold_more(const Points& positions, const RunContext& context) {
+bool HeldOrbits::hold_more(const Points& positions, bool whole_regions, const RunContext& context) {
   const std::vector<std::vector<char>> wanted = open_places();
   const std::vector<SurfaceMatch> matches = pairs_.match(positions, &wanted, context);
   const std::vector<GapSummary> after = summarised(pairs_, matches);
@@ -123,6 +123,11 @@ bool HeldOrbits::hold_more(const Points& positions, const RunContext& context) {
       continue;
     }
     worse = true;
+    if (whole_regions) {
+      for (const Probe& probe : pairs_.demands()[r].probes) held_any = hold_place(probe.place, true) || held_any;
+      pair = end;
+      continue;
+    }
     // What maps onto vertices gives way only where what does not has done so already.
     for (const bool complete_ones : {false, true}) {
       bool more = false;

@@ -20,8 +20,11 @@ struct GapSummary {
 /// Tells which orbits have to stay where they were, so that no region is worse than before.
 class HeldOrbits {
  public:
-  /// \param rest of the places, #P by 3
-  HeldOrbits(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const Points& rest, const RunContext& context);
+  /// All are kept by reference.
+  /// \param rest    of the places, #P by 3
+  /// \param at_rest all pairs' matches there
+  HeldOrbits(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const Points& rest,
+             const std::vector<SurfaceMatch>& at_rest);
 
   const std::vector<GapSummary>& before() const { return before_; }  ///< of each region, at rest
 
@@ -41,7 +44,8 @@ class HeldOrbits {
   /// the pairs that make it so, a place or what its image meets, now or at rest. A pair all of whose orbits are held
   /// is no farther apart than at rest, since the surface's point that was nearest then is still there: so, with the
   /// held orbits put back to rest, sooner or later the answer is no.
-  bool hold_more(const Points& positions, const RunContext& context);
+  /// \param whole_regions  all orbits of such a region at once
+  bool hold_more(const Points& positions, bool whole_regions, const RunContext& context);
 
   const std::vector<char>& held() const { return held_; }  ///< by orbit
 
@@ -56,7 +60,7 @@ class HeldOrbits {
   std::vector<int> orbit_of_;  // of places
   const Points& rest_;
   double rounding_;  // mesh units
-  std::vector<SurfaceMatch> at_rest_;
+  const std::vector<SurfaceMatch>& at_rest_;
   std::vector<GapSummary> before_;
   std::vector<char> held_;
 };

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxPairs = 4000000;  // of a region: a second or two of nearest points
+constexpr std::size_t kMaxPairs = 400000;  // of a region: a second of nearest points
 // Cosines between the normals of an image and of a face: on the back of a thin part, and on its own side.
 constexpr double kOtherSide = -0.2;
 constexpr double kSameSide = 0.2;
@@ -89,7 +89,7 @@ ImagePairs::Pair ImagePairs::operator[](std::size_t pair) const {
 }
 
 std::vector<SurfaceMatch> ImagePairs::match(const Points& positions, const std::vector<std::vector<char>>* wanted,
-                                            const RunContext& context, double reach) {
+                                            const RunContext& context, double reach, std::size_t most) {
   std::vector<SurfaceMatch> result(count());
   mesh_.vertices = positions;
   const Points normals_of_faces = face_normals(mesh_);
@@ -100,11 +100,14 @@ std::vector<SurfaceMatch> ImagePairs::match(const Points& positions, const std::
     if (first_[r + 1] == first_[r]) continue;
     surfaces_[r].move(mesh_, context);
     const MovingSurface& surface = surfaces_[r];
+    const std::size_t asked =
+        wanted == nullptr ? demand.probes.size() : static_cast<std::size_t>(std::ranges::count((*wanted)[r], 1));
+    const std::size_t stride = std::clamp<std::size_t>(asked * demand.motions.size() / most, 1, demand.motions.size());
     parallel_for(context, demand.probes.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (wanted != nullptr && (*wanted)[r][i] == 0) continue;
         const Probe& probe = demand.probes[i];
-        for (std::size_t e = 0; e < demand.motions.size(); ++e) {
+        for (std::size_t e = i % stride; e < demand.motions.size(); e += stride) {
           const Motion& motion = demand.motions[e];
           const Vector3d image = motion(positions.row(probe.place).transpose());
           const Vector3d normal = motion.linear * probe.normal;

@@ -29,7 +29,7 @@ struct RegionDemand {
   bool of_finite_group = true;  ///< false: rotations picked out of a continuous group
 };
 
-/// All elements of a finite group, or as many of them, spread evenly, as make some million pairs. Of a continuous group
+/// All elements of a finite group, or as many of them, spread evenly, as make some 400 000 pairs. Of a continuous group
 /// for which no finite one stands, some rotations.
 /// \param finite the region with its finite group, or with the one that stands for its continuous one
 RegionDemand region_demand(const Mesh& mesh, const Places& places, const Region& region,
@@ -68,7 +68,8 @@ class ImagePairs {
   /// other way than the image does, as in thin parts, the nearest one that does not, if one is near. \param wanted by
   /// region and probe; null: all pairs \param reach  mesh units: no match where the surface is farther away
   std::vector<SurfaceMatch> match(const Points& positions, const std::vector<std::vector<char>>* wanted,
-                                  const RunContext& context, double reach = std::numeric_limits<double>::infinity());
+                                  const RunContext& context, double reach = std::numeric_limits<double>::infinity(),
+                                  std::size_t most = std::numeric_limits<std::size_t>::max());
 
  private:
   std::vector<RegionDemand> demands_;

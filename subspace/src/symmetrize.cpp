@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <utility>
+
+#include "orbifit/model/errors.h"
 
 #include "gap_closing.h"
 #include "generating_set.h"
@@ -25,7 +28,8 @@ using Eigen::Vector3d;
 constexpr double kReach = 2;
 constexpr int kMaxPasses = 3;          // in which images are looked for anew
 constexpr int kMaxStiffer = 3;         // in which faces that fold are made stiff
-constexpr int kMaxRounds = 6;          // in which what is held is found anew
+constexpr int kMaxHolds = 8;           // in which single orbits are held; then those of whole regions
+constexpr int kMaxRounds = 4;          // in which what is held is found anew
 constexpr double kRingLink = 3;        // times the movement to rings of the regular angles
 constexpr double kRounding = 1e-9;     // of the diagonal
 constexpr double kAlmostExact = 1e-6;  // of the diagonal: a region that is off by less needs no more weight
@@ -191,9 +195,10 @@ Outcome make_symmetric(const Shape& shape, const RunContext& context) {
   Points start = shape.places.positions;
   std::vector<char> stiff(static_cast<std::size_t>(start.rows()), 0);
   outcome.orbits = find_orbits(shape, start, context);
+  const std::vector<SurfaceMatch> at_rest = pairs.match(start, nullptr, context);
   // Parts out of place by more than they are fine find their images once they are in place.
   for (int pass = 1; pass < kMaxPasses; ++pass) {
-    const HeldOrbits none(pairs, outcome.orbits, shape.places.positions, context);
+    const HeldOrbits none(pairs, outcome.orbits, shape.places.positions, at_rest);
     const int iterations = average(shape, pairs, outcome.orbits, none, stiff, start, outcome.positions, context);
     if (iterations == 0) break;
     outcome.iterations += iterations;
@@ -202,7 +207,7 @@ Outcome make_symmetric(const Shape& shape, const RunContext& context) {
     outcome.orbits = std::move(orbits);
     start = outcome.positions;
   }
-  HeldOrbits holding(pairs, outcome.orbits, shape.places.positions, context);
+  HeldOrbits holding(pairs, outcome.orbits, shape.places.positions, at_rest);
   outcome.before = holding.before();
   bool worse = true;
   for (int round = 0; worse && round < kMaxRounds; ++round) {
@@ -217,13 +222,13 @@ Outcome make_symmetric(const Shape& shape, const RunContext& context) {
     holding.hold_far(outcome.positions, 2 * shape.reach);
     holding.hold_folded(outcome.positions);
     put_back(shape, outcome.orbits, holding.held(), outcome.positions);
-    worse = holding.hold_more(outcome.positions, context) || !holding.folded(outcome.positions).empty();
+    worse = holding.hold_more(outcome.positions, false, context) || !holding.folded(outcome.positions).empty();
   }
-  while (worse) {
+  for (int round = 0; worse; ++round) {
     context.check();
     put_back(shape, outcome.orbits, holding.held(), outcome.positions);
     const bool folded = holding.hold_folded(outcome.positions);
-    worse = holding.hold_more(outcome.positions, context) || folded;
+    worse = holding.hold_more(outcome.positions, round >= kMaxHolds, context) || folded;
   }
   outcome.held = holding.held();
   outcome.after = holding.summary(outcome.positions, context);
@@ -283,11 +288,19 @@ SymmetrizeReport make_report(const Shape& shape, const Outcome& outcome, const M
     if (shape.finite[r]) change.group = shape.finite[r]->group.symbol();
     change.before = residual_of(outcome.before[r], shape.scale);
     change.after = residual_of(outcome.after[r], shape.scale);
-    change.worse =
-        change.after.max > change.before.max + kSameResidual || change.after.rms > change.before.rms + kSameResidual;
     report.regions.push_back(change);
   }
   return report;
+}
+
+void refuse_worse(const SymmetrizeReport::RegionChange& change) {
+  const auto grew = [](double before, double after) { return after > before + kSameResidual; };
+  if (!grew(change.before.max, change.after.max) && !grew(change.before.rms, change.after.rms)) return;
+  std::ostringstream text;
+  text << "region \"" << change.name << "\" would be worse than before: its residual would go from "
+       << change.before.max << " to " << change.after.max << " of the diagonal at worst, from " << change.before.rms
+       << " to " << change.after.rms << " on average";
+  throw NoResultError(text.str());
 }
 
 }  // namespace
@@ -304,7 +317,9 @@ Mesh symmetrized(const Mesh& mesh, const SymmetryAnnotation& annotation, const R
       result.vertices.row(v) = outcome.positions.row(place);
     }
   }
-  if (report != nullptr) *report = make_report(shape, outcome, result);
+  const SymmetrizeReport made = make_report(shape, outcome, result);
+  for (const SymmetrizeReport::RegionChange& change : made.regions) refuse_worse(change);
+  if (report != nullptr) *report = made;
   return result;
 }
 

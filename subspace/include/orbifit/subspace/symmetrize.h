@@ -25,7 +25,6 @@ struct SymmetrizeReport {
     int places = 0;          ///< of the region's vertices, those at one place counted once
     int mapped = 0;          ///< of these: all images under all regions are vertices
     Residual before, after;  ///< distances of the vertices' images from the region's surface
-    bool worse = false;      ///< whether `after` exceeds `before` by more than 1e-12
   };
   std::vector<RegionChange> regions;  ///< in the annotation's order
 };
@@ -45,6 +44,8 @@ struct SymmetrizeReport {
 /// \param report may be null
 /// \return the moved mesh; cost: |G| nearest points of every vertex of every region a few times, and some tens of
 ///         times where images lie between vertices
+/// \throw NoResultError when a region's largest or root mean square residual would be larger than before by more than
+///        1e-12
 Mesh symmetrized(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                  SymmetrizeReport* report = nullptr);
 
