@@ -14,14 +14,14 @@ using Eigen::Vector3d;
 
 // A strain of 1 everywhere counts as much as so many times all gaps of a region at rest.
 constexpr double kStiffness[] = {1e2, 1, 1e-2, 1e-4};
-constexpr int kMaxIterations = 10;  // at each stiffness
+constexpr int kMaxIterations = 6;  // at each stiffness
 constexpr int kMaxSolverSteps = 20;
 constexpr std::size_t kMaxTerms = 30000;  // a step of the solver takes some milliseconds
-constexpr double kShortest = 1e-4;         // of the diagonal: shorter edges strain like this
-constexpr double kSolved = 1e-3;           // of the gradient at the start
-constexpr double kDamping = 1e-3;          // of what the pairs in which an orbit has part weigh
-constexpr double kStill = 1e-14;           // of the diagonal
-constexpr double kStalled = 0.9;           // of the sum before
+constexpr double kShortest = 1e-4;        // of the diagonal: shorter edges strain like this
+constexpr double kSolved = 1e-3;          // of the gradient at the start
+constexpr double kDamping = 1e-3;         // of what the pairs in which an orbit has part weigh
+constexpr double kStill = 1e-14;          // of the diagonal
+constexpr double kStalled = 0.9;          // of the sum before
 
 // A pair that takes part.
 struct Term {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxPairs = 400000;  // of a region: a second of nearest points
+constexpr std::size_t kMaxPairs = 200000;  // of a region: a second of nearest points
 // Cosines between the normals of an image and of a face: on the back of a thin part, and on its own side.
 constexpr double kOtherSide = -0.2;
 constexpr double kSameSide = 0.2;

@@ -29,7 +29,7 @@ struct RegionDemand {
   bool of_finite_group = true;  ///< false: rotations picked out of a continuous group
 };
 
-/// All elements of a finite group, or as many of them, spread evenly, as make some 400 000 pairs. Of a continuous group
+/// All elements of a finite group, or as many of them, spread evenly, as make some 200 000 pairs. Of a continuous group
 /// for which no finite one stands, some rotations.
 /// \param finite the region with its finite group, or with the one that stands for its continuous one
 RegionDemand region_demand(const Mesh& mesh, const Places& places, const Region& region,
