@@ -43,7 +43,7 @@ commands() {
   for mode in fixed floating moving; do
     "$1" deform "$mesh" found.json --handles handles.json --mode "$mode" -o edited.ply --threads 2
   done
-  "$1" symmetrize edited.ply found.json -o symmetric.ply --threads 2 || [ $? -eq 1 ]
+  "$1" symmetrize "$mesh" found.json -o symmetric.ply --threads 2
   "$1" scan "$mesh" --views 3 --noise 0.002 -o scan.ply --threads 2
   "$1" fit "$mesh" scan.ply --annotation found.json -o fitted.ply --threads 2 || [ $? -eq 1 ]
   "$1" check fitted.ply found.json --threads 2

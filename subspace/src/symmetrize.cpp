@@ -196,10 +196,13 @@ Outcome make_symmetric(const Shape& shape, const RunContext& context) {
   std::vector<char> stiff(static_cast<std::size_t>(start.rows()), 0);
   outcome.orbits = find_orbits(shape, start, context);
   const std::vector<SurfaceMatch> at_rest = pairs.match(start, nullptr, context);
+  RunContext quiet = context;  // what was said once need not be said again
+  quiet.on_message = nullptr;
   // Parts out of place by more than they are fine find their images once they are in place.
   for (int pass = 1; pass < kMaxPasses; ++pass) {
     const HeldOrbits none(pairs, outcome.orbits, shape.places.positions, at_rest);
-    const int iterations = average(shape, pairs, outcome.orbits, none, stiff, start, outcome.positions, context);
+    const int iterations =
+        average(shape, pairs, outcome.orbits, none, stiff, start, outcome.positions, pass == 1 ? context : quiet);
     if (iterations == 0) break;
     outcome.iterations += iterations;
     std::vector<PlaceOrbit> orbits = find_orbits(shape, outcome.positions, context);
@@ -211,7 +214,7 @@ Outcome make_symmetric(const Shape& shape, const RunContext& context) {
   outcome.before = holding.before();
   bool worse = true;
   for (int round = 0; worse && round < kMaxRounds; ++round) {
-    outcome.iterations += average(shape, pairs, outcome.orbits, holding, stiff, start, outcome.positions, context);
+    outcome.iterations += average(shape, pairs, outcome.orbits, holding, stiff, start, outcome.positions, quiet);
     const std::vector<int> folded = holding.folded(outcome.positions);
     if (!folded.empty() && round < kMaxStiffer) {
       for (const int face : folded) {
