@@ -9,15 +9,17 @@ namespace orbifit {
 
 namespace {
 
-// Motions that differ by less are the same (linear parts; translations relative to the diagonal): detected groups close
-// together no better than that.
-constexpr double kSameMotion = 1e-4;
+// Linear parts that differ by less are meant to be the same: a fifth of the finest rotation, by 2 pi / 256.
+constexpr double kAlike = 5e-3;
+// What two ways to one place may differ by, relative to the diagonal: rounding, also of long ways.
+constexpr double kExact = 1e-12;
+// The same, relative to the coordinates.
+constexpr double kRounding = 1e-14;
 // Members that come nearer to one another fall together, relative to the diagonal.
 constexpr double kTogether = 1e-10;
 
-bool same_motion(const Motion& a, const Motion& b, double scale) {
-  return (a.linear - b.linear).cwiseAbs().maxCoeff() < kSameMotion &&
-         (a.translation - b.translation).cwiseAbs().maxCoeff() < kSameMotion * scale;
+bool alike(const Motion& a, const Motion& b) {
+  return (a.linear - b.linear).cwiseAbs().maxCoeff() < kAlike;
 }
 
 class OrbitSearch {
@@ -26,6 +28,7 @@ class OrbitSearch {
       : places_(places),
         regions_(regions),
         scale_(scale),
+        exact_(kExact * scale + kRounding * largest_coordinate(places.positions)),
         reach_(reach),
         regions_of_place_(place_count()),
         found_(place_count(), -1) {
@@ -55,21 +58,28 @@ class OrbitSearch {
     int number;  // among the region's places
   };
 
+  static double largest_coordinate(const Points& positions) {
+    return positions.size() == 0 ? 0 : positions.cwiseAbs().maxCoeff();
+  }
+
   std::size_t place_count() const { return static_cast<std::size_t>(places_.positions.rows()); }
 
   // Leaves regions out until what is left closes; the trivial orbit always does.
   PlaceOrbit orbit_of_place(int seed, const std::vector<char>& done) {
     std::vector<char> followed(regions_.size(), 1);
     bool complete = true;
+    bool clashes = false;
     while (true) {
       std::vector<char> failing(regions_.size(), 0);
       PlaceOrbit orbit = walk(seed, followed, done, failing);
       const bool fails = std::ranges::find(failing, 1) != failing.end();
-      if (!fails && (orbit.members.size() == 1 || sound(orbit))) {
+      if (!fails && !orbit.clashes && sound(orbit)) {
         orbit.complete = complete;
+        orbit.clashes = clashes;
         return orbit;
       }
       complete = false;
+      clashes = clashes || orbit.clashes;
       if (!fails) failing[static_cast<std::size_t>(last_followed(orbit, followed))] = 1;
       for (std::size_t r = 0; r < regions_.size(); ++r) {
         if (failing[r] != 0) followed[r] = 0;
@@ -126,10 +136,16 @@ class OrbitSearch {
       return;
     }
     const Motion& known = orbit.motions[static_cast<std::size_t>(found)];
-    if (same_motion(known, motion, scale_)) return;
+    const Eigen::Vector3d seed = places_.positions.row(orbit.members.front());
+    if (alike(known, motion)) {
+      orbit.clashes = orbit.clashes || (known(seed) - motion(seed)).norm() > exact_;
+      return;
+    }
     const Motion stabiliser = inverse(known) * motion;
     for (const Motion& other : orbit.stabilisers) {
-      if (same_motion(other, stabiliser, scale_)) return;
+      if (!alike(other, stabiliser)) continue;
+      orbit.clashes = orbit.clashes || (other(seed) - stabiliser(seed)).norm() > exact_;
+      return;
     }
     orbit.stabilisers.push_back(stabiliser);
   }
@@ -138,7 +154,7 @@ class OrbitSearch {
   bool sound(const PlaceOrbit& orbit) const {
     const Eigen::Vector3d first = orbit_mean(orbit, places_.positions);
     for (const Motion& stabiliser : orbit.stabilisers) {
-      if ((stabiliser(first) - first).norm() > kSameMotion * scale_) return false;
+      if ((stabiliser(first) - first).norm() > exact_) return false;
     }
     std::vector<Eigen::Vector3d> targets;
     targets.reserve(orbit.motions.size());
@@ -158,6 +174,7 @@ class OrbitSearch {
   const Places& places_;
   const std::vector<RegionMatching>& regions_;
   double scale_;
+  double exact_;  // mesh units
   double reach_;
   std::vector<std::vector<Membership>> regions_of_place_;
   std::vector<int> found_;  // number within the orbit being walked
@@ -180,6 +197,22 @@ Eigen::Vector3d stabilised(const PlaceOrbit& orbit, const Eigen::Vector3d& point
     moved.segment<3>(row) = point - orbit.stabilisers[i](point);
   }
   return point + shortest_solution(system, moved, 1e-3);
+}
+
+Eigen::Matrix3d free_directions(const PlaceOrbit& orbit) {
+  constexpr double kFree = 1e-6;  // squared: the finest rotation's is 6e-4
+  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();
+  for (const Motion& stabiliser : orbit.stabilisers) {
+    const Eigen::Matrix3d off = stabiliser.linear - Eigen::Matrix3d::Identity();
+    moved += off.transpose() * off;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(moved);
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d direction = directions.eigenvectors().col(k);
+    if (directions.eigenvalues()[k] < kFree) result += direction * direction.transpose();
+  }
+  return result;
 }
 
 Eigen::Vector3d orbit_mean(const PlaceOrbit& orbit, const Points& positions) {

@@ -1,17 +1,19 @@
 #include "orbifit/subspace/symmetrize.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <optional>
+#include <sstream>
+#include <utility>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/surface_index.h"
 
+#include "gap_closing.h"
 #include "generating_set.h"
+#include "held_orbits.h"
+#include "image_pairs.h"
 #include "matched_orbits.h"
 #include "ring_average.h"
-#include "surface_average.h"
 #include "turning_group.h"
 #include "vertex_matching.h"
 
@@ -24,13 +26,14 @@ using Eigen::Vector3d;
 
 // Image and vertex may each be off by the tolerance.
 constexpr double kReach = 2;
-constexpr int kMostIterations = 20;
-constexpr double kStill = 1e-14;       // of the diagonal
-constexpr double kConverging = 0.8;    // of the step before
-constexpr double kExact = 2e-14;       // of the diagonal
+constexpr int kMaxPasses = 3;          // in which images are looked for anew
+constexpr int kMaxStiffer = 3;         // in which faces that fold are made stiff
+constexpr int kMaxHolds = 8;           // in which single orbits are held; then those of whole regions
+constexpr int kMaxRounds = 4;          // in which what is held is found anew
 constexpr double kRingLink = 3;        // times the movement to rings of the regular angles
 constexpr double kRounding = 1e-9;     // of the diagonal
-constexpr double kMostPairs = 200000;  // of a region's residual
+constexpr double kAlmostExact = 1e-6;  // of the diagonal: a region that is off by less needs no more weight
+constexpr double kSameResidual = 1e-12;
 
 // Everything about the mesh that the steps share.
 struct Shape {
@@ -80,7 +83,10 @@ Shape prepare(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunC
   return shape;
 }
 
-std::vector<RegionMatching> match_regions(const Shape& shape, const RunContext& context) {
+// Orbits of the places as they lie at `positions`.
+std::vector<PlaceOrbit> find_orbits(const Shape& shape, const Points& positions, const RunContext& context) {
+  Places places = shape.places;
+  places.positions = positions;
   std::vector<RegionMatching> matchings;
   for (std::size_t r = 0; r < shape.finite.size(); ++r) {
     context.progress("images", static_cast<double>(r) / static_cast<double>(shape.finite.size()));
@@ -89,133 +95,18 @@ std::vector<RegionMatching> match_regions(const Shape& shape, const RunContext& 
       matching.inside = shape.inside[r];
       matching.generators = generating_set(*shape.finite[r]);
       for (const Motion& generator : matching.generators) {
-        matching.matches.push_back(matched_places(shape.places, matching.inside, generator, shape.reach, context));
+        matching.matches.push_back(matched_places(places, matching.inside, generator, shape.reach, context));
       }
     }
     matchings.push_back(std::move(matching));
   }
-  return matchings;
+  return matched_orbits(places, matchings, shape.scale, 2 * shape.reach);
 }
 
-void place_images(const PlaceOrbit& orbit, const Vector3d& first, Points& positions) {
-  for (std::size_t k = 0; k < orbit.members.size(); ++k) {
-    positions.row(orbit.members[k]) = orbit.motions[k](first).transpose();
-  }
-}
-
-// Largest distance between images and the places they stand for, mesh units.
-double mismatch(const RegionMatching& matching, const Points& positions) {
-  double worst = 0;
-  for (std::size_t g = 0; g < matching.generators.size(); ++g) {
-    for (std::size_t i = 0; i < matching.inside.size(); ++i) {
-      const int image = matching.matches[g][i];
-      if (image < 0) continue;
-      const Vector3d due = matching.generators[g](positions.row(matching.inside[i]).transpose());
-      const int place = matching.inside[static_cast<std::size_t>(image)];
-      worst = std::max(worst, (positions.row(place).transpose() - due).norm());
-    }
-  }
-  return worst;
-}
-
-// Detected groups may miss one another by less than the tolerance: no shape then has all of them. One region after
-// the other is made exact by itself, the annotation's first ones last, so that those stay exact.
-void settle(const Shape& shape, const std::vector<RegionMatching>& matchings, Points& positions,
-            const RunContext& context) {
-  for (auto matching = matchings.rbegin(); matching != matchings.rend(); ++matching) {
-    context.check();
-    if (mismatch(*matching, positions) <= kExact * shape.scale) continue;
-    Places places = shape.places;
-    places.positions = positions;
-    for (const PlaceOrbit& orbit : matched_orbits(places, {*matching}, shape.scale, 2 * shape.reach)) {
-      if (orbit.members.size() == 1 && orbit.stabilisers.empty()) continue;
-      place_images(orbit, orbit_mean(orbit, places.positions), positions);
-    }
-  }
-}
-
-Mesh moved_mesh(const Shape& shape, const Points& positions) {
-  Mesh result = shape.mesh;
-  for (Index v = 0; v < result.vertices.rows(); ++v) {
-    result.vertices.row(v) = positions.row(shape.places.of_vertex[static_cast<std::size_t>(v)]);
-  }
-  return result;
-}
-
-// For each place the face at it that lies in the most regions; -1 for places in none.
-std::vector<int> faces_of_places(const Shape& shape) {
-  std::vector<int> regions_of_face(static_cast<std::size_t>(shape.mesh.faces.rows()), 0);
-  for (const std::optional<Region>& region : shape.finite) {
-    if (!region) continue;
-    for (const int face : region->faces) ++regions_of_face[static_cast<std::size_t>(face)];
-  }
-  std::vector<int> result(static_cast<std::size_t>(shape.places.positions.rows()), -1);
-  for (Index f = 0; f < shape.mesh.faces.rows(); ++f) {
-    const auto face = static_cast<std::size_t>(f);
-    if (regions_of_face[face] == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      int& known =
-          result[static_cast<std::size_t>(shape.places.of_vertex[static_cast<std::size_t>(shape.mesh.faces(f, k))])];
-      if (known < 0 || regions_of_face[static_cast<std::size_t>(known)] < regions_of_face[face]) {
-        known = static_cast<int>(f);
-      }
-    }
-  }
-  return result;
-}
-
-// Orbits some of whose images lie between vertices: their first members go to the mean of the surface's nearest points.
-int average_over_surfaces(const Shape& shape, const std::vector<PlaceOrbit>& orbits, Points& positions,
-                          std::vector<char>& unclosed, const RunContext& context) {
-  SymmetryAnnotation finite = shape.annotation;
-  finite.regions.clear();
-  for (const std::optional<Region>& region : shape.finite) {
-    if (region) finite.regions.push_back(*region);
-  }
-  const std::vector<int> faces = faces_of_places(shape);
-  std::vector<std::size_t> moving;
-  for (std::size_t o = 0; o < orbits.size(); ++o) {
-    if (!orbits[o].complete && faces[static_cast<std::size_t>(orbits[o].members.front())] >= 0) moving.push_back(o);
-  }
-  if (moving.empty()) return 0;
-  int iteration = 0;
-  double step = shape.scale;
-  double last = 2 * step;
-  for (; iteration < kMostIterations && step > kStill * shape.scale && step < kConverging * last; ++iteration) {
-    context.progress("surface", static_cast<double>(iteration) / kMostIterations);
-    const Mesh mesh = moved_mesh(shape, positions);
-    const Points normals = vertex_normals(mesh);
-    std::vector<Vector3d> normal_of_place(static_cast<std::size_t>(positions.rows()), Vector3d::Zero());
-    for (Index v = 0; v < normals.rows(); ++v) {
-      normal_of_place[static_cast<std::size_t>(shape.places.of_vertex[static_cast<std::size_t>(v)])] +=
-          normals.row(v).transpose();
-    }
-    const SurfaceAverage average(mesh, finite, shape.reach, iteration == 0 ? context : RunContext{});
-    std::vector<Vector3d> targets(moving.size());
-    parallel_for(context, moving.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto first = static_cast<std::size_t>(orbits[moving[i]].members.front());
-        const Vector3d position = positions.row(static_cast<Index>(first));
-        targets[i] = position;
-        if (unclosed[first] != 0) continue;
-        try {
-          targets[i] = average(position, normal_of_place[first].normalized(), faces[first]);
-        } catch (const InputError&) {  // the orbit does not close
-          unclosed[first] = 1;
-        }
-      }
-    });
-    last = step;
-    step = 0;
-    for (std::size_t i = 0; i < moving.size(); ++i) {
-      const PlaceOrbit& orbit = orbits[moving[i]];
-      const Vector3d target = stabilised(orbit, targets[i]);
-      if ((target - targets[i]).norm() > shape.reach) continue;
-      step = std::max(step, (target - positions.row(orbit.members.front()).transpose()).norm());
-      place_images(orbit, target, positions);
-    }
-  }
-  return iteration;
+std::size_t complete_members(const std::vector<PlaceOrbit>& orbits) {
+  std::size_t count = 0;
+  for (const PlaceOrbit& orbit : orbits) count += orbit.complete ? orbit.members.size() : 0;
+  return count;
 }
 
 double rms_distance(const Points& a, const Points& b, const std::vector<int>& rows) {
@@ -242,49 +133,134 @@ void make_rings(const Shape& shape, Points& positions, const RunContext& context
   }
 }
 
-// Of a region's vertices' images from its surface.
-Residual residual_of(const Mesh& mesh, const Region& region, const RunContext& context) {
-  if (region.faces.empty() || region.elements.size() < 2) return {};
-  const Points vertices = submesh(mesh, region.faces).vertices;
-  const SurfaceIndex surface(mesh, region.faces);
-  const std::size_t elements = region.elements.size() - 1;
-  const double pairs = static_cast<double>(vertices.rows()) * static_cast<double>(elements);
-  const auto stride = static_cast<Index>(std::max(1.0, std::ceil(pairs / kMostPairs)));
-  const auto taken = static_cast<std::size_t>((vertices.rows() + stride - 1) / stride);
-  std::vector<Residual> parts(taken);
-  parallel_for(context, taken, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d vertex = vertices.row(static_cast<Index>(i) * stride);
-      for (std::size_t e = 1; e <= elements; ++e) {
-        const double distance = surface.nearest(region.elements[e](vertex)).distance;
-        parts[i].rms += distance * distance;
-        parts[i].max = std::max(parts[i].max, distance);
-      }
-    }
-  });
-  const double scale = diagonal(mesh.vertices);
-  Residual result;
-  for (const Residual& part : parts) {
-    result.rms += part.rms;
-    result.max = std::max(result.max, part.max / scale);
+// The mean of every orbit that may move, of its members at `positions`.
+void average_orbits(const std::vector<PlaceOrbit>& orbits, const std::vector<char>& held, Points& positions) {
+  for (std::size_t o = 0; o < orbits.size(); ++o) {
+    if (held[o] != 0 || (orbits[o].members.size() == 1 && orbits[o].stabilisers.empty())) continue;
+    place_images(orbits[o], orbit_mean(orbits[o], positions), positions);
   }
-  result.rms = std::sqrt(result.rms / static_cast<double>(taken * elements)) / scale;
-  return result;
 }
 
-SymmetrizeReport make_report(const Shape& shape, const std::vector<PlaceOrbit>& orbits,
-                             const std::vector<char>& unclosed, const Mesh& result, const RunContext& context) {
-  SymmetrizeReport report;
-  std::vector<char> inside(static_cast<std::size_t>(shape.places.positions.rows()), 0);
-  for (const std::vector<int>& places : shape.inside) {
-    for (const int place : places) inside[static_cast<std::size_t>(place)] = 1;
+void put_back(const Shape& shape, const std::vector<PlaceOrbit>& orbits, const std::vector<char>& held,
+              Points& positions) {
+  for (std::size_t o = 0; o < orbits.size(); ++o) {
+    if (held[o] == 0) continue;
+    for (const int member : orbits[o].members) positions.row(member) = shape.places.positions.row(member);
   }
-  std::vector<char> mapped(inside.size(), 0);
-  std::vector<char> left(inside.size(), 0);
-  for (const PlaceOrbit& orbit : orbits) {
+}
+
+std::vector<RegionDemand> region_demands(const Shape& shape) {
+  std::vector<RegionDemand> demands;
+  for (std::size_t r = 0; r < shape.finite.size(); ++r) {
+    demands.push_back(region_demand(shape.mesh, shape.places, shape.annotation.regions[r], shape.finite[r]));
+  }
+  return demands;
+}
+
+// Every region counts by what it gains of what it had, so that none pays for another.
+std::vector<double> region_weights(const Shape& shape, const std::vector<GapSummary>& before) {
+  std::vector<double> weights;
+  for (const GapSummary& gaps : before) {
+    const double pairs = static_cast<double>(std::max<std::size_t>(1, gaps.pairs));
+    const double least = kAlmostExact * shape.scale;
+    weights.push_back(1 / (gaps.squares + pairs * least * least));
+  }
+  return weights;
+}
+
+struct Outcome {
+  std::vector<PlaceOrbit> orbits;
+  Points positions;
+  std::vector<GapSummary> before, after;  // of each region
+  std::vector<char> held;                 // by orbit
+  int iterations = 0;
+};
+
+// From `start`: orbits' means, circles, then what lies between vertices.
+int average(const Shape& shape, ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const HeldOrbits& holding,
+            const std::vector<char>& stiff, const Points& start, Points& positions, const RunContext& context) {
+  positions = start;
+  average_orbits(orbits, holding.held(), positions);
+  make_rings(shape, positions, context);
+  put_back(shape, orbits, holding.held(), positions);
+  average_orbits(orbits, holding.held(), positions);
+  GapWeights weights{{}, region_weights(shape, holding.before()), stiff};
+  for (const char held : holding.held()) weights.free.push_back(held != 0 ? 0 : 1);
+  return close_gaps(pairs, orbits, weights, shape.reach, shape.places, positions, context);
+}
+
+Outcome make_symmetric(const Shape& shape, const RunContext& context) {
+  ImagePairs pairs(shape.mesh, shape.places, region_demands(shape));
+  Outcome outcome;
+  Points start = shape.places.positions;
+  std::vector<char> stiff(static_cast<std::size_t>(start.rows()), 0);
+  outcome.orbits = find_orbits(shape, start, context);
+  const std::vector<SurfaceMatch> at_rest = pairs.match(start, nullptr, context);
+  RunContext quiet = context;  // what was said once need not be said again
+  quiet.on_message = nullptr;
+  // Parts out of place by more than they are fine find their images once they are in place.
+  for (int pass = 1; pass < kMaxPasses; ++pass) {
+    const HeldOrbits none(pairs, outcome.orbits, shape.places.positions, at_rest);
+    const int iterations =
+        average(shape, pairs, outcome.orbits, none, stiff, start, outcome.positions, pass == 1 ? context : quiet);
+    if (iterations == 0) break;
+    outcome.iterations += iterations;
+    std::vector<PlaceOrbit> orbits = find_orbits(shape, outcome.positions, context);
+    if (complete_members(orbits) <= complete_members(outcome.orbits)) break;
+    outcome.orbits = std::move(orbits);
+    start = outcome.positions;
+  }
+  HeldOrbits holding(pairs, outcome.orbits, shape.places.positions, at_rest);
+  outcome.before = holding.before();
+  bool worse = true;
+  for (int round = 0; worse && round < kMaxRounds; ++round) {
+    outcome.iterations += average(shape, pairs, outcome.orbits, holding, stiff, start, outcome.positions, quiet);
+    const std::vector<int> folded = holding.folded(outcome.positions);
+    if (!folded.empty() && round < kMaxStiffer) {
+      for (const int face : folded) {
+        for (const int corner : pairs.corners(face)) stiff[static_cast<std::size_t>(corner)] = 1;
+      }
+      continue;
+    }
+    holding.hold_far(outcome.positions, 2 * shape.reach);
+    holding.hold_folded(outcome.positions);
+    put_back(shape, outcome.orbits, holding.held(), outcome.positions);
+    worse = holding.hold_more(outcome.positions, false, context) || !holding.folded(outcome.positions).empty();
+  }
+  for (int round = 0; worse; ++round) {
+    context.check();
+    put_back(shape, outcome.orbits, holding.held(), outcome.positions);
+    const bool folded = holding.hold_folded(outcome.positions);
+    worse = holding.hold_more(outcome.positions, round >= kMaxHolds, context) || folded;
+  }
+  outcome.held = holding.held();
+  outcome.after = holding.summary(outcome.positions, context);
+  return outcome;
+}
+
+Residual residual_of(const GapSummary& gaps, double scale) {
+  if (gaps.pairs == 0) return {};
+  return {std::sqrt(gaps.squares / static_cast<double>(gaps.pairs)) / scale, gaps.max / scale};
+}
+
+SymmetrizeReport make_report(const Shape& shape, const Outcome& outcome, const Mesh& result) {
+  SymmetrizeReport report;
+  report.iterations = outcome.iterations;
+  const auto places = static_cast<std::size_t>(shape.places.positions.rows());
+  std::vector<char> inside(places, 0);
+  for (const std::vector<int>& region : shape.inside) {
+    for (const int place : region) inside[static_cast<std::size_t>(place)] = 1;
+  }
+  std::vector<char> mapped(places, 0);
+  std::vector<char> clashing(places, 0);
+  std::vector<char> held(places, 0);
+  for (std::size_t o = 0; o < outcome.orbits.size(); ++o) {
+    const PlaceOrbit& orbit = outcome.orbits[o];
     for (const int member : orbit.members) {
-      mapped[static_cast<std::size_t>(member)] = orbit.complete ? 1 : 0;
-      left[static_cast<std::size_t>(member)] = unclosed[static_cast<std::size_t>(orbit.members.front())];
+      const auto place = static_cast<std::size_t>(member);
+      mapped[place] = orbit.complete && outcome.held[o] == 0 ? 1 : 0;
+      clashing[place] = orbit.clashes ? 1 : 0;
+      held[place] = outcome.held[o];
     }
   }
   for (std::size_t r = 0; r < shape.inside.size(); ++r) {
@@ -299,12 +275,12 @@ SymmetrizeReport make_report(const Shape& shape, const std::vector<PlaceOrbit>& 
     if (inside[place] == 0) continue;
     sum += movement * movement;
     ++report.in_regions;
-    if (mapped[place] != 0) ++report.mapped;
-    if (left[place] != 0) ++report.unclosed;
+    report.mapped += mapped[place];
+    report.unclosed += clashing[place];
+    report.held += held[place];
   }
   if (report.in_regions > 0) report.rms_movement = std::sqrt(sum / report.in_regions);
   for (std::size_t r = 0; r < shape.inside.size(); ++r) {
-    context.progress("residuals", static_cast<double>(r) / static_cast<double>(shape.inside.size()));
     const Region& region = shape.annotation.regions[r];
     SymmetrizeReport::RegionChange change;
     change.id = region.id;
@@ -312,14 +288,22 @@ SymmetrizeReport make_report(const Shape& shape, const std::vector<PlaceOrbit>& 
     change.places = static_cast<int>(shape.inside[r].size());
     change.mapped = static_cast<int>(std::ranges::count_if(
         shape.inside[r], [&](int place) { return mapped[static_cast<std::size_t>(place)] != 0; }));
-    if (shape.finite[r]) {
-      change.group = shape.finite[r]->group.symbol();
-      change.before = residual_of(shape.mesh, *shape.finite[r], context);
-      change.after = residual_of(result, *shape.finite[r], context);
-    }
+    if (shape.finite[r]) change.group = shape.finite[r]->group.symbol();
+    change.before = residual_of(outcome.before[r], shape.scale);
+    change.after = residual_of(outcome.after[r], shape.scale);
     report.regions.push_back(change);
   }
   return report;
+}
+
+void refuse_worse(const SymmetrizeReport::RegionChange& change) {
+  const auto grew = [](double before, double after) { return after > before + kSameResidual; };
+  if (!grew(change.before.max, change.after.max) && !grew(change.before.rms, change.after.rms)) return;
+  std::ostringstream text;
+  text << "region \"" << change.name << "\" would be worse than before: its residual would go from "
+       << change.before.max << " to " << change.after.max << " of the diagonal at worst, from " << change.before.rms
+       << " to " << change.after.rms << " on average";
+  throw NoResultError(text.str());
 }
 
 }  // namespace
@@ -327,28 +311,18 @@ SymmetrizeReport make_report(const Shape& shape, const std::vector<PlaceOrbit>& 
 Mesh symmetrized(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                  SymmetrizeReport* report) {
   const Shape shape = prepare(mesh, annotation, context);
-  const std::vector<RegionMatching> matchings = match_regions(shape, context);
-  const std::vector<PlaceOrbit> orbits = matched_orbits(shape.places, matchings, shape.scale, 2 * shape.reach);
-  Points positions = shape.places.positions;
-  for (const PlaceOrbit& orbit : orbits) {
-    if (orbit.members.size() > 1 || !orbit.stabilisers.empty()) {
-      place_images(orbit, orbit_mean(orbit, shape.places.positions), positions);
-    }
-  }
-  std::vector<char> unclosed(static_cast<std::size_t>(positions.rows()), 0);
-  const int iterations = average_over_surfaces(shape, orbits, positions, unclosed, context);
-  make_rings(shape, positions, context);
-  settle(shape, matchings, positions, context);
+  const Outcome outcome = make_symmetric(shape, context);
   // What no region holds keeps its very coordinates, also where vertices lie a rounding apart.
   Mesh result = mesh;
   for (Index v = 0; v < result.vertices.rows(); ++v) {
     const int place = shape.places.of_vertex[static_cast<std::size_t>(v)];
-    if (positions.row(place) != shape.places.positions.row(place)) result.vertices.row(v) = positions.row(place);
+    if (outcome.positions.row(place) != shape.places.positions.row(place)) {
+      result.vertices.row(v) = outcome.positions.row(place);
+    }
   }
-  if (report != nullptr) {
-    *report = make_report(shape, orbits, unclosed, result, context);
-    report->iterations = iterations;
-  }
+  const SymmetrizeReport made = make_report(shape, outcome, result);
+  for (const SymmetrizeReport::RegionChange& change : made.regions) refuse_worse(change);
+  if (report != nullptr) *report = made;
   return result;
 }
 

@@ -229,6 +229,124 @@ TEST(SymmetrizeSurface, BringsUnrelatedTessellationsTogether) {
   EXPECT_LT(report.largest_movement, 2 * before);
 }
 
+// A mirrored part whose halves have unrelated tessellations, both finer than it is off the mirror plane: nothing folds,
+// and no image is farther from the surface than before.
+TEST(SymmetrizeSurface, FoldsNothingWhereVerticesAreCloserThanTheErrorIs) {
+  std::vector<double> angles;
+  for (int k = 0; k < 210; ++k) angles.push_back(std::numbers::pi * (k / 210.0 - 0.5));
+  for (int k = 0; k < 330; ++k) angles.push_back(std::numbers::pi * (k / 330.0 + 0.5));
+  Mesh rough = turned(angles, angles);
+  SymmetryAnnotation mirror = whole(rough, "Cs");
+  mirror.regions[0] = make_region(PointGroup::parse("Cs").value(), Eigen::Vector3d::Zero(),
+                                  frame_about(Eigen::Vector3d::UnitX()), mirror.regions[0].faces, "whole");
+  rough.vertices.col(0).array() += 0.004;
+  SymmetrizeReport report;
+  const Mesh exact = symmetrized(rough, mirror, RunContext{}, &report);
+  for (int f = 0; f < rough.faces.rows(); ++f) ASSERT_GT(face_normal(rough, f).dot(face_normal(exact, f)), 0.5) << f;
+  EXPECT_LT(report.regions[0].after.max, 0.1 * report.regions[0].before.max);
+  EXPECT_LT(report.regions[0].after.rms, 0.1 * report.regions[0].before.rms);
+}
+
+// Vertices at places of their own in one of four equal legs, so that its images lie between vertices.
+Mesh retessellated_leg(Mesh mesh, const std::vector<int>& leg) {
+  const Eigen::Index vertices = mesh.vertices.rows();
+  const Eigen::Index faces = mesh.faces.rows();
+  mesh.vertices.conservativeResize(vertices + static_cast<Eigen::Index>(leg.size()), 3);
+  mesh.faces.conservativeResize(faces + 2 * static_cast<Eigen::Index>(leg.size()), 3);
+  for (std::size_t i = 0; i < leg.size(); ++i) {
+    const Eigen::RowVector3i corners = mesh.faces.row(leg[i]);
+    const auto middle = static_cast<int>(vertices + static_cast<Eigen::Index>(i));
+    mesh.vertices.row(middle) =
+        0.5 * mesh.vertices.row(corners[0]) + 0.3 * mesh.vertices.row(corners[1]) + 0.2 * mesh.vertices.row(corners[2]);
+    mesh.faces.row(leg[i]) = Eigen::RowVector3i(corners[0], corners[1], middle);
+    mesh.faces.row(faces + 2 * static_cast<Eigen::Index>(i)) = Eigen::RowVector3i(corners[1], corners[2], middle);
+    mesh.faces.row(faces + 2 * static_cast<Eigen::Index>(i) + 1) = Eigen::RowVector3i(corners[2], corners[0], middle);
+  }
+  return mesh;
+}
+
+// The table's truth on that mesh.
+SymmetryAnnotation retessellated_truth(const SymmetryAnnotation& truth, const Mesh& mesh, const std::vector<int>& leg) {
+  SymmetryAnnotation annotation = truth;
+  annotation.mesh_vertices = static_cast<int>(mesh.vertices.rows());
+  annotation.mesh_faces = static_cast<int>(mesh.faces.rows());
+  annotation.patterns.clear();
+  for (Region& region : annotation.regions) {
+    const std::vector<int> before = region.faces;
+    for (std::size_t i = 0; i < leg.size(); ++i) {
+      if (!std::ranges::binary_search(before, leg[i])) continue;
+      for (int k = 0; k < 2; ++k) region.faces.push_back(truth.mesh_faces + 2 * static_cast<int>(i) + k);
+    }
+    std::ranges::sort(region.faces);
+  }
+  return annotation;
+}
+
+class SymmetrizeNested : public testing::Test {
+ protected:
+  SymmetrizeNested() {
+    const std::vector<int>& leg = std::ranges::min_element(model_.truth.regions, {}, [](const Region& region) {
+                                    return region.faces.size();
+                                  })->faces;
+    const Mesh mesh = retessellated_leg(model_.mesh, leg);
+    annotation_ = retessellated_truth(model_.truth, mesh, leg);
+    rough_ = perturbed(mesh, 0.5 * bearable_noise(model_.mesh) * diagonal(mesh.vertices));
+  }
+
+  GeneratedModel model_ = generate("table");
+  SymmetryAnnotation annotation_;
+  Mesh rough_;
+};
+
+TEST_F(SymmetrizeNested, NoRegionIsWorseWhereOneLegIsTessellatedOtherwise) {
+  ASSERT_GT(annotation_.regions.size(), 3U);
+  SymmetrizeReport report;
+  const Mesh exact = symmetrized(rough_, annotation_, RunContext{}, &report);
+  EXPECT_LT(report.mapped, report.in_regions);
+  EXPECT_GT(report.mapped, report.in_regions / 4);
+  EXPECT_EQ(report.unclosed, 0);
+  for (const SymmetrizeReport::RegionChange& region : report.regions) {
+    EXPECT_LE(region.after.max, region.before.max + 1e-12) << region.name;
+    EXPECT_LT(region.after.rms, 0.5 * region.before.rms) << region.name;
+  }
+  for (int f = 0; f < rough_.faces.rows(); ++f) ASSERT_GT(face_normal(rough_, f).dot(face_normal(exact, f)), 0.5) << f;
+}
+
+TEST_F(SymmetrizeNested, GivesTheSameBytesWithAnyNumberOfThreads) {
+  const Mesh alone = symmetrized(rough_, annotation_, RunContext{});
+  for (const int threads : {2, 5}) {
+    RunContext several;
+    several.threads = threads;
+    EXPECT_EQ(symmetrized(rough_, annotation_, several).vertices, alone.vertices) << threads;
+  }
+}
+
+// Two mirrors that all but meet at a right angle generate a group without end: the first is exact, the second no worse.
+TEST(SymmetrizeClash, MakesTheFirstRegionExactAndNoneWorse) {
+  const GeneratedModel model = generate_orbit(PointGroup::parse("C2v").value(), OrbitOptions{});
+  SymmetryAnnotation annotation = empty_annotation(model.mesh, 0.005);
+  const PointGroup mirror = PointGroup::parse("Cs").value();
+  const std::vector<Motion>& elements = model.truth.regions[0].elements;
+  for (const Motion& element : elements) {
+    const AxisAngle part = axis_angle(element.linear);
+    if (part.determinant > 0) continue;
+    const Eigen::Vector3d normal =
+        annotation.regions.empty() ? part.axis : Eigen::Vector3d(part.axis + 1e-3 * Eigen::Vector3d(1, 1, 1));
+    annotation.regions.push_back(make_region(mirror, model.truth.regions[0].centre, frame_about(normal.normalized()),
+                                             model.truth.regions[0].faces, "mirror"));
+    annotation.regions.back().id = static_cast<int>(annotation.regions.size()) - 1;
+  }
+  ASSERT_EQ(annotation.regions.size(), 2U);
+  SymmetrizeReport report;
+  symmetrized(perturbed(model.mesh, 3e-4 * diagonal(model.mesh.vertices)), annotation, RunContext{}, &report);
+  EXPECT_GT(report.unclosed, 0);
+  EXPECT_LT(report.regions[0].after.max, report.regions[0].before.max);
+  for (const SymmetrizeReport::RegionChange& region : report.regions) {
+    EXPECT_LE(region.after.max, region.before.max + 1e-12);
+    EXPECT_LE(region.after.rms, region.before.rms + 1e-12);
+  }
+}
+
 TEST(SymmetrizePart, LeavesTheRestAlone) {
   const GeneratedModel model = generate("chair");
   SymmetryAnnotation annotation = model.truth;

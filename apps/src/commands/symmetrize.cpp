@@ -42,6 +42,7 @@ nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryRep
           {"vertices_in_regions", report.in_regions},
           {"mapped", report.mapped},
           {"unclosed", report.unclosed},
+          {"held", report.held},
           {"iterations", report.iterations},
           {"vertices_onto_vertices", after.vertices_onto_vertices},
           {"residual", after.worst_floor},
@@ -49,16 +50,19 @@ nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryRep
 }
 
 std::string to_text(const std::string& output, const SymmetrizeReport& report, const SymmetryReport& after) {
-  TextTable table({"region", "group", "places", "mapped", "before max", "after rms", "after max", "name"});
+  TextTable table(
+      {"region", "group", "places", "mapped", "before rms", "before max", "after rms", "after max", "name"});
   for (std::size_t r = 0; r < report.regions.size(); ++r) {
     const SymmetrizeReport::RegionChange& change = report.regions[r];
     table.add({std::to_string(change.id), after.regions[r].group, std::to_string(change.places),
-               std::to_string(change.mapped), change.group.empty() ? "-" : short_number(change.before.max, 3),
-               short_number(after.regions[r].floor.rms, 3), short_number(after.regions[r].floor.max, 3), change.name});
+               std::to_string(change.mapped), short_number(change.before.rms, 3), short_number(change.before.max, 3),
+               short_number(change.after.rms, 3), short_number(change.after.max, 3), change.name});
   }
   return output + ": vertices moved by " + short_number(report.largest_movement, 3) + " at most, " +
          short_number(report.rms_movement, 3) + " rms; " + std::to_string(report.mapped) + " of " +
-         count_of(report.in_regions, "vertex", "vertices") + " in regions exactly symmetric\n" +
+         count_of(report.in_regions, "vertex", "vertices") + " in regions exactly symmetric" +
+         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, lest a region get worse" : "") +
+         (report.unclosed > 0 ? ", groups disagree about " + std::to_string(report.unclosed) : "") + "\n" +
          (report.regions.empty() ? "" : table.text()) + "Lengths are fractions of the diagonal.\n";
 }
 

@@ -4,17 +4,33 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <thread>
 #include <vector>
 
+#ifndef __SANITIZE_THREAD__
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#endif
 
 #include "orbifit/model/errors.h"
 
 namespace orbifit {
 
 namespace {
+
+#ifdef __SANITIZE_THREAD__
+
+// The thread sanitizer does not see what TBB's threads wait for, and would report all that they hand to one another.
+template <class Work>
+void run_on(std::size_t threads, int /*allowed*/, const Work& work) {
+  std::vector<std::thread> others;
+  for (std::size_t thread = 1; thread < threads; ++thread) others.emplace_back(work, thread);
+  work(0);
+  for (std::thread& other : others) other.join();
+}
+
+#else
 
 // Where loops on so many threads run. Made once: an arena takes a millisecond to get its threads together.
 tbb::task_arena& arena_of(int threads) {
@@ -23,6 +39,21 @@ tbb::task_arena& arena_of(int threads) {
   const std::lock_guard lock(mutex);
   return arenas.try_emplace(threads, threads).first->second;
 }
+
+// Runs work(0) ... work(threads - 1), as many at once as are allowed and there are cores.
+template <class Work>
+void run_on(std::size_t threads, int allowed, const Work& work) {
+  const auto loop = [&] { tbb::parallel_for(std::size_t{0}, threads, work, tbb::simple_partitioner{}); };
+  // More than there are cores would not be faster, and TBB warns of them.
+  const int usable = std::min(allowed, tbb::info::default_concurrency());
+  if (tbb::this_task_arena::max_concurrency() == usable) {
+    loop();
+  } else {
+    arena_of(usable).execute(loop);
+  }
+}
+
+#endif
 
 }  // namespace
 
@@ -69,14 +100,7 @@ void parallel_for(const RunContext& context, std::size_t count,
       }
     }
   };
-  const auto loop = [&] { tbb::parallel_for(std::size_t{0}, threads, work, tbb::simple_partitioner{}); };
-  // More than there are cores would not be faster, and TBB warns of them.
-  const int usable = std::min(context.threads, tbb::info::default_concurrency());
-  if (tbb::this_task_arena::max_concurrency() == usable) {
-    loop();
-  } else {
-    arena_of(usable).execute(loop);
-  }
+  run_on(threads, context.threads, work);
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }

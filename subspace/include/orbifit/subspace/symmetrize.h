@@ -15,7 +15,8 @@ struct SymmetrizeReport {
   double rms_movement = 0;      ///< over the vertices that lie in regions
   int in_regions = 0;           ///< vertices that lie in regions
   int mapped = 0;               ///< of these: all images are vertices, the result is exactly symmetric there
-  int unclosed = 0;             ///< of these: their orbit does not close, they were left as they are
+  int unclosed = 0;             ///< of these: groups disagree about where they belong, not all could be followed
+  int held = 0;                 ///< of these: left as they are, since a region would be worse if they moved
   int iterations = 0;           ///< over the vertices whose images are surface points between vertices
   struct RegionChange {
     int id = 0;
@@ -23,8 +24,7 @@ struct SymmetrizeReport {
     std::string group;       ///< Schoenflies symbol; for a continuous group that which its tessellation has, or ""
     int places = 0;          ///< of the region's vertices, those at one place counted once
     int mapped = 0;          ///< of these: all images under all regions are vertices
-    Residual before, after;  ///< distances of the vertices' images from the region's surface; vertices are thinned out
-                             ///< to about 200 000 pairs of vertex and element
+    Residual before, after;  ///< distances of the vertices' images from the region's surface
   };
   std::vector<RegionChange> regions;  ///< in the annotation's order
 };
@@ -32,17 +32,20 @@ struct SymmetrizeReport {
 /// The nearest exactly symmetric rest shape (method notes 2.5): every vertex moves to the average over its orbit.
 /// Where a region's group maps vertices near vertices one to one, orbits are made of vertices: the first takes the mean
 /// of all, each taken back to it, moved to where its stabiliser leaves it, and the others are its exact images, under
-/// all regions at once, nested and overlapping ones too. Where an image lies between vertices the mean goes over the
-/// nearest points of the region's surface, M_k^-1(nearest(M_k p)), and is repeated until it stops moving: such parts
-/// become symmetric up to their tessellation. The parts of continuous groups become turned ones: vertices of about the
-/// same distance from the axis and height take the same, at regular angles where the tessellation has them. Patterns
-/// are left as they are. Connectivity, order and number of vertices stay; vertices at one place stay at one place.
-/// Detected groups that miss one another by less than 1e-4 of the diagonal cannot all be exact: then the annotation's
-/// first region is, and later ones as nearly as they agree with it.
+/// all regions at once, nested and overlapping ones too. Where images lie between vertices, vertices and the surface
+/// that their images meet go towards each other by least squares: such parts become symmetric up to their tessellation.
+/// The parts of continuous groups become surfaces of revolution: vertices of about the same distance from the axis and
+/// height take the same, at regular angles where the tessellation has them. Patterns are left as they are.
+/// Connectivity, order and number of vertices stay; vertices at one place stay at one place.
+/// No region is worse than before, neither at its worst vertex nor on average: vertices whose movement would make one
+/// so stay where they are. Where groups miss one another no shape has all of them: the annotation's first regions are
+/// made exact there, and later ones as nearly as they agree with those.
 /// \param annotation its tolerance says how far an image may lie from its vertex: twice that
 /// \param report may be null
-/// \return the moved mesh; cost O(sum over regions of V log V), and |G| nearest points a vertex where images lie
-///         between vertices
+/// \return the moved mesh; cost: |G| nearest points of every vertex of every region a few times, and some tens of
+///         times where images lie between vertices
+/// \throw NoResultError when a region's largest or root mean square residual would be larger than before by more than
+///        1e-12
 Mesh symmetrized(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                  SymmetrizeReport* report = nullptr);
 

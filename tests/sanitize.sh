@@ -1,0 +1,60 @@
+#!/bin/sh
+# Builds with sanitizers and runs what they are to look at: `tests/sanitize.sh [asan-ubsan] [tsan]`, both by default, from
+# anywhere. Takes some ten minutes each on two cores the first time; not part of CI. Ends with 1 on the first report.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+jobs=$(nproc)
+
+configure() {
+  (cd "$root" && cmake --preset "$1" -Wno-dev -DORBIFIT_BUILD_TESTS=ON >/dev/null)
+}
+
+# Every test of the libraries that read files or count on bounds.
+asan_ubsan() {
+  configure asan-ubsan
+  cmake --build "$root/build/asan-ubsan" --target orbifit model_test subspace_test -j "$jobs"
+  "$root/build/asan-ubsan/tests/detection/model/model_test"
+  "$root/build/asan-ubsan/tests/subspace/subspace_test"
+  commands "$root/build/asan-ubsan/apps/orbifit"
+}
+
+# Whatever runs on several threads.
+tsan() {
+  configure tsan
+  TSAN_OPTIONS="suppressions=$root/tests/support/tsan.supp halt_on_error=1 exitcode=66 second_deadlock_stack=1"
+  export TSAN_OPTIONS
+  cmake --build "$root/build/tsan" --target orbifit model_test subspace_test -j "$jobs"
+  "$root/build/tsan/tests/detection/model/model_test" --gtest_filter='*Parallel*:*Thread*:*SurfaceIndex*:*PointIndex*'
+  "$root/build/tsan/tests/subspace/subspace_test" --gtest_filter='*Thread*:SymmetrizeSurface.*:*RadiusField*'
+  commands "$root/build/tsan/apps/orbifit"
+}
+
+# commands PROGRAM: each stage once, on two threads.
+commands() {
+  folder=$(mktemp -d)
+  trap 'rm -rf "$folder"' EXIT
+  cd "$folder"
+  "$1" generate table -o table
+  mesh=$(find table -name '*.obj' -o -name '*.ply' | sort | head -n 1)
+  printf '%s\n' '{ "handles": [' \
+    '{ "name": "pulled", "vertices": [0], "translation": [0.02, 0, 0] }, { "name": "held", "vertices": [9] } ] }' >handles.json
+  "$1" detect "$mesh" -o found.json --threads 2
+  "$1" subspace "$mesh" found.json -o basis --threads 2
+  for mode in fixed floating moving; do
+    "$1" deform "$mesh" found.json --handles handles.json --mode "$mode" -o edited.ply --threads 2
+  done
+  "$1" symmetrize "$mesh" found.json -o symmetric.ply --threads 2
+  "$1" scan "$mesh" --views 3 --noise 0.002 -o scan.ply --threads 2
+  "$1" fit "$mesh" scan.ply --annotation found.json -o fitted.ply --threads 2 || [ $? -eq 1 ]
+  "$1" check fitted.ply found.json --threads 2
+  cd "$root"
+  rm -rf "$folder"
+}
+
+for selection in ${*:-asan-ubsan tsan}; do
+  case $selection in
+    asan-ubsan) asan_ubsan ;;
+    tsan) tsan ;;
+    *) echo "sanitize.sh: unknown selection '$selection' (asan-ubsan, tsan)" >&2; exit 2 ;;
+  esac
+done
