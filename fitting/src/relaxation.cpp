@@ -9,6 +9,7 @@
 #include "orbifit/subspace/subspace.h"
 
 #include "fit_system.h"
+#include "fit_systems.h"
 #include "fit_trial.h"
 
 namespace orbifit {
@@ -24,7 +25,7 @@ Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& 
   free.subspace.samples = kFewSamples;
   const FitInput without = input.with(none);
   const Subspace subspace = build_subspace(input.mesh, none, free.subspace, context);
-  FitSystem system(subspace, input.mesh, free.stretch);
+  FitSystem system(subspace, input.mesh, free.stretch, contacts_to_keep(subspace, input.mesh, free, context));
   return fit_from(without, start, system, free, context).fitted;
 }
 
@@ -37,7 +38,7 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   }
   const SymmetryAnnotation rest = closable(input.mesh, without_regions(input.annotation, result.relaxed), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
-  FitSystem system(subspace, input.mesh, options.stretch);
+  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);
   found.field_residual = worst_field_residual(subspace, input.mesh, rest, {found.q, found.basis}, context);
   found.iterations_in_all += result.iterations_in_all;

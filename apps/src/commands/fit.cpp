@@ -30,6 +30,7 @@ struct FitArguments {
   std::vector<double> up{0, 0, 1};
   std::vector<double> viewpoint;
   bool aligned = false;
+  bool no_contacts = false;
   std::vector<int> without;
   FitOptions options;
   SubspaceArguments subspace;
@@ -102,6 +103,7 @@ CommandBody fit(CLI::App& app) {
       ->delimiter(',')
       ->type_name("ID,...");
   app.add_flag("--auto-relax", options.relax, "Do not keep the groups that the scan has not, as a fit without shows");
+  app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
@@ -111,6 +113,7 @@ CommandBody fit(CLI::App& app) {
     FitOptions& chosen = arguments->options;
     chosen.place = !arguments->aligned && arguments->landmarks.empty() && arguments->handles.empty();
     chosen.align = !arguments->aligned;
+    chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();
     const Eigen::Vector3d up = to_direction("--up", arguments->up);
