@@ -104,24 +104,74 @@ std::vector<std::vector<int>> orbits_of(const std::vector<LookAtContact>& looks)
 // Points kept so far, pair of parts by pair.
 class Kept {
  public:
-  Kept(const std::vector<TouchingPoints>& touching, double spacing) : touching_(touching), spacing_(spacing) {}
+  /// \param spacing  of each of the touching points: how far from it the next is kept
+  Kept(const std::vector<TouchingPoints>& touching, const std::vector<double>& spacing)
+      : touching_(touching), spacing_(spacing) {}
 
-  bool near(int number) const {
-    const TouchingPoints& here = at(number);
-    const auto pair = by_parts_.find(here.parts);
-    return pair != by_parts_.end() && std::ranges::any_of(pair->second, [&](int other) {
-             return (at(other).middle - here.middle).norm() < spacing_;
-           });
-  }
+  bool near(int number) const { return distance(number) < spacing_[static_cast<std::size_t>(number)]; }
+
   void add(int number) { by_parts_[at(number).parts].push_back(number); }
+
+  /// From a point to the nearest one kept, which is told as well.
+  double distance(int number, int* nearest = nullptr) const {
+    double least = std::numeric_limits<double>::infinity();
+    const auto pair = by_parts_.find(at(number).parts);
+    if (pair == by_parts_.end()) return least;
+    for (const int other : pair->second) {
+      const double here = (at(other).middle - at(number).middle).norm();
+      if (here >= least) continue;
+      least = here;
+      if (nearest != nullptr) *nearest = other;
+    }
+    return least;
+  }
 
  private:
   const TouchingPoints& at(int number) const { return touching_[static_cast<std::size_t>(number)]; }
 
   const std::vector<TouchingPoints>& touching_;
-  double spacing_;
+  const std::vector<double>& spacing_;
   std::map<std::array<int, 2>, std::vector<int>> by_parts_;
 };
+
+using Orbits = std::vector<std::vector<int>>;
+
+// Whole orbits, those nearer to others than the spacing left out, and of each what is not too near to itself.
+Orbits thinned(const Orbits& orbits, Kept& kept) {
+  Orbits result;
+  for (const std::vector<int>& orbit : orbits) {
+    if (kept.near(orbit.front())) continue;
+    std::vector<int>& apart = result.emplace_back();
+    for (const int number : orbit) {
+      if (kept.near(number)) continue;
+      kept.add(number);
+      apart.push_back(number);
+    }
+  }
+  return result;
+}
+
+// As wide as asked for, but joints smaller than that are held at several points: one alone would let a part roll.
+std::vector<double> spacing_of(const Orbits& orbits, const std::vector<TouchingPoints>& touching, double widest) {
+  constexpr double kOfExtent = 0.6;  // of how far a joint reaches from one of its points: about five about a round one
+  std::vector<double> spacing(touching.size(), widest);
+  Kept kept(touching, spacing);
+  thinned(orbits, kept);
+  std::vector<double> extent(touching.size(), 0);
+  std::vector<int> nearest(touching.size(), -1);
+  for (const std::vector<int>& orbit : orbits) {
+    for (const int number : orbit) {
+      const auto i = static_cast<std::size_t>(number);
+      const double distance = kept.distance(number, &nearest[i]);
+      double& reach = extent[static_cast<std::size_t>(nearest[i])];
+      reach = std::max(reach, distance);
+    }
+  }
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    if (nearest[i] >= 0) spacing[i] = std::min(widest, kOfExtent * extent[static_cast<std::size_t>(nearest[i])]);
+  }
+  return spacing;
+}
 
 // The sample of a part nearest to a point; of all samples, where the part has none.
 class NearestSample {
@@ -176,21 +226,17 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
   const std::vector<TouchingPoints> touching =
       touching_points(mesh, parts.component_of_face, options.tolerance * subspace.diagonal, spacing, context);
   if (touching.empty()) return {};
+  const Orbits orbits = orbits_of(look_at(touching, subspace, mesh, context));
+  const std::vector<double> spacings = spacing_of(orbits, touching, spacing);
+  Kept kept(touching, spacings);
   const NearestSample nearest(subspace.sampling.points, mesh, parts.component_of_face);
-  Kept kept(touching, spacing);
   std::vector<Contact> contacts;
-  for (const std::vector<int>& orbit : orbits_of(look_at(touching, subspace, mesh, context))) {
-    if (kept.near(orbit.front())) continue;
-    const std::size_t first = contacts.size();
-    double count = 0;
-    for (const int number : orbit) {
-      if (kept.near(number)) continue;
-      kept.add(number);
-      ++count;
-      if (options.representatives && count > 1) continue;
-      contacts.push_back(contact_of(touching[static_cast<std::size_t>(number)], mesh, nearest, 1));
+  for (const std::vector<int>& orbit : thinned(orbits, kept)) {
+    const std::size_t rows = options.representatives ? 1 : orbit.size();
+    const double count = static_cast<double>(orbit.size()) / static_cast<double>(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      contacts.push_back(contact_of(touching[static_cast<std::size_t>(orbit[i])], mesh, nearest, count));
     }
-    if (options.representatives) contacts[first].count = count;
   }
   return contacts;
 }
