@@ -18,9 +18,7 @@ constexpr double kClosed = 1e-9;  // of the diagonal: gaps below this need no tu
 
 Vector3d moved_point(const Contact::Side& side, const Points& of_vertices) {
   Vector3d result = Vector3d::Zero();
-  for (std::size_t k = 0; k < 3; ++k) {
-    result += side.weights[static_cast<Index>(k)] * of_vertices.row(side.vertices[k]).transpose();
-  }
+  for (const auto& [vertex, weight] : side.vertices) result += weight * of_vertices.row(vertex).transpose();
   return result;
 }
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
-#include <numeric>
 
+#include "orbifit/model/disjoint_sets.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/topology.h"
 #include "orbifit/subspace/moving_surface.h"
@@ -23,9 +24,30 @@ constexpr int kContactTrials = 2;      // random displacements
 constexpr double kSameContact = 1e-9;  // of a random displacement: two contacts that differ less are images
 constexpr double kNoGap = 1e-9;        // of the diagonal: what lies nearer is one place
 
-using Looks = std::array<double, 4>;
+using Numbers = std::vector<int>;
 
-// What no symmetry changes of a contact: of its gap at rest, and of what random displacements make of it.
+// A contact to be: one pair of touching points, or all of a joint.
+struct Candidate {
+  Numbers touching;
+  std::array<int, 2> parts;
+  Vector3d middle;
+  Vector3d gap;
+};
+
+Candidate candidate_of(const std::vector<TouchingPoints>& touching, const Numbers& numbers) {
+  Candidate result{numbers, touching[static_cast<std::size_t>(numbers.front())].parts, Vector3d::Zero(),
+                   Vector3d::Zero()};
+  for (const int number : numbers) {
+    result.middle += touching[static_cast<std::size_t>(number)].middle;
+    result.gap += touching[static_cast<std::size_t>(number)].gap;
+  }
+  result.middle /= static_cast<double>(numbers.size());
+  result.gap /= static_cast<double>(numbers.size());
+  return result;
+}
+
+// What no symmetry changes of a contact: what random displacements make of its gap, and the gap at rest.
+using Looks = std::array<double, 4>;
 struct LookAtContact {
   Looks looks;
   int number;
@@ -42,31 +64,48 @@ Vector3d difference(const TouchingPoints& touching, const Mesh& mesh, const Poin
   return result;
 }
 
-// Those whose gap displacements open, with what is looked at, in the order of the latter.
-std::vector<LookAtContact> look_at(const std::vector<TouchingPoints>& touching, const Subspace& subspace,
-                                   const Mesh& mesh, const RunContext& context) {
-  Random random(11, "contacts");
-  std::array<Points, kContactTrials> moved;
-  double size = 0;
-  for (Points& each : moved) {
-    Eigen::VectorXd q(subspace.degrees_of_freedom());
-    for (double& coordinate : q) coordinate = random.normal();
-    each = vertex_displacements(subspace, {q, nullptr}, context);
-    size = std::max(size, each.rowwise().norm().maxCoeff());
+// Looks at contacts under random displacements of a basis.
+class ContactTrials {
+ public:
+  ContactTrials(const Subspace& subspace, const Mesh& mesh, const RunContext& context)
+      : mesh_(mesh), diagonal_(subspace.diagonal) {
+    Random random(11, "contacts");
+    for (Points& each : moved_) {
+      Eigen::VectorXd q(subspace.degrees_of_freedom());
+      for (double& coordinate : q) coordinate = random.normal();
+      each = vertex_displacements(subspace, {q, nullptr}, context);
+      size_ = std::max(size_, each.rowwise().norm().maxCoeff());
+    }
   }
-  std::vector<LookAtContact> result;
-  if (!(size > 0)) return result;
-  for (std::size_t i = 0; i < touching.size(); ++i) {
-    const Vector3d first = difference(touching[i], mesh, moved[0]) / size;
-    const Vector3d second = difference(touching[i], mesh, moved[1]) / size;
-    if (first.norm() < kSameContact && second.norm() < kSameContact) continue;
-    result.push_back(
-        {{first.norm(), second.norm(), (first - second).norm(), touching[i].gap.norm() / subspace.diagonal},
-         static_cast<int>(i)});
+
+  // Of those whose gap displacements open, in the order of what is seen.
+  std::vector<LookAtContact> look_at(const std::vector<Candidate>& candidates,
+                                     const std::vector<TouchingPoints>& touching) const {
+    std::vector<LookAtContact> result;
+    if (!(size_ > 0)) return result;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      std::array<Vector3d, kContactTrials> mean{Vector3d::Zero(), Vector3d::Zero()};
+      for (std::size_t k = 0; k < mean.size(); ++k) {
+        for (const int number : candidates[i].touching) {
+          mean[k] += difference(touching[static_cast<std::size_t>(number)], mesh_, moved_[k]);
+        }
+        mean[k] /= size_ * static_cast<double>(candidates[i].touching.size());
+      }
+      if (mean[0].norm() < kSameContact && mean[1].norm() < kSameContact) continue;
+      result.push_back(
+          {{mean[0].norm(), mean[1].norm(), (mean[0] - mean[1]).norm(), candidates[i].gap.norm() / diagonal_},
+           static_cast<int>(i)});
+    }
+    std::ranges::stable_sort(result, {}, &LookAtContact::looks);
+    return result;
   }
-  std::ranges::stable_sort(result, {}, &LookAtContact::looks);
-  return result;
-}
+
+ private:
+  const Mesh& mesh_;
+  double diagonal_;
+  double size_ = 0;
+  std::array<Points, kContactTrials> moved_;
+};
 
 bool alike(const Looks& a, const Looks& b) {
   double most = 0;
@@ -74,11 +113,13 @@ bool alike(const Looks& a, const Looks& b) {
   return most <= kSameContact;
 }
 
-// Orbits: contacts that look alike, each list ascending; those with the smaller gaps first, then by number.
-std::vector<std::vector<int>> orbits_of(const std::vector<LookAtContact>& looks) {
+using Orbits = std::vector<Numbers>;
+
+// Contacts that look alike, each list ascending; those with the smaller gaps first, then by number.
+Orbits orbits_of(const std::vector<LookAtContact>& looks) {
   struct Found {
     double gap;
-    std::vector<int> numbers;
+    Numbers numbers;
   };
   std::vector<Found> found;
   std::vector<char> taken(looks.size(), 0);
@@ -96,7 +137,7 @@ std::vector<std::vector<int>> orbits_of(const std::vector<LookAtContact>& looks)
   std::ranges::stable_sort(found, [](const Found& a, const Found& b) {
     return a.gap != b.gap ? a.gap < b.gap : a.numbers.front() < b.numbers.front();
   });
-  std::vector<std::vector<int>> result;
+  Orbits result;
   for (Found& orbit : found) result.push_back(std::move(orbit.numbers));
   return result;
 }
@@ -104,15 +145,15 @@ std::vector<std::vector<int>> orbits_of(const std::vector<LookAtContact>& looks)
 // Points kept so far, pair of parts by pair.
 class Kept {
  public:
-  /// \param spacing  of each of the touching points: how far from it the next is kept
-  Kept(const std::vector<TouchingPoints>& touching, const std::vector<double>& spacing)
-      : touching_(touching), spacing_(spacing) {}
+  // How far from each candidate the next is kept.
+  Kept(const std::vector<Candidate>& candidates, const std::vector<double>& spacing)
+      : candidates_(candidates), spacing_(spacing) {}
 
   bool near(int number) const { return distance(number) < spacing_[static_cast<std::size_t>(number)]; }
 
   void add(int number) { by_parts_[at(number).parts].push_back(number); }
 
-  /// From a point to the nearest one kept, which is told as well.
+  // From a candidate to the nearest one kept, which is told as well.
   double distance(int number, int* nearest = nullptr) const {
     double least = std::numeric_limits<double>::infinity();
     const auto pair = by_parts_.find(at(number).parts);
@@ -126,22 +167,22 @@ class Kept {
     return least;
   }
 
+  const std::map<std::array<int, 2>, Numbers>& by_parts() const { return by_parts_; }
+
  private:
-  const TouchingPoints& at(int number) const { return touching_[static_cast<std::size_t>(number)]; }
+  const Candidate& at(int number) const { return candidates_[static_cast<std::size_t>(number)]; }
 
-  const std::vector<TouchingPoints>& touching_;
+  const std::vector<Candidate>& candidates_;
   const std::vector<double>& spacing_;
-  std::map<std::array<int, 2>, std::vector<int>> by_parts_;
+  std::map<std::array<int, 2>, Numbers> by_parts_;
 };
-
-using Orbits = std::vector<std::vector<int>>;
 
 // Whole orbits, those nearer to others than the spacing left out, and of each what is not too near to itself.
 Orbits thinned(const Orbits& orbits, Kept& kept) {
   Orbits result;
-  for (const std::vector<int>& orbit : orbits) {
+  for (const Numbers& orbit : orbits) {
     if (kept.near(orbit.front())) continue;
-    std::vector<int>& apart = result.emplace_back();
+    Numbers& apart = result.emplace_back();
     for (const int number : orbit) {
       if (kept.near(number)) continue;
       kept.add(number);
@@ -151,26 +192,83 @@ Orbits thinned(const Orbits& orbits, Kept& kept) {
   return result;
 }
 
-// As wide as asked for, but joints smaller than that are held at several points: one alone would let a part roll.
-std::vector<double> spacing_of(const Orbits& orbits, const std::vector<TouchingPoints>& touching, double widest) {
+// Where candidates are: of which joint each is, and how far it should stay from others.
+struct Joints {
+  std::vector<Numbers> members;
+  std::vector<char> small;      // whether a joint is one contact
+  std::vector<double> spacing;  // by candidate
+};
+
+// Joints between two parts: candidates that hang together. Those smaller than the spacing are held at several points if
+// they are not one contact: a single point would let a part roll.
+Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits, const std::vector<double>& small_size,
+                 double widest) {
   constexpr double kOfExtent = 0.6;  // of how far a joint reaches from one of its points: about five about a round one
-  std::vector<double> spacing(touching.size(), widest);
-  Kept kept(touching, spacing);
+  Joints result;
+  result.spacing.assign(candidates.size(), 0);
+  // As fine as the joints that are to be told apart.
+  for (std::size_t i = 0; i < candidates.size(); ++i) result.spacing[i] = std::min(widest, 0.25 * small_size[i]);
+  Kept kept(candidates, result.spacing);
   thinned(orbits, kept);
-  std::vector<double> extent(touching.size(), 0);
-  std::vector<int> nearest(touching.size(), -1);
-  for (const std::vector<int>& orbit : orbits) {
-    for (const int number : orbit) {
-      const auto i = static_cast<std::size_t>(number);
-      const double distance = kept.distance(number, &nearest[i]);
-      double& reach = extent[static_cast<std::size_t>(nearest[i])];
-      reach = std::max(reach, distance);
+  DisjointSets hanging(candidates.size());
+  for (const auto& [parts, numbers] : kept.by_parts()) {
+    for (std::size_t a = 0; a < numbers.size(); ++a) {
+      for (std::size_t b = a + 1; b < numbers.size(); ++b) {
+        const auto first = static_cast<std::size_t>(numbers[a]);
+        const auto second = static_cast<std::size_t>(numbers[b]);
+        if ((candidates[first].middle - candidates[second].middle).norm() <= small_size[first]) {
+          hanging.unite(numbers[a], numbers[b]);
+        }
+      }
     }
   }
-  for (std::size_t i = 0; i < touching.size(); ++i) {
-    if (nearest[i] >= 0) spacing[i] = std::min(widest, kOfExtent * extent[static_cast<std::size_t>(nearest[i])]);
+  std::map<int, std::size_t> number_of;
+  for (const Numbers& orbit : orbits) {
+    for (const int number : orbit) {
+      int nearest = number;
+      kept.distance(number, &nearest);
+      const auto [entry, added] = number_of.try_emplace(hanging.root(nearest), result.members.size());
+      if (added) result.members.emplace_back();
+      result.members[entry->second].push_back(number);
+    }
   }
-  return spacing;
+  for (Numbers& joint : result.members) {
+    std::ranges::sort(joint);
+    const Candidate whole = [&] {
+      Candidate mean{{}, {}, Vector3d::Zero(), Vector3d::Zero()};
+      for (const int number : joint) mean.middle += candidates[static_cast<std::size_t>(number)].middle;
+      mean.middle /= static_cast<double>(joint.size());
+      return mean;
+    }();
+    double reach = 0;
+    for (const int number : joint) {
+      reach = std::max(reach, (candidates[static_cast<std::size_t>(number)].middle - whole.middle).norm());
+    }
+    result.small.push_back(2 * reach <= small_size[static_cast<std::size_t>(joint.front())] ? 1 : 0);
+    for (const int number : joint) {
+      result.spacing[static_cast<std::size_t>(number)] = std::min(widest, 2 * kOfExtent * reach);
+    }
+  }
+  return result;
+}
+
+// Those of a joint where the parts meet, rather than come near; all where there are none.
+Numbers closed_ones(const Numbers& joint, const std::vector<TouchingPoints>& touching, double no_gap) {
+  Numbers result;
+  std::ranges::copy_if(joint, std::back_inserter(result),
+                       [&](int number) { return touching[static_cast<std::size_t>(number)].gap.norm() < no_gap; });
+  return result.empty() ? joint : result;
+}
+
+// Twice the largest distance from the mean of a part's vertices, which turning does not change.
+std::vector<double> part_lengths(const Mesh& mesh, const Components& parts) {
+  std::vector<double> result;
+  for (const std::vector<int>& faces : parts.faces) {
+    const Points points = mesh.vertices(vertices_of_faces(mesh, faces), Eigen::all);
+    const Eigen::RowVector3d mean = points.colwise().mean();
+    result.push_back(2 * (points.rowwise() - mean).rowwise().norm().maxCoeff());
+  }
+  return result;
 }
 
 // The sample of a part nearest to a point; of all samples, where the part has none.
@@ -202,16 +300,23 @@ class NearestSample {
   std::vector<int> part_of_sample_;
 };
 
-Contact contact_of(const TouchingPoints& touching, const Mesh& mesh, const NearestSample& nearest, double count) {
+Contact contact_of(const Candidate& candidate, const std::vector<TouchingPoints>& touching, const Mesh& mesh,
+                   const NearestSample& nearest, double count) {
   Contact contact;
   for (std::size_t side = 0; side < 2; ++side) {
-    const FacePoint& point = touching.points[side];
-    for (int k = 0; k < 3; ++k) contact.sides[side].vertices[static_cast<std::size_t>(k)] = mesh.faces(point.face, k);
-    contact.sides[side].weights = point.barycentric;
-    contact.sides[side].sample = nearest(touching.middle, touching.parts[side]);
+    std::map<int, double> weights;
+    for (const int number : candidate.touching) {
+      const FacePoint& point = touching[static_cast<std::size_t>(number)].points[side];
+      for (int k = 0; k < 3; ++k) {
+        if (point.barycentric[k] == 0) continue;
+        weights[mesh.faces(point.face, k)] += point.barycentric[k] / static_cast<double>(candidate.touching.size());
+      }
+    }
+    contact.sides[side].vertices.assign(weights.begin(), weights.end());
+    contact.sides[side].sample = nearest(candidate.middle, candidate.parts[side]);
   }
-  contact.point = touching.middle;
-  contact.gap = touching.gap;
+  contact.point = candidate.middle;
+  contact.gap = candidate.gap;
   contact.count = count;
   return contact;
 }
@@ -226,18 +331,48 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
   const std::vector<TouchingPoints> touching =
       touching_points(mesh, parts.component_of_face, options.tolerance * subspace.diagonal, spacing, context);
   if (touching.empty()) return {};
-  const Orbits orbits = orbits_of(look_at(touching, subspace, mesh, context));
-  const std::vector<double> spacings = spacing_of(orbits, touching, spacing);
-  Kept kept(touching, spacings);
+  const ContactTrials trials(subspace, mesh, context);
   const NearestSample nearest(subspace.sampling.points, mesh, parts.component_of_face);
   std::vector<Contact> contacts;
-  for (const std::vector<int>& orbit : thinned(orbits, kept)) {
-    const std::size_t rows = options.representatives ? 1 : orbit.size();
-    const double count = static_cast<double>(orbit.size()) / static_cast<double>(rows);
-    for (std::size_t i = 0; i < rows; ++i) {
-      contacts.push_back(contact_of(touching[static_cast<std::size_t>(orbit[i])], mesh, nearest, count));
+  const auto keep = [&](const std::vector<Candidate>& candidates, const Orbits& orbits) {
+    for (const Numbers& orbit : orbits) {
+      const std::size_t rows = options.representatives ? 1 : orbit.size();
+      const double each = static_cast<double>(orbit.size()) / static_cast<double>(rows);
+      for (std::size_t i = 0; i < rows; ++i) {
+        contacts.push_back(contact_of(candidates[static_cast<std::size_t>(orbit[i])], touching, mesh, nearest, each));
+      }
     }
+  };
+
+  std::vector<Candidate> points;
+  std::vector<double> small_size;
+  const std::vector<double> lengths = part_lengths(mesh, parts);
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    points.push_back(candidate_of(touching, {static_cast<int>(i)}));
+    const auto [a, b] = touching[i].parts;
+    small_size.push_back(options.joint *
+                         std::min(lengths[static_cast<std::size_t>(a)], lengths[static_cast<std::size_t>(b)]));
   }
+  const Orbits orbits = orbits_of(trials.look_at(points, touching));
+  const Joints joints = joints_of(points, orbits, small_size, spacing);
+
+  std::vector<char> in_small(points.size(), 0);
+  std::vector<Candidate> small;
+  for (std::size_t k = 0; k < joints.members.size(); ++k) {
+    if (joints.small[k] == 0) continue;
+    small.push_back(candidate_of(touching, closed_ones(joints.members[k], touching, kNoGap * subspace.diagonal)));
+    for (const int number : joints.members[k]) in_small[static_cast<std::size_t>(number)] = 1;
+  }
+  keep(small, orbits_of(trials.look_at(small, touching)));
+  Orbits in_large;
+  for (const Numbers& orbit : orbits) {
+    Numbers rest;
+    std::ranges::copy_if(orbit, std::back_inserter(rest),
+                         [&](int number) { return in_small[static_cast<std::size_t>(number)] == 0; });
+    if (!rest.empty()) in_large.push_back(std::move(rest));
+  }
+  Kept kept(points, joints.spacing);
+  keep(points, thinned(in_large, kept));
   return contacts;
 }
 
@@ -251,13 +386,10 @@ Eigen::MatrixXd contact_rows(const std::vector<Contact>& contacts, const Subspac
   Eigen::Matrix3Xd of_vertex(3, rows.cols());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t side = 0; side < 2; ++side) {
-      const Contact::Side& at = contacts[i].sides[side];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double weight = (side == 0 ? 1 : -1) * at.weights[static_cast<Index>(k)];
-        if (weight == 0) continue;
+      for (const auto& [vertex, weight] : contacts[i].sides[side].vertices) {
         of_vertex.setZero();
-        add_vertex_rows(subspace, basis, at.vertices[k], of_vertex);
-        rows.middleRows<3>(3 * static_cast<Index>(i)) += weight * of_vertex;
+        add_vertex_rows(subspace, basis, vertex, of_vertex);
+        rows.middleRows<3>(3 * static_cast<Index>(i)) += (side == 0 ? weight : -weight) * of_vertex;
       }
     }
   }

@@ -75,8 +75,7 @@ class Look {
     swapped_ = swapped;
     const AlignedBox3d reach = grown(to_.box, tolerance_);
     for (const int face : from_.faces) {
-      const AlignedBox3d box = box_of(mesh_, face);
-      if (!reach.intersects(box)) continue;
+      if (!reach.intersects(box_of(mesh_, face)) || !near(face)) continue;
       look_from_points(face, reach);
       for (int k = 0; k < 3; ++k) look_along_edge(face, k);
     }
@@ -100,6 +99,14 @@ class Look {
     touching.middle = 0.5 * (first + second);
     touching.gap = first - second;
     found_.push_back(touching);
+  }
+
+  // Whether any of the face may touch.
+  bool near(int face) const {
+    const Vector3d centre = (corner(face, 0) + corner(face, 1) + corner(face, 2)) / 3;
+    double radius = 0;
+    for (int k = 0; k < 3; ++k) radius = std::max(radius, (corner(face, k) - centre).norm());
+    return to_.surface->nearest(centre, radius + tolerance_, likely_).face >= 0;
   }
 
   // Corners, and a lattice of points between them where the face is large.

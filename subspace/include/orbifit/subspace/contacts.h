@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,15 +16,14 @@ namespace orbifit {
 /// does there the other's does too.
 struct Contact {
   struct Side {
-    std::array<int, 3> vertices;  ///< of the face
-    Eigen::Vector3d weights;      ///< barycentric, sum 1
-    int sample = -1;              ///< the sample of the same part nearest to the place: it tells how that turns
+    std::vector<std::pair<int, double>> vertices;  ///< and weights that sum to 1: a point of the surface, or a mean
+    int sample = -1;  ///< the sample of the same part nearest to the place: it tells how that turns
   };
   std::array<Side, 2> sides;
   Eigen::Vector3d point;  ///< at rest, between the two sides
   Eigen::Vector3d gap;    ///< at rest, from the second side's point to the first's; turns with the parts
-  /// For how many contacts this one stands: its images under the symmetries, itself among them. Their rows say the
-  /// same of the coordinates of a symmetric subspace, with the same energy.
+  /// For how many contacts this one stands: its images under the symmetries, itself among them, whose rows say the same
+  /// of the coordinates of a symmetric subspace, with the same energy.
   double count = 1;
 };
 
@@ -31,7 +31,10 @@ struct ContactOptions {
   /// Surfaces nearer than this touch, fraction of the diagonal, >= 0. Drawn parts overlap, or end a little before what
   /// they are joined to; the annotation's usual tolerance is what counts as one place.
   double tolerance = 0.005;
-  /// Distance of the contacts kept along one joint, in sampling radii, > 0: the lift resolves no more.
+  /// A joint smaller than this fraction of the smaller part's length is held by its mean: the parts may turn about it,
+  /// as legs do that splay, and what opens then is small beside what moves. Larger ones are held all along.
+  double joint = 0.25;
+  /// Distance of the contacts kept along a large joint, in sampling radii, > 0: the lift resolves no more.
   double spacing = 0.5;
   /// One contact of each orbit, which counts for all. Else all are kept: the same energies from more rows.
   bool representatives = true;
