@@ -252,12 +252,30 @@ Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits,
   return result;
 }
 
-// Those of a joint where the parts meet, rather than come near; all where there are none.
-Numbers closed_ones(const Numbers& joint, const std::vector<TouchingPoints>& touching, double no_gap) {
+// One of those at each place, so that what many edges and faces share counts once.
+Numbers at_different_places(Numbers numbers, const std::vector<TouchingPoints>& touching, double same) {
+  const auto middle = [&](int number) { return touching[static_cast<std::size_t>(number)].middle; };
+  std::ranges::stable_sort(numbers, [&](int a, int b) { return middle(a).x() < middle(b).x(); });
   Numbers result;
-  std::ranges::copy_if(joint, std::back_inserter(result),
+  for (const int number : numbers) {
+    bool met = false;
+    for (std::size_t k = result.size(); k > 0 && !met; --k) {
+      const Vector3d off = middle(number) - middle(result[k - 1]);
+      if (off.x() > same) break;
+      met = off.norm() <= same;
+    }
+    if (!met) result.push_back(number);
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+// Where the parts of a joint meet; where they only come near, if they meet nowhere.
+Numbers places_of(const Numbers& joint, const std::vector<TouchingPoints>& touching, double no_gap) {
+  Numbers meeting;
+  std::ranges::copy_if(joint, std::back_inserter(meeting),
                        [&](int number) { return touching[static_cast<std::size_t>(number)].gap.norm() < no_gap; });
-  return result.empty() ? joint : result;
+  return at_different_places(meeting.empty() ? joint : std::move(meeting), touching, no_gap);
 }
 
 // Twice the largest distance from the mean of a part's vertices, which turning does not change.
@@ -360,7 +378,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
   std::vector<Candidate> small;
   for (std::size_t k = 0; k < joints.members.size(); ++k) {
     if (joints.small[k] == 0) continue;
-    small.push_back(candidate_of(touching, closed_ones(joints.members[k], touching, kNoGap * subspace.diagonal)));
+    small.push_back(candidate_of(touching, places_of(joints.members[k], touching, kNoGap * subspace.diagonal)));
     for (const int number : joints.members[k]) in_small[static_cast<std::size_t>(number)] = 1;
   }
   keep(small, orbits_of(trials.look_at(small, touching)));
