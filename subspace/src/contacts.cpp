@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -142,27 +143,37 @@ Orbits orbits_of(const std::vector<LookAtContact>& looks) {
   return result;
 }
 
-// Points kept so far, pair of parts by pair.
+// Candidates kept so far, by pair of parts and cell of a grid.
 class Kept {
  public:
   // How far from each candidate the next is kept.
   Kept(const std::vector<Candidate>& candidates, const std::vector<double>& spacing)
-      : candidates_(candidates), spacing_(spacing) {}
+      : candidates_(candidates), spacing_(spacing), width_(*std::ranges::max_element(spacing)) {}
 
   bool near(int number) const { return distance(number) < spacing_[static_cast<std::size_t>(number)]; }
 
-  void add(int number) { by_parts_[at(number).parts].push_back(number); }
+  void add(int number) {
+    by_cell_[cell_of(number)].push_back(number);
+    by_parts_[at(number).parts].push_back(number);
+  }
 
-  // From a candidate to the nearest one kept, which is told as well.
+  // From a candidate to the nearest one kept, which is told as well; infinite where none is within the widest spacing.
   double distance(int number, int* nearest = nullptr) const {
     double least = std::numeric_limits<double>::infinity();
-    const auto pair = by_parts_.find(at(number).parts);
-    if (pair == by_parts_.end()) return least;
-    for (const int other : pair->second) {
-      const double here = (at(other).middle - at(number).middle).norm();
-      if (here >= least) continue;
-      least = here;
-      if (nearest != nullptr) *nearest = other;
+    const Cell middle = cell_of(number);
+    for (int neighbour = 0; neighbour < 27; ++neighbour) {
+      Cell cell = middle;
+      cell[2] += neighbour % 3 - 1;
+      cell[3] += neighbour / 3 % 3 - 1;
+      cell[4] += neighbour / 9 - 1;
+      const auto entry = by_cell_.find(cell);
+      if (entry == by_cell_.end()) continue;
+      for (const int other : entry->second) {
+        const double here = (at(other).middle - at(number).middle).norm();
+        if (here > least || (here == least && nearest != nullptr && other > *nearest)) continue;
+        least = here;
+        if (nearest != nullptr) *nearest = other;
+      }
     }
     return least;
   }
@@ -170,10 +181,23 @@ class Kept {
   const std::map<std::array<int, 2>, Numbers>& by_parts() const { return by_parts_; }
 
  private:
+  using Cell = std::array<std::int64_t, 5>;  // both parts, and the cell in space
+
   const Candidate& at(int number) const { return candidates_[static_cast<std::size_t>(number)]; }
+
+  Cell cell_of(int number) const {
+    const Candidate& here = at(number);
+    Cell cell{here.parts[0], here.parts[1], 0, 0, 0};
+    for (Index k = 0; k < 3; ++k) {
+      cell[static_cast<std::size_t>(2 + k)] = static_cast<std::int64_t>(std::floor(here.middle[k] / width_));
+    }
+    return cell;
+  }
 
   const std::vector<Candidate>& candidates_;
   const std::vector<double>& spacing_;
+  double width_;
+  std::map<Cell, Numbers> by_cell_;
   std::map<std::array<int, 2>, Numbers> by_parts_;
 };
 
@@ -192,6 +216,18 @@ Orbits thinned(const Orbits& orbits, Kept& kept) {
   return result;
 }
 
+// Thinned out, ever more until there are few orbits.
+Orbits few_of(const Orbits& orbits, const std::vector<Candidate>& candidates, std::vector<double>& spacing, int most) {
+  constexpr double kWider = 1.4;  // half as many on a surface
+  for (int round = 0;; ++round) {
+    constexpr int kMostRounds = 20;  // each pair of parts keeps one at least
+    Kept kept(candidates, spacing);
+    Orbits result = thinned(orbits, kept);
+    if (result.size() <= static_cast<std::size_t>(most) || round == kMostRounds) return result;
+    for (double& each : spacing) each *= kWider;
+  }
+}
+
 // Where candidates are: of which joint each is, and how far it should stay from others.
 struct Joints {
   std::vector<Numbers> members;
@@ -204,10 +240,13 @@ struct Joints {
 Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits, const std::vector<double>& small_size,
                  double widest) {
   constexpr double kOfExtent = 0.6;  // of how far a joint reaches from one of its points: about five about a round one
+  constexpr double kLeastSpacing = 1e-3;  // of the widest
   Joints result;
-  result.spacing.assign(candidates.size(), 0);
+  if (orbits.empty()) return result;
+  result.spacing.assign(candidates.size(), widest);
   // As fine as the joints that are to be told apart.
-  for (std::size_t i = 0; i < candidates.size(); ++i) result.spacing[i] = std::min(widest, 0.25 * small_size[i]);
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    result.spacing[i] = std::clamp(0.25 * small_size[i], kLeastSpacing * widest, widest);
   Kept kept(candidates, result.spacing);
   thinned(orbits, kept);
   DisjointSets hanging(candidates.size());
@@ -246,7 +285,8 @@ Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits,
     }
     result.small.push_back(2 * reach <= small_size[static_cast<std::size_t>(joint.front())] ? 1 : 0);
     for (const int number : joint) {
-      result.spacing[static_cast<std::size_t>(number)] = std::min(widest, 2 * kOfExtent * reach);
+      result.spacing[static_cast<std::size_t>(number)] =
+          std::clamp(2 * kOfExtent * reach, kLeastSpacing * widest, widest);
     }
   }
   return result;
@@ -372,7 +412,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
                          std::min(lengths[static_cast<std::size_t>(a)], lengths[static_cast<std::size_t>(b)]));
   }
   const Orbits orbits = orbits_of(trials.look_at(points, touching));
-  const Joints joints = joints_of(points, orbits, small_size, spacing);
+  Joints joints = joints_of(points, orbits, small_size, spacing);
 
   std::vector<char> in_small(points.size(), 0);
   std::vector<Candidate> small;
@@ -389,8 +429,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
                          [&](int number) { return in_small[static_cast<std::size_t>(number)] == 0; });
     if (!rest.empty()) in_large.push_back(std::move(rest));
   }
-  Kept kept(points, joints.spacing);
-  keep(points, thinned(in_large, kept));
+  if (!in_large.empty()) keep(points, few_of(in_large, points, joints.spacing, options.most));
   return contacts;
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numeric>
+#include <unordered_set>
 
 #include <Eigen/Geometry>
 
@@ -14,6 +16,7 @@ namespace orbifit {
 namespace {
 
 using Eigen::AlignedBox3d;
+using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr int kMostPieces = 16;  // into which a side of a large face is cut
@@ -117,6 +120,11 @@ class Look {
     for (int i = 0; i <= pieces; ++i) {
       for (int j = 0; i + j <= pieces; ++j) {
         const FacePoint own{face, Vector3d(i, j, pieces - i - j) / pieces};
+        Index corner_number = 0;
+        if (own.barycentric.maxCoeff(&corner_number) == 1 &&
+            !vertices_.insert(mesh_.faces(face, corner_number)).second) {
+          continue;
+        }
         const Vector3d point = at(own);
         if (!reach.contains(point)) continue;
         const MovingSurface::Nearest nearest = to_.surface->nearest(point, tolerance_, likely_);
@@ -129,6 +137,11 @@ class Look {
 
   void look_along_edge(int face, int k) {
     constexpr int kMostCrossings = 64;  // an edge that meets more lies along a surface
+    const auto ends = std::minmax(mesh_.faces(face, k), mesh_.faces(face, (k + 1) % 3));
+    if (!edges_.insert((static_cast<std::uint64_t>(ends.first) << 32) + static_cast<std::uint64_t>(ends.second))
+             .second) {
+      return;
+    }
     const Vector3d start = corner(face, k);
     const Vector3d along = corner(face, (k + 1) % 3) - start;
     const double length = along.norm();
@@ -160,6 +173,8 @@ class Look {
   std::array<int, 2> parts_{};
   bool swapped_ = false;
   int likely_ = -1;
+  std::unordered_set<int> vertices_;         // looked from
+  std::unordered_set<std::uint64_t> edges_;  // looked along: both ends
 };
 
 }  // namespace

@@ -35,7 +35,9 @@ struct ContactOptions {
   /// as legs do that splay, and what opens then is small beside what moves. Larger ones are held all along.
   double joint = 0.25;
   /// Distance of the contacts kept along a large joint, in sampling radii, > 0: the lift resolves no more.
-  double spacing = 0.5;
+  double spacing = 1;
+  /// Contacts along large joints to aim at, at most: where there are more, they are spaced wider. >= 1
+  int most = 400;
   /// One contact of each orbit, which counts for all. Else all are kept: the same energies from more rows.
   bool representatives = true;
 };
