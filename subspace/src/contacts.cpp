@@ -148,7 +148,12 @@ class Kept {
  public:
   // How far from each candidate the next is kept.
   Kept(const std::vector<Candidate>& candidates, const std::vector<double>& spacing)
-      : candidates_(candidates), spacing_(spacing), width_(*std::ranges::max_element(spacing)) {}
+      : candidates_(candidates), spacing_(spacing) {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      double& width = width_[candidates[i].parts];
+      width = std::max(width, spacing[i]);
+    }
+  }
 
   bool near(int number) const { return distance(number) < spacing_[static_cast<std::size_t>(number)]; }
 
@@ -157,7 +162,8 @@ class Kept {
     by_parts_[at(number).parts].push_back(number);
   }
 
-  // From a candidate to the nearest one kept, which is told as well; infinite where none is within the widest spacing.
+  // From a candidate to the nearest one kept, which is told as well; infinite where none is within the widest spacing
+  // between the same parts.
   double distance(int number, int* nearest = nullptr) const {
     double least = std::numeric_limits<double>::infinity();
     const Cell middle = cell_of(number);
@@ -187,16 +193,17 @@ class Kept {
 
   Cell cell_of(int number) const {
     const Candidate& here = at(number);
+    const double width = width_.at(here.parts);
     Cell cell{here.parts[0], here.parts[1], 0, 0, 0};
     for (Index k = 0; k < 3; ++k) {
-      cell[static_cast<std::size_t>(2 + k)] = static_cast<std::int64_t>(std::floor(here.middle[k] / width_));
+      cell[static_cast<std::size_t>(2 + k)] = static_cast<std::int64_t>(std::floor(here.middle[k] / width));
     }
     return cell;
   }
 
   const std::vector<Candidate>& candidates_;
   const std::vector<double>& spacing_;
-  double width_;
+  std::map<std::array<int, 2>, double> width_;  // of cells
   std::map<Cell, Numbers> by_cell_;
   std::map<std::array<int, 2>, Numbers> by_parts_;
 };

@@ -21,7 +21,7 @@ namespace orbifit {
 
 namespace {
 
-// Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal.
+// Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal without the contacts.
 constexpr double kHold = 1e-12;
 
 Corotation energy_of(const Subspace& subspace, const Mesh& mesh, LaplacianKind kind, const RunContext& context) {
@@ -52,6 +52,7 @@ struct Deformer::Implementation {
   Quotient quotient;
   ContactEnergy contacts;
   Eigen::MatrixXd stiffness;  // U^T L^T L U, and the contacts'
+  double of_contacts = 0;     // mean of the diagonal that is the contacts'
   HandleRows handles;
   double alpha = 0;
   Eigen::MatrixXd factor;  // lower
@@ -69,7 +70,9 @@ struct Deformer::Implementation {
     if (options.contacts) found = find_contacts(subspace, mesh, {}, context);
     if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
     contacts = ContactEnergy(std::move(found), subspace, weight);
+    if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
     contacts.add_gram(stiffness);
+    if (stiffness.size() > 0) of_contacts += stiffness.diagonal().mean();
   }
 
   Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const;
@@ -97,7 +100,7 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   // Equation (4), left.
   Eigen::MatrixXd system = own.stiffness;
   own.handles.add_gram(alpha, system);
-  if (system.size() > 0) system.diagonal().array() += kHold * system.diagonal().mean();
+  if (system.size() > 0) system.diagonal().array() += kHold * (system.diagonal().mean() - own.of_contacts);
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorisation(system);
   if (factorisation.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");
   own.factor = std::move(system);

@@ -59,10 +59,13 @@ class SampleEnergy {
     MatrixXd normal = MatrixXd::Zero(columns.cols(), columns.cols());
     normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
     const Eigen::Index rest = columns.cols() - turns;
-    if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * normal.diagonal().head(rest).mean();
+    // However firm contacts are, what holds the unknowns is measured by the rest.
+    VectorXd own = normal.diagonal();
+    if (contacts.rows.rows() > 0) own -= contacts.rows.colwise().squaredNorm().transpose();
+    if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * own.head(rest).mean();
     if (turns > 0) {
-      const double largest = normal.diagonal().tail(turns).maxCoeff();
-      normal.diagonal().tail(turns) += kHoldTurns * (normal.diagonal().tail(turns).array() + largest + 1e-300).matrix();
+      const double largest = own.tail(turns).maxCoeff();
+      normal.diagonal().tail(turns) += kHoldTurns * (own.tail(turns).array() + largest + 1e-300).matrix();
     }
     const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
     Solution solution;
