@@ -76,7 +76,9 @@ GeneratedModel build_stool(const ModelValues& values) {
     stretchers.push_back(builder.add(stretcher, stretcher_places.back()));
   }
 
-  builder.declare("stool", {Family::Cnv, count}, {}, joined({seat, joined(legs), joined(stretchers)}));
+  // Leg 1 lies in a mirror plane, which holds y of the group's frame.
+  const Placement about_legs{elements({Family::Cn, 4})[1], Vector3d::Zero()};
+  builder.declare("stool", {Family::Cnv, count}, about_legs, joined({seat, joined(legs), joined(stretchers)}));
   builder.declare_turned("seat", true, values.count("continuous") != 0, facets, seat_place, seat);
   for (std::size_t i = 0; i < legs.size(); ++i) {
     builder.declare("leg " + std::to_string(i + 1), {Family::Cnv, 4}, leg_places[i], legs[i]);
