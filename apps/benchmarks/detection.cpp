@@ -12,7 +12,6 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/subspace/shared_axes.h"
 
 #include "benchmarks.h"
 #include "stage_run.h"
@@ -100,8 +99,7 @@ DetectionRow measure(const SuiteModel& suite_model, const CaseForm& form, const 
   SymmetryAnnotation detected = empty_annotation(model.mesh, options.detect.tolerance);
   const double start = seconds_now();
   try {
-    detected = share_axes(model.mesh, orbifit::detect(model.mesh, options.detect, context), options.detect.tolerance,
-                          MayMove::inexact);
+    detected = orbifit::detect(model.mesh, options.detect, context);
   } catch (const InterruptedError&) {
     throw;
   } catch (const Error& error) {

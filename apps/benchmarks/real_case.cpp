@@ -5,14 +5,13 @@
 
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
-#include "orbifit/subspace/closable.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
-#include "orbifit/subspace/shared_axes.h"
 
 #include "real.h"
 #include "stopwatch.h"
@@ -27,22 +26,13 @@ using Eigen::Vector3d;
 // The two functions that say how the program comes from a mesh to a subspace.
 
 SymmetryAnnotation detect_as_the_program(const Mesh& mesh, RunContext& context) {
-  const DetectOptions options;
-  return share_axes(mesh, detect(mesh, options, context), options.tolerance, MayMove::inexact);
+  return detect(mesh, DetectOptions{}, context);
 }
 
 // `annotation` becomes what is kept of it.
 Subspace build_as_the_program(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
                               const RunContext& context) {
-  try {
-    return build_subspace(mesh, annotation, options, context);
-  } catch (const InputError&) {
-    SymmetryAnnotation kept = closable(mesh, annotation, context);
-    const bool fewer =
-        kept.regions.size() < annotation.regions.size() || kept.patterns.size() < annotation.patterns.size();
-    if (!fewer) throw;
-    annotation = std::move(kept);
-  }
+  annotation = made_consistent(mesh, annotation, context);
   return build_subspace(mesh, annotation, options, context);
 }
 

@@ -9,8 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/closable.h"
 #include "orbifit/subspace/radius_field.h"
 
 namespace orbifit {
@@ -79,17 +79,9 @@ SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh&
   return options;
 }
 
-Subspace build_closable(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
-                        const RunContext& context) {
-  try {
-    return build_subspace(mesh, annotation, options, context);
-  } catch (const InputError&) {
-    SymmetryAnnotation kept = closable(mesh, annotation, context);
-    const bool fewer =
-        kept.regions.size() < annotation.regions.size() || kept.patterns.size() < annotation.patterns.size();
-    if (!fewer) throw;
-    annotation = std::move(kept);
-  }
+Subspace build_consistent(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
+                          const RunContext& context) {
+  annotation = made_consistent(mesh, annotation, context);
   return build_subspace(mesh, annotation, options, context);
 }
 

@@ -38,10 +38,9 @@ SymmetryAnnotation without(const std::vector<int>& ids, SymmetryAnnotation annot
 /// \throw UsageError, InputError
 SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh& mesh, const RunContext& context);
 
-/// Builds the subspace. Where groups do not close together, as those of detected regions may, regions are left out with
-/// a message until they do (closable.h), and `annotation` becomes what is left. \throw InputError as build_subspace
-/// does, when leaving out regions does not help
-Subspace build_closable(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
-                        const RunContext& context);
+/// Makes the annotation consistent, which tells what it leaves out (consistent_annotation.h), and builds the subspace of
+/// what `annotation` becomes. \throw InputError as build_subspace does
+Subspace build_consistent(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
+                          const RunContext& context);
 
 }  // namespace orbifit

@@ -13,9 +13,10 @@ namespace orbifit {
 namespace {
 
 const std::vector<ModelDefinition>& definitions() {
-  static const std::vector<ModelDefinition> all{
-      armchair_model(), bar_model(),   car_model(),   centre_piece_model(), chair_model(),     desk_fan_model(),
-      fan_model(),      plane_model(), table_model(), wheel_model(),        wind_mill_model(), yard_tool_model()};
+  static const std::vector<ModelDefinition> all{armchair_model(), bar_model(),      car_model(),   centre_piece_model(),
+                                                chair_model(),    desk_fan_model(), fan_model(),   plane_model(),
+                                                stool_model(),    table_model(),    wheel_model(), wind_mill_model(),
+                                                yard_tool_model()};
   return all;
 }
 

@@ -32,6 +32,7 @@ ModelDefinition chair_model();
 ModelDefinition desk_fan_model();
 ModelDefinition fan_model();
 ModelDefinition plane_model();
+ModelDefinition stool_model();
 ModelDefinition table_model();
 ModelDefinition wheel_model();
 ModelDefinition wind_mill_model();

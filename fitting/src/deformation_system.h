@@ -39,7 +39,7 @@ class DeformationSystem {
   DeformationSystem& operator=(const DeformationSystem&) = delete;
   virtual ~DeformationSystem() = default;
 
-  /// Minimises stiffness (regularity(q) + growth_cost(grown + gamma)) + symmetry_energy(q)
+  /// Minimises stiffness (regularity(q) + growth_cost(grown + gamma)) + symmetry_energy(q) + contact_energy(q)
   ///           + sum of w <n, x + gamma (x - c) + u - (s + omega x (s - c) + tau)>^2 + pulls
   ///           + damping (|q - around|^2 + |(gamma, omega, tau)|^2)
   ///           + a millionth of the rigid part of all samples' displacements, squared, which prefers the pose to a
@@ -58,6 +58,9 @@ class DeformationSystem {
 
   /// What a system that does not keep the symmetries exactly adds for them.
   virtual double symmetry_energy(const Eigen::VectorXd&) const { return 0; }
+
+  /// What it adds for parts that are to go on touching, as turned now.
+  virtual double contact_energy(const Eigen::VectorXd&) const { return 0; }
 
   /// CorotatedEnergy::value() of the deformation q.
   double regularity(const Eigen::VectorXd& q) const { return energy_.value(samples_at(q)); }

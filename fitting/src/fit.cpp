@@ -113,7 +113,7 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
 
 Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspace& subspace, const FitOptions& options,
              const RunContext& context) {
-  FitSystems systems(subspace, input.mesh, options.stretch);
+  FitSystems systems(subspace, input.mesh, options, context);
   int iterations = keep_promising(starts, input, systems, options, context);
   std::vector<FitResult> results(starts.size());
   systems.share(starts.size(), context, [&](std::size_t i, FitSystem& system, const RunContext& own) {

@@ -109,7 +109,8 @@ double FitLoop::share_of(const Matches& matches, int every) const {
 
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
   const double regularity = system_.regularity(state.q) + system_.growth_cost(std::log(unit(state)));
-  double result = share * matches.energy + now.stiffness * regularity + system_.symmetry_energy(state.q);
+  double result = share * matches.energy + now.stiffness * regularity + system_.symmetry_energy(state.q) +
+                  system_.contact_energy(state.q);
   for (const Pull& pull : pulls_towards(input_, state.pose, options_.landmark_weight)) {
     result += pull.weight * (deformed_.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm();
   }

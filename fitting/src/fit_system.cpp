@@ -19,16 +19,22 @@ constexpr double kMostGrowth = 1.1;  // in one iteration
 
 }  // namespace
 
-FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch)
+FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts)
     : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
       subspace_(subspace),
       rows_(subspace, subspace.basis),
       mesh_(mesh),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)},
+      contacts_(std::move(contacts), subspace, kContactWeight),
       stiffness_matrix_(restricted(subspace.basis.columns, energy_.matrix())) {
   const Eigen::MatrixXd rigid = subspace.basis.columns.transpose() * rigid_modes(subspace.sampling.points);
   hold_matrix_ = kPreferPose * rigid * rigid.transpose();
   hold_matrix_.diagonal().array() += kHoldStill * static_cast<double>(samples());
+  contacts_.add_gram(hold_matrix_);
+}
+
+double FitSystem::contact_energy(const Eigen::VectorXd& q) const {
+  return contacts_.value(q, [&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; });
 }
 
 Points FitSystem::samples_at(const Eigen::VectorXd& q) const {
@@ -57,6 +63,9 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   }
   normal.side.head(dof) += hold.stiffness * (subspace_.basis.columns.transpose() * stacked(energy_.pull()));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
+  Eigen::VectorXd contact_pull = Eigen::VectorXd::Zero(dof);
+  contacts_.add_pull([&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; }, contact_pull);
+  normal.side.head(dof) += contact_pull;
 
   matrix_ = std::move(normal.matrix);
   factor_.compute(matrix_);

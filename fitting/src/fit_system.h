@@ -7,6 +7,7 @@
 
 #include "orbifit/fitting/correspondences.h"
 #include "orbifit/model/run_context.h"
+#include "orbifit/subspace/contact_energy.h"
 #include "orbifit/subspace/subspace.h"
 
 #include "data_normal.h"
@@ -20,7 +21,8 @@ namespace orbifit {
 class FitSystem final : public DeformationSystem {
  public:
   /// References are kept. One system may serve one fit after another: what it knows of vertices stays.
-  FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch);
+  /// \param contacts  to be kept, each with the weight of kContactWeight samples
+  FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {});
 
   Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
                  const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context) override;
@@ -28,7 +30,9 @@ class FitSystem final : public DeformationSystem {
   Points vertices_at(const Eigen::VectorXd& q, const RunContext& context) const override;
   Eigen::Index unknowns() const override { return subspace_.degrees_of_freedom(); }
   double condition() const override;
+  double contact_energy(const Eigen::VectorXd& q) const override;
 
+  const std::vector<Contact>& contacts() const { return contacts_.contacts(); }
   const Subspace& subspace() const { return subspace_; }
 
  private:
@@ -36,8 +40,9 @@ class FitSystem final : public DeformationSystem {
   VertexRows rows_;
   const Mesh& mesh_;
   ScanStep step_;
+  ContactEnergy contacts_;
   Eigen::MatrixXd stiffness_matrix_;
-  Eigen::MatrixXd hold_matrix_;  // what prefers the pose
+  Eigen::MatrixXd hold_matrix_;  // what prefers the pose, and the contacts'
   Eigen::MatrixXd matrix_;       // of the last system, lower half
   Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
 };

@@ -6,6 +6,17 @@
 
 namespace orbifit {
 
+std::vector<Contact> contacts_to_keep(const Subspace& subspace, const Mesh& mesh, const FitOptions& options,
+                                      const RunContext& context) {
+  return options.contacts ? find_contacts(subspace, mesh, {}, context) : std::vector<Contact>{};
+}
+
+FitSystems::FitSystems(const Subspace& subspace, const Mesh& mesh, const FitOptions& options, const RunContext& context)
+    : subspace_(subspace),
+      mesh_(mesh),
+      stretch_(options.stretch),
+      contacts_(contacts_to_keep(subspace, mesh, options, context)) {}
+
 std::unique_ptr<FitSystem> FitSystems::take() {
   {
     const std::lock_guard lock(guard_);
@@ -15,7 +26,7 @@ std::unique_ptr<FitSystem> FitSystems::take() {
       return system;
     }
   }
-  return std::make_unique<FitSystem>(subspace_, mesh_, stretch_);
+  return std::make_unique<FitSystem>(subspace_, mesh_, stretch_, contacts_);
 }
 
 void FitSystems::share(std::size_t count, const RunContext& context, const Task& task) {

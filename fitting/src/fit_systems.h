@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "orbifit/fitting/fit.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/subspace.h"
@@ -14,13 +15,16 @@
 
 namespace orbifit {
 
+/// What FitOptions ask to be kept touching.
+std::vector<Contact> contacts_to_keep(const Subspace& subspace, const Mesh& mesh, const FitOptions& options,
+                                      const RunContext& context);
+
 /// Systems of one subspace for fits side by side, no more than threads. Each serves one fit after another; what it
 /// knows by then changes how soon it answers, not what.
 class FitSystems {
  public:
-  /// References are kept.
-  FitSystems(const Subspace& subspace, const Mesh& mesh, double stretch)
-      : subspace_(subspace), mesh_(mesh), stretch_(stretch) {}
+  /// References are kept. Stretch and contacts are FitOptions', and the contacts are found once.
+  FitSystems(const Subspace& subspace, const Mesh& mesh, const FitOptions& options, const RunContext& context);
 
   using Task = std::function<void(std::size_t number, FitSystem& system, const RunContext& own)>;
 
@@ -34,6 +38,7 @@ class FitSystems {
   const Subspace& subspace_;
   const Mesh& mesh_;
   double stretch_;
+  std::vector<Contact> contacts_;
   std::mutex guard_;
   std::vector<std::unique_ptr<FitSystem>> idle_;
 };

@@ -24,9 +24,9 @@ namespace {
 // Once the groups have floated to where they fit best, they turn as well: a start from rest would let parts that are
 // still far from the scan turn every way. Stiff to begin with: what floating groups have pushed along a surface, for
 // want of a turn, comes back, which no point of the scan asks for.
-void let_groups_turn(const FitInput& input, const PlacedScan& start, const Subspace& subspace,
+void let_groups_turn(const FitInput& input, const PlacedScan& start, const FitSystem& floating,
                      const FitOptions& options, const RunContext& context, FitResult& result) {
-  MovingSystem system(subspace, input.mesh, options.stretch, context);
+  MovingSystem system(floating.subspace(), input.mesh, options.stretch, floating.contacts(), context);
   if (!system.turns()) return;
   FitOptions more = options;
   more.most_iterations += result.iterations_in_all;
@@ -44,7 +44,7 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   const Subspace& subspace = system.subspace();
   system.unturn();
   run_fit(system, std::move(state), first_level, input, start, options, context, result);
-  if (subspace.mode == GroupMode::moving) let_groups_turn(input, start, subspace, options, context, result);
+  if (subspace.mode == GroupMode::moving) let_groups_turn(input, start, system, options, context, result);
   result.samples = static_cast<int>(subspace.sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   result.used_fraction = start.used_fraction;

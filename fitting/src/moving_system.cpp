@@ -42,10 +42,12 @@ LiftWeights rows_of(const LiftWeights& weights, const std::vector<int>& rows) {
 
 }  // namespace
 
-MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, const RunContext& context)
+MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts,
+                           const RunContext& context)
     : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
       subspace_(subspace),
       mesh_(mesh),
+      contacts_(std::move(contacts)),
       regions_(subspace),
       stiffness_(energy_.matrix()),
       rigid_(rigid_modes(subspace.sampling.points)),
@@ -114,6 +116,14 @@ VectorXd MovingSystem::turned(const VectorXd& q, const VectorXd& angles, const P
   return result;
 }
 
+double MovingSystem::contact_energy(const VectorXd& q) const {
+  if (contacts_.empty()) return 0;
+  const SubspaceState state = state_of(q);
+  const ContactRows contacts =
+      contact_rows_at(contacts_, kContactWeight, subspace_, state, vertex_displacements(subspace_, state), rotations());
+  return (contacts.rows * state.q - contacts.right).squaredNorm();
+}
+
 MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pairs, double share,
                                            const Points& scan_points, const std::vector<Pull>& pulls, const Hold& hold,
                                            const RunContext& context) {
@@ -149,6 +159,14 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   normal.matrix.block(dof, dof, ways, ways) += turn_columns.transpose() * bent;
   normal.side.head(dof) += hold.stiffness * (columns.transpose() * stacked(pull));
   normal.side.segment(dof, ways) += hold.stiffness * (turn_columns.transpose() * stacked(pull));
+  if (!contacts_.empty()) {
+    const SmallTurns small{regions_, turns, turn_columns};
+    const ContactRows contacts = contact_rows_at(contacts_, kContactWeight, subspace_, now,
+                                                 deformed.vertices - mesh_.vertices, rotations(), &small);
+    const VectorXd off = contacts.right - contacts.rows.leftCols(dof) * now.q;
+    normal.matrix.topLeftCorner(dof + ways, dof + ways) += contacts.rows.transpose() * contacts.rows;
+    normal.side.head(dof + ways) += contacts.rows.transpose() * off;
+  }
   MatrixXd rigid(dof + ways, rigid_.cols());
   rigid << columns.transpose() * rigid_, turn_columns.transpose() * rigid_;
   const double still = kHoldStill * all_samples;

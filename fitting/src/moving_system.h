@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "orbifit/subspace/carried_regions.h"
+#include "orbifit/subspace/contact_energy.h"
 #include "orbifit/subspace/lift.h"
 #include "orbifit/subspace/subspace.h"
 
@@ -22,8 +23,9 @@ namespace orbifit {
 /// q is the coordinates followed by the turns, the nine entries of one matrix a family (CarriedRegions::Turns).
 class MovingSystem final : public DeformationSystem {
  public:
-  /// References are kept. \param subspace  of mode moving
-  MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, const RunContext& context = RunContext{});
+  /// References are kept. \param subspace  of mode moving \param contacts  as of FitSystem
+  MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {},
+               const RunContext& context = RunContext{});
 
   /// Groups as at rest, at these coordinates of the subspace's own basis.
   Eigen::VectorXd at_rest(const Eigen::VectorXd& coordinates) const;
@@ -40,6 +42,7 @@ class MovingSystem final : public DeformationSystem {
   Points vertices_at(const Eigen::VectorXd& q, const RunContext& context) const override;
   Eigen::Index unknowns() const override { return subspace_.degrees_of_freedom() + regions_.freedom(); }
   double condition() const override;
+  double contact_energy(const Eigen::VectorXd& q) const override;
 
  private:
   CarriedRegions::Turns turns_of(const Eigen::VectorXd& q) const;
@@ -50,6 +53,7 @@ class MovingSystem final : public DeformationSystem {
 
   const Subspace& subspace_;
   const Mesh& mesh_;
+  std::vector<Contact> contacts_;
   CarriedRegions regions_;
   Eigen::SparseMatrix<double> stiffness_;  // K, of the samples
   Eigen::MatrixXd rigid_;                  // rigid_modes() of the samples

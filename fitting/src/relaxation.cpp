@@ -4,11 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/subspace/closable.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/subspace.h"
 
 #include "fit_system.h"
+#include "fit_systems.h"
 #include "fit_trial.h"
 
 namespace orbifit {
@@ -24,7 +25,7 @@ Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& 
   free.subspace.samples = kFewSamples;
   const FitInput without = input.with(none);
   const Subspace subspace = build_subspace(input.mesh, none, free.subspace, context);
-  FitSystem system(subspace, input.mesh, free.stretch);
+  FitSystem system(subspace, input.mesh, free.stretch, contacts_to_keep(subspace, input.mesh, free, context));
   return fit_from(without, start, system, free, context).fitted;
 }
 
@@ -35,9 +36,9 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
     result.relaxed.push_back(group.region);
     context.message("left out region " + std::to_string(group.region) + ": the scan has not its symmetry");
   }
-  const SymmetryAnnotation rest = closable(input.mesh, without_regions(input.annotation, result.relaxed), context);
+  const SymmetryAnnotation rest = made_consistent(input.mesh, without_regions(input.annotation, result.relaxed), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
-  FitSystem system(subspace, input.mesh, options.stretch);
+  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);
   found.field_residual = worst_field_residual(subspace, input.mesh, rest, {found.q, found.basis}, context);
   found.iterations_in_all += result.iterations_in_all;

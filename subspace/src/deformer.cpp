@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/subspace/contact_energy.h"
 #include "orbifit/subspace/mesh_laplacian.h"
 #include "orbifit/subspace/point_laplacian.h"
 
@@ -19,7 +21,7 @@ namespace orbifit {
 
 namespace {
 
-// Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal.
+// Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal without the contacts.
 constexpr double kHold = 1e-12;
 
 Corotation energy_of(const Subspace& subspace, const Mesh& mesh, LaplacianKind kind, const RunContext& context) {
@@ -36,6 +38,11 @@ Corotation energy_of(const Subspace& subspace, const Mesh& mesh, LaplacianKind k
   }
 }
 
+// What a contact weighs against equation (3): see kContactWeight.
+double contact_weight(const Corotation& corotation) {
+  return kContactWeight * corotation.laplacian.squaredNorm() / static_cast<double>(corotation.laplacian.cols());
+}
+
 }  // namespace
 
 struct Deformer::Implementation {
@@ -43,19 +50,29 @@ struct Deformer::Implementation {
   const Mesh& mesh;
   Corotation corotation;
   Quotient quotient;
-  Eigen::MatrixXd stiffness;  // U^T L^T L U
+  ContactEnergy contacts;
+  Eigen::MatrixXd stiffness;  // U^T L^T L U, and the contacts'
+  double of_contacts = 0;     // mean of the diagonal that is the contacts'
   HandleRows handles;
   double alpha = 0;
   Eigen::MatrixXd factor;  // lower
   std::optional<MovingSolve> moving;
 
-  Implementation(const Subspace& the_subspace, const Mesh& the_mesh, LaplacianKind kind, const RunContext& context)
+  Implementation(const Subspace& the_subspace, const Mesh& the_mesh, const DeformerOptions& options,
+                 const RunContext& context)
       : subspace(the_subspace),
         mesh(the_mesh),
-        corotation(energy_of(subspace, mesh, kind, context)),
+        corotation(energy_of(subspace, mesh, options.laplacian, context)),
         quotient(subspace, corotation),
         stiffness(quotient.stiffness()) {
-    if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation);
+    const double weight = contact_weight(corotation);
+    std::vector<Contact> found;
+    if (options.contacts) found = find_contacts(subspace, mesh, {}, context);
+    if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
+    contacts = ContactEnergy(std::move(found), subspace, weight);
+    if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
+    contacts.add_gram(stiffness);
+    if (stiffness.size() > 0) of_contacts += stiffness.diagonal().mean();
   }
 
   Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const;
@@ -63,13 +80,17 @@ struct Deformer::Implementation {
 
 Deformer::Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options,
                    const RunContext& context)
-    : implementation_(std::make_unique<Implementation>(subspace, mesh, options.laplacian, context)) {}
+    : implementation_(std::make_unique<Implementation>(subspace, mesh, options, context)) {}
 
 Deformer::~Deformer() = default;
 Deformer::Deformer(Deformer&&) noexcept = default;
 
 const Corotation& Deformer::energy() const {
   return implementation_->corotation;
+}
+
+const std::vector<Contact>& Deformer::contacts() const {
+  return implementation_->contacts.contacts();
 }
 
 void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
@@ -79,7 +100,7 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   // Equation (4), left.
   Eigen::MatrixXd system = own.stiffness;
   own.handles.add_gram(alpha, system);
-  if (system.size() > 0) system.diagonal().array() += kHold * system.diagonal().mean();
+  if (system.size() > 0) system.diagonal().array() += kHold * (system.diagonal().mean() - own.of_contacts);
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorisation(system);
   if (factorisation.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");
   own.factor = std::move(system);
@@ -108,10 +129,12 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
   if (start.q.size() == freedom) quotient.rotate(q, rotations);
   Eigen::VectorXd previous = q;
   Eigen::VectorXd side(freedom);
+  const auto turned = [&](int sample) { return quotient.rotation_of(sample, rotations); };
   for (int iteration = 0; iteration < iterations; ++iteration) {
     // Equation (4), right, with the Laplace coordinates turned.
     quotient.pull(rotations, side);
     side += handle_pull;
+    contacts.add_pull(turned, side);
     kernels().cholesky_solve(factor.data(), freedom, side.data());
     previous.swap(q);
     q.swap(side);
@@ -122,7 +145,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
   }
   const double squares = handles.squared_error(q, targets);
   result.handle_error = std::sqrt(squares / handles.total_weight());
-  result.energy = quotient.energy(q, rotations) + alpha * squares;
+  result.energy = quotient.energy(q, rotations) + alpha * squares + contacts.value(q, turned);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -41,24 +42,30 @@ class SampleEnergy {
   // The last columns are turns; `turned` says how each turns the Laplace coordinates asked for.
   // `arms` how it turns the points about the samples that they follow.
   Solution solve(const MatrixXd& columns, const MatrixXd& turned, const MatrixXd& arms, const VectorXd& offset,
-                 const VectorXd& laplace, const VectorXd& targets) const {
+                 const VectorXd& laplace, const VectorXd& targets, const ContactRows& contacts) const {
     const Eigen::Index turns = turned.cols();
-    MatrixXd rows(3 * (laplacian_.rows() + points_.rows()), columns.cols());
+    MatrixXd rows(3 * (laplacian_.rows() + points_.rows()) + contacts.rows.rows(), columns.cols());
     VectorXd right(rows.rows());
     rows.topRows(3 * laplacian_.rows()) = applied(laplacian_, columns);
     rows.topRightCorner(3 * laplacian_.rows(), turns) -= turned;
     MatrixXd points = applied(points_, columns);
     points.rightCols(turns) += arms;
-    rows.bottomRows(weights_.size()) = weights_.asDiagonal() * points;
+    rows.middleRows(3 * laplacian_.rows(), weights_.size()) = weights_.asDiagonal() * points;
+    if (contacts.rows.rows() > 0) rows.bottomRows(contacts.rows.rows()) = contacts.rows;
     right.head(3 * laplacian_.rows()) = laplace - applied(laplacian_, offset);
-    right.tail(weights_.size()) = weights_.cwiseProduct(targets - VectorXd(applied(points_, offset)));
+    right.segment(3 * laplacian_.rows(), weights_.size()) =
+        weights_.cwiseProduct(targets - VectorXd(applied(points_, offset)));
+    right.tail(contacts.right.size()) = contacts.right;
     MatrixXd normal = MatrixXd::Zero(columns.cols(), columns.cols());
     normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
     const Eigen::Index rest = columns.cols() - turns;
-    if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * normal.diagonal().head(rest).mean();
+    // However firm contacts are, what holds the unknowns is measured by the rest.
+    VectorXd own = normal.diagonal();
+    if (contacts.rows.rows() > 0) own -= contacts.rows.colwise().squaredNorm().transpose();
+    if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * own.head(rest).mean();
     if (turns > 0) {
-      const double largest = normal.diagonal().tail(turns).maxCoeff();
-      normal.diagonal().tail(turns) += kHoldTurns * (normal.diagonal().tail(turns).array() + largest + 1e-300).matrix();
+      const double largest = own.tail(turns).maxCoeff();
+      normal.diagonal().tail(turns) += kHoldTurns * (own.tail(turns).array() + largest + 1e-300).matrix();
     }
     const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
     Solution solution;
@@ -76,8 +83,13 @@ class SampleEnergy {
 
 }  // namespace
 
-MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation)
-    : subspace_(subspace), corotation_(corotation), regions_(subspace) {}
+MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
+                         double contact_weight)
+    : subspace_(subspace),
+      corotation_(corotation),
+      regions_(subspace),
+      contacts_(std::move(contacts)),
+      contact_weight_(contact_weight) {}
 
 // As the handles turn all in all.
 CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const VectorXd& targets) const {
@@ -131,11 +143,16 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
       if (region >= 0) local[k] = basis->rotations[static_cast<std::size_t>(region)];
     }
   }
+  const auto contact_rows = [&](const SmallTurns* small) {
+    if (contacts_.empty()) return ContactRows{};
+    return contact_rows_at(contacts_, contact_weight_, subspace_, state, vertex_displacements(subspace_, state), local,
+                           small);
+  };
   // The best coordinates for groups that stand as they do, and the local rotations to them.
   const auto follow = [&](const Points& before, const VectorXd& wanted, const Points& turned_delta) {
     const auto solution =
         energy.solve(MatrixXd(state.basis->columns), MatrixXd(3 * rest.rows(), 0), MatrixXd(wanted.size(), 0),
-                     state.basis->offset, stacked(turned_delta - corotation_.delta), wanted);
+                     state.basis->offset, stacked(turned_delta - corotation_.delta), wanted, contact_rows(nullptr));
     state.q = solution.z;
     result.energy = solution.energy;
     const Points after = sample_displacements(subspace_, state);
@@ -156,9 +173,10 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
       // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
       const MatrixXd along = regions_.columns(turns, turned_delta, Points::Zero(subspace_.regions->count(), 3));
       const VectorXd laplace = stacked(turned_delta - corotation_.delta);
+      const SmallTurns small{regions_, turns, turning};
       const VectorXd both = energy
                                 .solve(columns, along, regions_.arms(turns, spread, handles.rest() - spread * rest),
-                                       state.basis->offset, laplace, wanted)
+                                       state.basis->offset, laplace, wanted, contact_rows(&small))
                                 .z;
       VectorXd angles = both.tail(turning.cols());
       const double largest = angles.cwiseAbs().maxCoeff();

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "orbifit/subspace/carried_regions.h"
+#include "orbifit/subspace/contact_energy.h"
 #include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/lift.h"
@@ -16,7 +17,9 @@ namespace orbifit {
 /// the basis is built anew, so that every state keeps every carried symmetry to rounding.
 class MovingSolve {
  public:
-  MovingSolve(const Subspace& subspace, const Corotation& corotation);
+  /// \param contact_weight  see ContactEnergy
+  MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
+              double contact_weight);
 
   Deformation solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions, int iterations,
                     const SubspaceState& start) const;
@@ -27,6 +30,8 @@ class MovingSolve {
   const Subspace& subspace_;
   const Corotation& corotation_;
   CarriedRegions regions_;
+  std::vector<Contact> contacts_;
+  double contact_weight_;
 };
 
 }  // namespace orbifit

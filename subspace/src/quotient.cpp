@@ -125,6 +125,10 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
       const double largest = std::max({1.0, scale, seen.laplace[0].norm(), seen.covariance[0].norm()});
       const auto same = std::ranges::find_if(
           known, [&](const auto& other) { return difference(other.second, seen) <= kAlike * largest; });
+      const int stands_for_it = same != known.end() ? same->first : k;
+      class_of_sample_.push_back(static_cast<int>(first) + static_cast<int>(same - known.begin()));
+      frame_.emplace_back(subspace.basis.transports.samples[static_cast<std::size_t>(k)].frame *
+                          subspace.basis.transports.samples[static_cast<std::size_t>(stands_for_it)].frame.transpose());
       if (same != known.end()) {
         counts_[first + static_cast<std::size_t>(same - known.begin())] += 1;
         continue;
@@ -238,6 +242,11 @@ void Quotient::rotate(const Eigen::VectorXd& q, std::vector<Matrix3d>& rotations
       for (std::size_t e = 0; e < 9; ++e) rotation.data()[e] = found[kLanes * e + lane];
     }
   }
+}
+
+Matrix3d Quotient::rotation_of(int sample, const std::vector<Matrix3d>& rotations) const {
+  const auto k = static_cast<std::size_t>(sample);
+  return frame_[k] * rotations[static_cast<std::size_t>(class_of_sample_[k])] * frame_[k].transpose();
 }
 
 void Quotient::pull(const std::vector<Matrix3d>& rotations, Eigen::VectorXd& result) const {

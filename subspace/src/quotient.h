@@ -27,6 +27,9 @@ class Quotient {
   /// rotations given, which decide what the neighbourhood leaves open.
   void rotate(const Eigen::VectorXd& q, std::vector<Eigen::Matrix3d>& rotations) const;
 
+  /// The rotation of any sample, given those of the classes.
+  Eigen::Matrix3d rotation_of(int sample, const std::vector<Eigen::Matrix3d>& rotations) const;
+
   /// U^T L^T (R delta - delta), DoF: the right-hand side of equation (4) without the handles.
   void pull(const std::vector<Eigen::Matrix3d>& rotations, Eigen::VectorXd& result) const;
 
@@ -35,6 +38,8 @@ class Quotient {
 
  private:
   std::vector<double> counts_;          // samples in each class
+  std::vector<int> class_of_sample_;    // #S
+  std::vector<Eigen::Matrix3d> frame_;  // #S, orthogonal: takes the class's rotation to the sample's by conjugation
   std::vector<double> sizes_;           // sum of squared lengths of the neighbourhood's edges
   std::vector<std::size_t> held_;       // classes with neighbours
   std::vector<Eigen::Matrix3d> rest_;   // covariance at rest

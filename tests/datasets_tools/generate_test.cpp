@@ -96,6 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"bar", {{"detail", 2}}}, Case{"chair", {}}, Case{"chair", {{"seat_depth", 0.5}, {"slats", 3}}},
                     Case{"chair", {{"leg_spread", 0}, {"back_tilt", 0}, {"slats", 1}, {"detail", 1}}},
                     Case{"chair", {{"leg_height", 0.8}, {"leg_spread", 0.12}, {"leg_thickness", 0.02}}},
+                    Case{"stool", {}}, Case{"stool", {{"legs", 3}, {"continuous", 0}, {"detail", 1}}},
+                    Case{"stool", {{"legs", 6}, {"leg_spread", 0.1}, {"stretcher_height", 0.2}, {"detail", 1}}},
                     Case{"fan", {}}, Case{"fan", {{"blades", 3}, {"wires", 16}, {"continuous", 0}}}, Case{"table", {}},
                     Case{"table", {{"foot", 0.9}, {"inset", 0}, {"leg_thickness", 0.03}, {"detail", 1}}},
                     Case{"wheel", {{"detail", 1}}}, Case{"wheel", {{"tread", 1}, {"continuous", 0}, {"detail", 1}}}));
@@ -208,8 +210,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"Model",
                 "sofa",
                 {},
-                "unknown model 'sofa'; there are armchair, bar, car, centre_piece, chair, desk_fan, fan, plane, table, "
-                "wheel, wind_mill, yard_tool"},
+                "unknown model 'sofa'; there are armchair, bar, car, centre_piece, chair, desk_fan, fan, plane, stool, "
+                "table, wheel, wind_mill, yard_tool"},
         BadCase{"Parameter",
                 "bar",
                 {{"mass", 1}},

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,9 +11,9 @@
 #include "orbifit/detection/detect.h"
 #include "orbifit/detection/guided_region.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/subspace/shared_axes.h"
 
 #include "../commands.h"
 #include "annotation_edits.h"
@@ -30,6 +31,7 @@ struct AnnotateArguments {
   AnnotationEdits edits;
   double tolerance = 0.005;
   bool as_given = false;
+  bool consistent = false;
   bool list = false;
 
   bool adds() const { return !plane.empty() || !axis.empty() || !centre.empty() || !seeds.empty() || !near.empty(); }
@@ -236,9 +238,13 @@ CommandBody annotate(CLI::App& app) {
   app.add_option("--tolerance", arguments->tolerance,
                  "Largest distance that counts as symmetric, as a fraction of the diagonal "
                  "(default: that of --annotation, or 0.005)");
+  app.add_flag("--consistent", arguments->consistent,
+               "Make all regions agree exactly, as deform and fit do before they start: what cannot is left out, and "
+               "images that are missing are added");
   app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as it is given");
   return [arguments, &app](CommandContext& context) {
-    const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list);
+    const bool adds =
+        arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
     RegionHint hint;
     if (adds) hint = to_hint(*arguments);
     const Eigen::Vector3d near =
@@ -258,6 +264,7 @@ CommandBody annotate(CLI::App& app) {
     const std::vector<std::string> changes = apply_edits(arguments->edits, annotation);
     context.run.check();
     if (!adds) {
+      if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
       if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
       print(context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
                          : edits_text(changes, annotation, mesh, arguments->list));
@@ -273,9 +280,14 @@ CommandBody annotate(CLI::App& app) {
     }
     found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
     const RegionAddition addition = add_region(prepared, found.region, found.residual, options.tolerance, annotation);
-    if (hint.refine) annotation = share_axes(mesh, annotation, options.tolerance, MayMove::inexact);
+    if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
     if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-    const Region& region = annotation.regions[static_cast<std::size_t>(addition.id)];
+    const auto added = std::ranges::find(annotation.regions, addition.id, &Region::id);
+    if (added == annotation.regions.end()) {
+      throw NoResultError("the region cannot be kept beside the others" +
+                          std::string(arguments->output.empty() ? "" : "; it is not in what was written"));
+    }
+    const Region& region = *added;
     const std::size_t count = annotation.regions.size();
     if (context.json) {
       nlohmann::ordered_json result = to_json(region, addition, found, prepared, count);

@@ -80,7 +80,7 @@ CommandBody compare(CLI::App& app) {
     const Mesh mesh = read_mesh(arguments->mesh);
     SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     options.fit.subspace = subspace_options(arguments->subspace, mesh, context.run);
-    build_closable(mesh, annotation, options.fit.subspace, context.run);
+    build_consistent(mesh, annotation, options.fit.subspace, context.run);
     PointCloud scan;
     if (!arguments->scan.empty()) scan = read_scan(arguments->scan);
     std::vector<Handle> handles;

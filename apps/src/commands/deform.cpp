@@ -26,6 +26,7 @@ struct DeformArguments {
   int iterations = 0;
   std::vector<int> without;
   double max_residual = 0;
+  bool no_contacts = false;
   SubspaceArguments subspace;
 };
 
@@ -51,6 +52,7 @@ CommandBody deform(CLI::App& app) {
   app.add_option("--laplacian", arguments->laplacian, "Laplacian of the samples")
       ->check(CLI::IsMember({"graph", "cotangent", "point"}))
       ->capture_default_str();
+  app.add_flag("--no-contacts", arguments->no_contacts, "Let parts that touch at rest come apart");
   auto* basis =
       app.add_option("--basis", arguments->basis, "Stored basis to load instead of building one")->type_name("FILE");
   app.add_option("--max-residual", arguments->max_residual,
@@ -80,10 +82,13 @@ CommandBody deform(CLI::App& app) {
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = Clock::now();
     const Subspace built = loads ? read_subspace(arguments->basis, mesh, annotation, context.run)
-                                 : build_closable(mesh, annotation, options, context.run);
+                                 : build_consistent(mesh, annotation, options, context.run);
     const auto with_subspace = Clock::now();
     context.run.progress("handles", 0);
-    Deformer deformer(built, mesh, {parse_laplacian_kind(arguments->laplacian).value()}, context.run);
+    DeformerOptions editing;
+    editing.laplacian = parse_laplacian_kind(arguments->laplacian).value();
+    editing.contacts = !arguments->no_contacts;
+    Deformer deformer(built, mesh, editing, context.run);
     deformer.set_handles(set.handles, set.alpha);
     const auto factorised = Clock::now();
     std::vector<Motion> motions;
@@ -115,6 +120,7 @@ CommandBody deform(CLI::App& app) {
                                            {"samples", built.sampling.points.rows()},
                                            {"degrees_of_freedom", built.degrees_of_freedom()},
                                            {"handles", set.handles.size()},
+                                           {"contacts", deformer.contacts().size()},
                                            {"iterations", set.iterations},
                                            {"energy", deformation.energy},
                                            {"handle_error", missed},

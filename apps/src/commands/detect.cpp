@@ -17,7 +17,6 @@
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
-#include "orbifit/subspace/shared_axes.h"
 
 #include "../commands.h"
 
@@ -276,8 +275,7 @@ CommandBody detect(CLI::App& app) {
       chosen.explanation = &explanation;
       times.emplace(run);
     }
-    const SymmetryAnnotation found =
-        share_axes(mesh, orbifit::detect(mesh, chosen, run), chosen.tolerance, MayMove::inexact);
+    const SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
     if (times) {
       write_explanation(arguments->explain, explanation);
       times->write(arguments->explain);

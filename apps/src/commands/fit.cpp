@@ -14,7 +14,6 @@
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
-#include "orbifit/subspace/closable.h"
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
@@ -31,6 +30,7 @@ struct FitArguments {
   std::vector<double> up{0, 0, 1};
   std::vector<double> viewpoint;
   bool aligned = false;
+  bool no_contacts = false;
   std::vector<int> without;
   double max_residual = 0;
   FitOptions options;
@@ -95,6 +95,7 @@ CommandBody fit(CLI::App& app) {
       ->type_name("R");
   add_without_option(app, arguments->without);
   app.add_flag("--auto-relax", options.relax, "Do not keep the groups that the scan has not, as a fit without shows");
+  app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
@@ -108,6 +109,7 @@ CommandBody fit(CLI::App& app) {
     }
     chosen.place = !arguments->aligned && arguments->landmarks.empty() && arguments->handles.empty();
     chosen.align = !arguments->aligned;
+    chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();
     const Eigen::Vector3d up = to_direction("--up", arguments->up);
@@ -124,12 +126,12 @@ CommandBody fit(CLI::App& app) {
                           count_of(scan.points.rows(), "point") + " are used (--scan-points)");
     }
     SymmetryAnnotation annotation =
-        arguments->annotation.empty() ? closable(mesh, orbifit::detect(mesh, DetectOptions{}, context.run), context.run)
+        arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
                                       : read_annotation(arguments->annotation, mesh);
-    if (!arguments->without.empty()) annotation = closable(mesh, without(arguments->without, annotation), context.run);
+    if (!arguments->without.empty()) annotation = without(arguments->without, annotation);
     using Clock = std::chrono::steady_clock;
     const auto began = Clock::now();
-    const auto subspace = std::make_shared<Subspace>(build_closable(mesh, annotation, chosen.subspace, context.run));
+    const auto subspace = std::make_shared<Subspace>(build_consistent(mesh, annotation, chosen.subspace, context.run));
     const StageTime building{"subspace", std::chrono::duration<double>(Clock::now() - began).count()};
     chosen.judge_groups = !arguments->report.empty() || !arguments->html.empty() || context.json;
     FitInput input{mesh, annotation, scan, Similarity{}};

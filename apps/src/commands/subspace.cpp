@@ -111,7 +111,7 @@ CommandBody subspace(CLI::App& app) {
     SymmetryAnnotation annotation = without(arguments->without, read_annotation(arguments->annotation, mesh));
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = std::chrono::steady_clock::now();
-    const Subspace built = build_closable(mesh, annotation, options, context.run);
+    const Subspace built = build_consistent(mesh, annotation, options, context.run);
     const double seconds = seconds_since(start);
     std::vector<LiftResiduals> residuals{random_field_residuals(mesh, annotation, built, context.run)};
     if (arguments->compare_lifts) {

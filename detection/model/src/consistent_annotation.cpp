@@ -1,5 +1,7 @@
 #include "orbifit/model/consistent_annotation.h"
 
+#include <utility>
+
 #include "consistency_search.h"
 
 namespace orbifit {
@@ -14,6 +16,15 @@ ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnot
                                            const RunContext& context) {
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
   return ConsistencySearch(mesh, annotation, context).run();
+}
+
+SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
+  ConsistentAnnotation result = consistent_annotation(mesh, annotation, context);
+  for (const LeftOut& left_out : result.left_out) context.message("left out " + to_string(left_out));
+  if (result.added > 0) {
+    context.message("added " + std::to_string(result.added) + " images of regions that the annotation lacked");
+  }
+  return std::move(result.annotation);
 }
 
 }  // namespace orbifit

@@ -37,6 +37,7 @@ struct FitOptions {
   bool judge_groups = false;  ///< compare with a fit without groups: see group_agreement(); takes as long again
   /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
   bool relax = false;
+  bool contacts = true;    ///< parts of the template that touch are to touch afterwards: see find_contacts()
   bool condition = false;  ///< estimate the condition number of the last linear system
   bool align = true;       ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
 

@@ -8,6 +8,7 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
+#include "orbifit/subspace/contacts.h"
 #include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/handles.h"
 #include "orbifit/subspace/laplacian_kind.h"
@@ -18,13 +19,14 @@ namespace orbifit {
 /// What a solve did.
 struct Deformation {
   SubspaceState state;      ///< coordinates in the subspace and, for mode moving, the basis as it turned
-  double energy = 0;        ///< E_L + alpha E_C at the end (paper, equation 3)
+  double energy = 0;        ///< E_L + alpha E_C at the end (paper, equation 3), and the contacts'
   double handle_error = 0;  ///< root mean square distance of the handles' points from their targets, mesh units
   double last_change = 0;   ///< largest movement of a sample in the last iteration, mesh units
 };
 
 struct DeformerOptions {
   LaplacianKind laplacian = LaplacianKind::graph;
+  bool contacts = true;  ///< parts that touch at rest are to touch afterwards: see find_contacts()
 };
 
 class Quotient;
@@ -51,6 +53,9 @@ class Deformer {
   Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start = {}) const;
 
   const Corotation& energy() const;
+
+  /// What is kept touching.
+  const std::vector<Contact>& contacts() const;
 
  private:
   struct Implementation;

@@ -49,4 +49,7 @@ struct ConsistentAnnotation {
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context);
 
+/// The consistent annotation alone; what is left out and added is told as messages.
+SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+
 }  // namespace orbifit
