@@ -34,7 +34,7 @@ struct Term {
 };
 
 // An edge that may be strained.
-struct Edge {
+struct StrainedEdge {
   int a, b;
   Vector3d strain;  // difference of the ends' displacements since rest
   double weight;
@@ -56,13 +56,13 @@ class Step {
   }
 
   // Of all displacements of the first members, #O by 3, that which lowers the damped sum; empty where nothing moves.
-  Points solve(const std::vector<Term>& terms, const std::vector<Edge>& edges) {
+  Points solve(const std::vector<Term>& terms, const std::vector<StrainedEdge>& edges) {
     damping_ = Eigen::VectorXd::Zero(static_cast<Index>(orbits_.size()));
     for (const Term& term : terms) {
       add_damping(term.place, term.weight);
       for (int k = 0; k < 3; ++k) add_damping(term.corners[k], term.weight);
     }
-    for (const Edge& edge : edges) {
+    for (const StrainedEdge& edge : edges) {
       add_damping(edge.a, edge.weight);
       add_damping(edge.b, edge.weight);
     }
@@ -121,7 +121,7 @@ class Step {
     return result;
   }
 
-  std::vector<Vector3d> applied(const std::vector<Edge>& edges, const Points& x) const {
+  std::vector<Vector3d> applied(const std::vector<StrainedEdge>& edges, const Points& x) const {
     std::vector<Vector3d> result(edges.size());
     for (std::size_t e = 0; e < edges.size(); ++e) {
       result[e] = displacement(edges[e].a, x) - displacement(edges[e].b, x);
@@ -129,7 +129,7 @@ class Step {
     return result;
   }
 
-  Points transposed(const std::vector<Term>& terms, const std::vector<Vector3d>& values, const std::vector<Edge>& edges,
+  Points transposed(const std::vector<Term>& terms, const std::vector<Vector3d>& values, const std::vector<StrainedEdge>& edges,
                     const std::vector<Vector3d>& strains) const {
     Points result = Points::Zero(damping_.size(), 3);
     const auto add = [&](int place, const Vector3d& value) {
@@ -164,9 +164,9 @@ class Step {
   Eigen::VectorXd damping_;
 };
 
-std::vector<Edge> strained_edges(const Step& step, const Places& places, const std::vector<char>& stiff,
+std::vector<StrainedEdge> strained_edges(const Step& step, const Places& places, const std::vector<char>& stiff,
                                  double stiffness, const Points& positions) {
-  std::vector<Edge> edges;
+  std::vector<StrainedEdge> edges;
   const double shortest = kShortest * diagonal(places.positions);
   std::size_t all = 0;
   for (int a = 0; a < static_cast<int>(places.neighbours.size()); ++a) {
@@ -181,7 +181,7 @@ std::vector<Edge> strained_edges(const Step& step, const Places& places, const s
       edges.push_back({a, b, now - rest, (both ? kStiffness[0] : stiffness) / (length * length)});
     }
   }
-  for (Edge& edge : edges) edge.weight /= static_cast<double>(all);
+  for (StrainedEdge& edge : edges) edge.weight /= static_cast<double>(all);
   return edges;
 }
 
@@ -249,10 +249,10 @@ int close_gaps(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const G
       context.progress("surface", 0.5);
       const std::vector<Term> terms =
           gap_terms(step, pairs, pairs.match(positions, &wanted, context, reach, most), weights, positions);
-      const std::vector<Edge> edges = strained_edges(step, places, weights.stiff, stiffness, positions);
+      const std::vector<StrainedEdge> edges = strained_edges(step, places, weights.stiff, stiffness, positions);
       double sum = 0;
       for (const Term& term : terms) sum += term.weight * term.gap.squaredNorm();
-      for (const Edge& edge : edges) sum += edge.weight * edge.strain.squaredNorm();
+      for (const StrainedEdge& edge : edges) sum += edge.weight * edge.strain.squaredNorm();
       if (terms.empty() || sum > kStalled * last) break;
       last = sum;
       const Points displacements = step.solve(terms, edges);
