@@ -67,7 +67,8 @@ struct Deformer::Implementation {
         stiffness(quotient.stiffness()) {
     const double weight = contact_weight(corotation);
     std::vector<Contact> found;
-    if (options.contacts) found = find_contacts(subspace, mesh, {}, context);
+    // Fixed groups lock parts in place: what touches them could not follow a handle.
+    if (options.contacts && subspace.mode != GroupMode::fixed) found = find_contacts(subspace, mesh, {}, context);
     if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
     contacts = ContactEnergy(std::move(found), subspace, weight);
     if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();

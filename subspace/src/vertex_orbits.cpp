@@ -54,7 +54,7 @@ class OrbitBuilder {
         words_(words),
         grid_(mesh.vertices, tolerance),
         sets_(closed_sets_of_vertices(mesh, regions, grid_)) {
-    closure_.doublet = std::min(tolerance, kDoublet * diagonal(mesh.vertices));
+    closure_.doublet = tolerance;
     result_.tolerance = tolerance;
     result_.followers.assign(sets_.size(), {-1, 0, -1});
     for (std::size_t v = 0; v < sets_.size(); ++v) {

@@ -25,11 +25,14 @@ class StoredBasis : public testing::Test {
     write_mesh(file("cube.ply"), cube);
     write_mesh(file("other.ply"), cube_mesh(5));
     SymmetryAnnotation annotation = cube_annotation(cube);
-    // A side with a group of its own, which the rest of the cube has not: it stays flat.
+    // What the cube has about an axis, and a side across it with a group of its own, which the rest has not: it stays
+    // flat.
     std::vector<int> side;
     for (int face = 0; face < cube.faces.rows() / 6; ++face) side.push_back(face);
     GroupFrame frame;
     frame << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+    annotation.regions.front() = make_region(*PointGroup::parse("C4v"), Eigen::Vector3d::Zero(), frame,
+                                             annotation.regions.front().faces, "cube");
     annotation.regions.push_back(
         make_region(*PointGroup::parse("D4h"), Eigen::Vector3d(-0.5, 0, 0), frame, std::move(side), "side"));
     annotation.regions.back().id = 1;

@@ -29,7 +29,7 @@ TEST(Contacts, AreKeptUnlessToldOtherwise) {
   EXPECT_EQ(json::parse(without.output)["contacts"], 0);
   EXPECT_LT(json::parse(with.output)["field_residual"], 1e-12);
   const Points difference = read_mesh(file("with.ply")).vertices - read_mesh(file("without.ply")).vertices;
-  EXPECT_GT(difference.rowwise().norm().maxCoeff(), 1e-3);
+  EXPECT_GT(difference.rowwise().norm().maxCoeff(), 1e-4);  // m; a stool of 0.5 m
 }
 
 TEST(Contacts, AreAnOptionOfTheFit) {

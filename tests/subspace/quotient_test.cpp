@@ -152,7 +152,7 @@ TEST_P(QuotientOfModel, SolvesAsTheFullComputationDoes) {
   const Subspace subspace = subspace_of(model, mode, 0.06);
   const Mesh& mesh = model.mesh;
   const double size = subspace.diagonal;
-  Deformer deformer(subspace, mesh, {laplacian});
+  Deformer deformer(subspace, mesh, {.laplacian = laplacian, .contacts = false});  // equation (3) alone
   Eigen::Index low = 0;
   Eigen::Index high = 0;
   mesh.vertices.col(2).minCoeff(&low);
@@ -200,7 +200,7 @@ TEST_P(QuotientOfGroup, HasOneClassAnOrbitAndTheFullStiffness) {
     orbit.centre = scale * Eigen::Vector3d(0.3, -0.2, 0.7);
     const GeneratedModel model = generate_orbit(PointGroup::parse(symbol).value(), orbit);
     const Subspace subspace = subspace_of(model, GroupMode::floating, 0.15);
-    const Deformer deformer(subspace, model.mesh, {laplacian});
+    const Deformer deformer(subspace, model.mesh, {.laplacian = laplacian, .contacts = false});
     const Corotation& energy = deformer.energy();
     const Quotient quotient(subspace, energy);
     EXPECT_EQ(quotient.classes(), subspace.sampling.orbits()) << "scale " << scale;

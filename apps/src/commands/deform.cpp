@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/subspace/deformer.h"
@@ -74,7 +75,8 @@ CommandBody deform(CLI::App& app) {
                    {arguments->mesh, arguments->handles, arguments->output, arguments->basis, radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = without(arguments->without, read_annotation(arguments->annotation, mesh));
+    const SymmetryAnnotation annotation = made_consistent(
+        mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
     HandleSet set = read_handles(arguments->handles, mesh);
     if (arguments->iterations > 0) set.iterations = arguments->iterations;
 
@@ -82,7 +84,7 @@ CommandBody deform(CLI::App& app) {
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     const auto start = Clock::now();
     const Subspace built = loads ? read_subspace(arguments->basis, mesh, annotation, context.run)
-                                 : build_consistent(mesh, annotation, options, context.run);
+                                 : build_subspace(mesh, annotation, options, context.run);
     const auto with_subspace = Clock::now();
     context.run.progress("handles", 0);
     DeformerOptions editing;

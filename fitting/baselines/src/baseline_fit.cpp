@@ -40,7 +40,7 @@ Subspace plain_subspace(const FitInput& input, const FitOptions& options, const 
 
 SubspaceState edit_in_subspace(const Subspace& subspace, const FitInput& input, double alpha, int iterations,
                                const RunContext& context, StageClock& clock, FitResult& result) {
-  Deformer deformer(subspace, input.mesh, {}, context);
+  Deformer deformer(subspace, input.mesh, {.contacts = false}, context);  // as the methods compared with
   deformer.set_handles(input.handles, alpha);
   std::vector<Motion> motions;
   for (const Handle& handle : input.handles) motions.push_back(handle.motion);

@@ -26,7 +26,8 @@ struct Deformation {
 
 struct DeformerOptions {
   LaplacianKind laplacian = LaplacianKind::graph;
-  bool contacts = true;  ///< parts that touch at rest are to touch afterwards: see find_contacts()
+  /// Parts that touch at rest are to touch afterwards: see find_contacts(). Not in mode fixed, which locks parts in place.
+  bool contacts = true;
 };
 
 class Quotient;

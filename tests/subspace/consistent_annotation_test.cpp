@@ -1,0 +1,306 @@
+#include "orbifit/model/consistent_annotation.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/random.h"
+#include "orbifit/subspace/deformer.h"
+#include "orbifit/subspace/displacement_field.h"
+#include "orbifit/subspace/subspace.h"
+
+#include "support/subspaces.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+// The truth of a model with every region's group moved a little, as a detector within a tolerance would have it.
+SymmetryAnnotation perturbed(const GeneratedModel& model, double size) {
+  Random random(6);
+  SymmetryAnnotation result = model.truth;
+  for (Region& region : result.regions) {
+    const Motion frame{axis_rotation(random.direction(), size), size * 0.2 * random.direction()};
+    for (Motion& element : region.elements) element = conjugate(frame, element);
+    for (Motion& element : region.generators) element = conjugate(frame, element);
+    region.centre = frame(region.centre);
+    region.axis = frame.linear * region.axis;
+  }
+  return result;
+}
+
+// After two handles are dragged and turned, of all regions.
+double worst_after_drag(const Mesh& mesh, const SymmetryAnnotation& annotation, GroupMode mode) {
+  SubspaceOptions options;
+  options.mode = mode;
+  const Subspace subspace = build_subspace(mesh, annotation, options, RunContext{});
+  const double size = subspace.diagonal;
+  Eigen::Index low = 0;
+  Eigen::Index high = 0;
+  mesh.vertices.col(0).minCoeff(&low);
+  mesh.vertices.rowwise().sum().maxCoeff(&high);
+  const Vector3d there = mesh.vertices.row(high).transpose();
+  Deformer deformer(subspace, mesh);
+  deformer.set_handles({handle_at(mesh, mesh.vertices.row(low).transpose(), 0.08 * size),
+                        handle_at(mesh, there, 0.08 * size)},
+                       100);
+  const Motion drag = Motion{Eigen::Matrix3d::Identity(), 0.05 * size * Vector3d(1, -2, 1).normalized()} *
+                      Motion::rotation(Vector3d(2, 1, 2).normalized(), 0.35, there);
+  const Deformation deformation =
+      deformer.solve({Motion{Eigen::Matrix3d::Identity(), 0.04 * size * Vector3d(-1, 1, 2).normalized()}, drag}, 5);
+  EXPECT_GT(vertex_displacements(subspace, deformation.state).rowwise().norm().maxCoeff(), 1e-3 * size);
+  double worst = 0;
+  for (const Residual& each : field_residuals(subspace, mesh, annotation, deformation.state, RunContext{}, 500)) {
+    worst = std::max(worst, each.max);
+  }
+  return worst;
+}
+
+void expect_exact(const Mesh& mesh, const SymmetryAnnotation& annotation) {
+  for (const GroupMode mode : {GroupMode::fixed, GroupMode::floating, GroupMode::moving}) {
+    EXPECT_LT(worst_after_drag(mesh, annotation, mode), 1e-12) << to_string(mode);
+  }
+}
+
+std::string said(const ConsistentAnnotation& result) {
+  std::string text;
+  for (const LeftOut& each : result.left_out) text += to_string(each) + "\n";
+  return text;
+}
+
+class NearlyConsistent : public testing::TestWithParam<const char*> {};
+
+TEST_P(NearlyConsistent, AgreesSoThatNoRegionIsLost) {
+  const GeneratedModel model = generate(GetParam());
+  const ConsistentAnnotation result = consistent_annotation(model.mesh, perturbed(model, 5e-4), RunContext{});
+  EXPECT_EQ(result.annotation.regions.size(), model.truth.regions.size()) << said(result);
+  EXPECT_EQ(result.added, 0);
+  EXPECT_EQ(result.largest_movement > 1e-6, model.truth.regions.size() > 1);  // one region agrees with itself
+  EXPECT_LT(result.largest_movement, 2 * model.truth.tolerance);
+  expect_exact(model.mesh, result.annotation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, NearlyConsistent, testing::Values("bar", "table", "chair"));
+
+class Consistent : public testing::TestWithParam<const char*> {};
+
+TEST_P(Consistent, ComesBackAsItIs) {
+  const GeneratedModel model = generate(GetParam());
+  const ConsistentAnnotation once = consistent_annotation(model.mesh, model.truth, RunContext{});
+  ASSERT_EQ(once.annotation.regions.size(), model.truth.regions.size()) << said(once);
+  EXPECT_EQ(once.added, 0);
+  EXPECT_LT(once.largest_movement, 1e-12);
+  const ConsistentAnnotation twice = consistent_annotation(model.mesh, once.annotation, RunContext{});
+  ASSERT_EQ(twice.annotation.regions.size(), once.annotation.regions.size());
+  for (std::size_t i = 0; i < once.annotation.regions.size(); ++i) {
+    EXPECT_EQ(twice.annotation.regions[i].centre, once.annotation.regions[i].centre);
+    EXPECT_EQ(twice.annotation.regions[i].faces, once.annotation.regions[i].faces);
+    EXPECT_EQ(once.annotation.regions[i].faces, model.truth.regions[i].faces);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Consistent, testing::Values("bar", "table", "chair", "armchair"));
+
+TEST(ConsistentAnnotation, LeavesOutARegionThatClashesAndSaysSo) {
+  const GeneratedModel model = generate("table");
+  SymmetryAnnotation annotation = model.truth;
+  Region clash = make_region(PointGroup{PointGroup::Family::Cs, 1}, {0.2, 0, 0}, frame_about(Vector3d::UnitX()),
+                             annotation.regions[1].faces, "clash");
+  clash.id = 99;
+  annotation.regions.push_back(clash);
+  const ConsistentAnnotation result = consistent_annotation(model.mesh, annotation, RunContext{});
+  EXPECT_EQ(result.annotation.regions.size(), model.truth.regions.size());
+  ASSERT_EQ(result.left_out.size(), 1U);
+  EXPECT_EQ(result.left_out.front().id, 99);
+  EXPECT_NE(to_string(result.left_out.front()).find("clash"), std::string::npos);
+}
+
+TEST(ConsistentAnnotation, AddsAnImageThatIsMissing) {
+  const GeneratedModel model = generate("table");
+  SymmetryAnnotation annotation = model.truth;
+  // The last region has images under the whole's group: one of them goes.
+  const Region gone = annotation.regions.back();
+  const auto alike = std::ranges::count_if(annotation.regions, [&](const Region& region) {
+    return region.group == gone.group && region.faces.size() == gone.faces.size();
+  });
+  ASSERT_GT(alike, 1);
+  annotation.regions.pop_back();
+  const ConsistentAnnotation result = consistent_annotation(model.mesh, annotation, RunContext{});
+  EXPECT_EQ(result.added, 1);
+  EXPECT_EQ(result.annotation.regions.size(), model.truth.regions.size()) << said(result);
+  const Region& image = result.annotation.regions.back();
+  EXPECT_EQ(image.faces, gone.faces);
+  EXPECT_LT((image.centre - gone.centre).norm(), 1e-9);
+}
+
+// A disc about z with n lobes and one side higher than the other: Cnv, and no more.
+Mesh lobed(int n, double radius) {
+  const int around = 8 * n;
+  Mesh mesh;
+  mesh.vertices.resize(2 * around + 2, 3);
+  for (int k = 0; k < around; ++k) {
+    const double angle = 2 * std::numbers::pi * k / around;
+    const double r = radius * (1 + 0.2 * std::cos(n * angle));
+    mesh.vertices.row(k) << r * std::cos(angle), r * std::sin(angle), 0;
+    mesh.vertices.row(around + k) << 0.7 * r * std::cos(angle), 0.7 * r * std::sin(angle), 0.4 * radius;
+  }
+  mesh.vertices.row(2 * around) << 0, 0, 0;
+  mesh.vertices.row(2 * around + 1) << 0, 0, 0.4 * radius;
+  mesh.faces.resize(4 * around, 3);
+  for (int k = 0; k < around; ++k) {
+    const int next = (k + 1) % around;
+    mesh.faces.row(4 * k) << k, next, around + k;
+    mesh.faces.row(4 * k + 1) << next, around + next, around + k;
+    mesh.faces.row(4 * k + 2) << next, k, 2 * around;
+    mesh.faces.row(4 * k + 3) << around + k, around + next, 2 * around + 1;
+  }
+  return mesh;
+}
+
+// A box about the origin, its sides cut into squares.
+Mesh body(const Vector3d& half, int cuts) {
+  Mesh mesh;
+  std::vector<Vector3d> points;
+  std::vector<std::array<int, 3>> faces;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const double sign = side % 2 == 0 ? 1 : -1;
+    const int first = static_cast<int>(points.size());
+    for (int i = 0; i <= cuts; ++i) {
+      for (int j = 0; j <= cuts; ++j) {
+        Vector3d point;
+        point[axis] = sign * half[axis];
+        point[(axis + 1) % 3] = half[(axis + 1) % 3] * (2.0 * i / cuts - 1);
+        point[(axis + 2) % 3] = half[(axis + 2) % 3] * (2.0 * j / cuts - 1);
+        points.push_back(point);
+      }
+    }
+    for (int i = 0; i < cuts; ++i) {
+      for (int j = 0; j < cuts; ++j) {
+        const int a = first + i * (cuts + 1) + j;
+        const int b = a + cuts + 1;
+        // Diagonals run towards the middle, so that mirrors map triangles onto triangles.
+        const bool rising = (2 * i < cuts) == (2 * j < cuts);
+        if (rising) {
+          faces.push_back({a, b, b + 1});
+          faces.push_back({a, b + 1, a + 1});
+        } else {
+          faces.push_back({a, b, a + 1});
+          faces.push_back({b, b + 1, a + 1});
+        }
+      }
+    }
+  }
+  mesh.vertices.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) mesh.vertices.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  mesh.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (int k = 0; k < 3; ++k) mesh.faces(static_cast<Eigen::Index>(i), k) = faces[i][static_cast<std::size_t>(k)];
+  }
+  return mesh;
+}
+
+// Appends the part as `motion` moves it; returns its faces.
+std::vector<int> append(Mesh& mesh, const Mesh& part, const Motion& motion) {
+  const Eigen::Index vertices = mesh.vertices.rows();
+  const Eigen::Index faces = mesh.faces.rows();
+  mesh.vertices.conservativeResize(vertices + part.vertices.rows(), 3);
+  mesh.faces.conservativeResize(faces + part.faces.rows(), 3);
+  for (Eigen::Index v = 0; v < part.vertices.rows(); ++v) {
+    mesh.vertices.row(vertices + v) = motion(part.vertices.row(v).transpose()).transpose();
+  }
+  mesh.faces.bottomRows(part.faces.rows()) = part.faces.array() + static_cast<int>(vertices);
+  std::vector<int> result;
+  for (Eigen::Index f = 0; f < part.faces.rows(); ++f) result.push_back(static_cast<int>(faces + f));
+  return result;
+}
+
+std::vector<int> all_faces(const Mesh& mesh) {
+  std::vector<int> result(static_cast<std::size_t>(mesh.faces.rows()));
+  for (std::size_t f = 0; f < result.size(); ++f) result[f] = static_cast<int>(f);
+  return result;
+}
+
+// A car: the whole has the mirror across x; four wheels (C5v) with axes +x and -x are a pattern whose motions include
+// reflections; hub caps (Cinfv) on their axes.
+struct Car {
+  Mesh mesh;
+  SymmetryAnnotation annotation;
+
+  Car() {
+    append(mesh, body({0.6, 1.6, 0.4}, 8), Motion{Eigen::Matrix3d::Identity(), {0, 0.1, 0.6}});
+    const Mesh wheel = lobed(5, 0.35);
+    const Motion upright = Motion::rotation(Vector3d::UnitY(), std::numbers::pi / 2, Vector3d::Zero());
+    const Motion mirror = Motion::reflection(Vector3d::UnitX(), Vector3d::Zero());
+    std::vector<Motion> places;
+    for (const double y : {1.1, -1.0}) {
+      const Motion right = Motion{Eigen::Matrix3d::Identity(), {0.75, y, 0.35}} * upright;
+      places.push_back(right);
+      places.push_back(mirror * right);
+    }
+    std::vector<Region> wheels;
+    Pattern pattern;
+    pattern.name = "wheels";
+    pattern.kind = Pattern::Kind::congruent;
+    for (const Motion& place : places) {
+      const std::vector<int> faces = append(mesh, wheel, place);
+      GroupFrame frame = place.linear;
+      if (frame.determinant() < 0) frame.col(1) = -frame.col(1);
+      wheels.push_back(make_region(*PointGroup::parse("C5v"), place.translation, frame, faces, "wheel"));
+      pattern.instances.push_back({place * inverse(places.front()), faces});
+    }
+    pattern.instances.front().motion = Motion{};
+    annotation = empty_annotation(mesh, 0.005);
+    annotation.regions.push_back(make_region(*PointGroup::parse("Cs"), Vector3d::Zero(),
+                                             frame_about(Vector3d::UnitX()), all_faces(mesh), "whole"));
+    annotation.regions.insert(annotation.regions.end(), wheels.begin(), wheels.end());
+    for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
+    set_parents(annotation.regions);
+    annotation.patterns.push_back(pattern);
+  }
+};
+
+TEST(ConsistentAnnotation, WheelsOfACarAreAPatternWithReflections) {
+  const Car car;
+  const ConsistentAnnotation result = consistent_annotation(car.mesh, car.annotation, RunContext{});
+  EXPECT_TRUE(result.left_out.empty()) << said(result);
+  EXPECT_EQ(result.annotation.patterns.size(), 1U);
+  expect_exact(car.mesh, result.annotation);
+}
+
+TEST(ConsistentAnnotation, WheelsOfADetectedCarAgreeAllTheSame) {
+  // As above, with every group and motion a little off.
+  Car car;
+  Random random(3);
+  const auto nudge = [&](double size) {
+    return Motion{axis_rotation(random.direction(), size), size * random.direction()};
+  };
+  for (Region& region : car.annotation.regions) {
+    const Motion by = nudge(2e-4);
+    GroupFrame frame = frame_about(region.axis);
+    if (region.group.order() > 2) {
+      std::vector<Eigen::Matrix3d> linear;
+      for (const Motion& element : region.elements) linear.push_back(element.linear);
+      frame = classify(linear)->frame;
+    }
+    Region moved = make_region(region.group, by(region.centre), by.linear * frame, region.faces, region.name);
+    moved.id = region.id;
+    region = moved;
+  }
+  for (std::size_t t = 1; t < car.annotation.patterns.front().instances.size(); ++t) {
+    Motion& motion = car.annotation.patterns.front().instances[t].motion;
+    motion = nudge(2e-4) * motion;
+  }
+  const ConsistentAnnotation result = consistent_annotation(car.mesh, car.annotation, RunContext{});
+  EXPECT_TRUE(result.left_out.empty()) << said(result);
+  EXPECT_GT(result.largest_movement, 1e-6);
+  expect_exact(car.mesh, result.annotation);
+}
+
+}  // namespace
+}  // namespace orbifit
