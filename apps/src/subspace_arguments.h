@@ -38,8 +38,8 @@ SymmetryAnnotation without(const std::vector<int>& ids, SymmetryAnnotation annot
 /// \throw UsageError, InputError
 SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh& mesh, const RunContext& context);
 
-/// Makes the annotation consistent, which tells what it leaves out (consistent_annotation.h), and builds the subspace of
-/// what `annotation` becomes. \throw InputError as build_subspace does
+/// Makes the annotation consistent, which tells what it leaves out (consistent_annotation.h), and builds the subspace
+/// of what `annotation` becomes. \throw InputError as build_subspace does
 Subspace build_consistent(const Mesh& mesh, SymmetryAnnotation& annotation, const SubspaceOptions& options,
                           const RunContext& context);
 

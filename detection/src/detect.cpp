@@ -460,7 +460,8 @@ SymmetryAnnotation consistent(const Mesh& mesh, const SymmetryAnnotation& found,
   }
   if (!result.left_out.empty()) {
     const std::size_t count = result.left_out.size();
-    context.message("left out " + std::to_string(count) + (count == 1 ? " region or pattern" : " regions and patterns") +
+    context.message("left out " + std::to_string(count) +
+                    (count == 1 ? " region or pattern" : " regions and patterns") +
                     " that cannot be kept exactly beside larger ones (--explain says which and why)");
   }
   SymmetryAnnotation& annotation = result.annotation;

@@ -36,7 +36,8 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
     result.relaxed.push_back(group.region);
     context.message("left out region " + std::to_string(group.region) + ": the scan has not its symmetry");
   }
-  const SymmetryAnnotation rest = made_consistent(input.mesh, without_regions(input.annotation, result.relaxed), context);
+  const SymmetryAnnotation rest =
+      made_consistent(input.mesh, without_regions(input.annotation, result.relaxed), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
   FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);

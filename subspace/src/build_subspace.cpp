@@ -199,7 +199,8 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   const bool averaged = options.lift == LiftKind::orbit;
   subspace.orbits =
       averaged ? vertex_orbits(mesh, *subspace.regions, *words, place_tolerance(mesh), context) : lone_vertices(mesh);
-  if (options.mode == GroupMode::moving) subspace.orbits.offsets = follower_offsets(mesh, *subspace.regions, subspace.orbits, *words);
+  if (options.mode == GroupMode::moving)
+    subspace.orbits.offsets = follower_offsets(mesh, *subspace.regions, subspace.orbits, *words);
   subspace.basis = basis_without_atoms(subspace, {});
   subspace.lift = orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits,
                              {averaged, options.mode == GroupMode::moving}, context);

@@ -129,8 +129,8 @@ class Step {
     return result;
   }
 
-  Points transposed(const std::vector<Term>& terms, const std::vector<Vector3d>& values, const std::vector<StrainedEdge>& edges,
-                    const std::vector<Vector3d>& strains) const {
+  Points transposed(const std::vector<Term>& terms, const std::vector<Vector3d>& values,
+                    const std::vector<StrainedEdge>& edges, const std::vector<Vector3d>& strains) const {
     Points result = Points::Zero(damping_.size(), 3);
     const auto add = [&](int place, const Vector3d& value) {
       const int orbit = orbit_of_[static_cast<std::size_t>(place)];
@@ -165,7 +165,7 @@ class Step {
 };
 
 std::vector<StrainedEdge> strained_edges(const Step& step, const Places& places, const std::vector<char>& stiff,
-                                 double stiffness, const Points& positions) {
+                                         double stiffness, const Points& positions) {
   std::vector<StrainedEdge> edges;
   const double shortest = kShortest * diagonal(places.positions);
   std::size_t all = 0;

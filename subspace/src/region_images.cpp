@@ -118,7 +118,8 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
     char& to = come[static_cast<std::size_t>(pair.to)];
     if (from != 0 || to != 0) continue;
     from = to = 1;
-    result.pairs.emplace_back(candidates[static_cast<std::size_t>(pair.from)], there[static_cast<std::size_t>(pair.to)]);
+    result.pairs.emplace_back(candidates[static_cast<std::size_t>(pair.from)],
+                              there[static_cast<std::size_t>(pair.to)]);
   }
   std::ranges::sort(result.pairs);
   return result;
@@ -142,7 +143,8 @@ std::vector<int> RegionMap::exact_images(int place, int element) const {
     if (!around(place, from) || !around(arrival(place, element), to)) continue;
     const PieceMoments here = common_moments(place, from);
     const PieceMoments there = common_moments(arrival(place, element), to);
-    if (std::abs(here.area - there.area) > kExact * here.area || separation(here, told, there, size_) > kExact) continue;
+    if (std::abs(here.area - there.area) > kExact * here.area || separation(here, told, there, size_) > kExact)
+      continue;
     result[static_cast<std::size_t>(from)] = to;
   }
   return result;

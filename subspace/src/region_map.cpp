@@ -20,8 +20,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kSameLine = 1e-7;   // of the diagonal, and radians
-constexpr double kOnAxis = 1e-12;    // of a point's offset
+constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
+constexpr double kOnAxis = 1e-12;   // of a point's offset
 constexpr int kMostFold = 120;
 
 // One element of each component of a continuous group; mirrors contain the reference direction.

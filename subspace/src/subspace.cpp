@@ -102,8 +102,7 @@ Vector3d finished(const Subspace& subspace, const CarriedBasis& basis, int verte
   const Transport now = turned ? step_transport(*subspace.regions, place, -1, motion, floating,
                                                 basis.rotations[static_cast<std::size_t>(place)])
                                : rest;
-  return around +
-         carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers);
+  return around + carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers);
 }
 
 }  // namespace

@@ -184,8 +184,8 @@ class CarrierSystem {
     used_ = size;
   }
 
-  MatrixXd stacked_;        // rows of all constraints
-  Eigen::Index used_ = 0;   // of these
+  MatrixXd stacked_;       // rows of all constraints
+  Eigen::Index used_ = 0;  // of these
   MatrixXd gram_;
   VectorXd side_;
   std::vector<Row> rows_;  // those with a constant

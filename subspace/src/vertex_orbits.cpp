@@ -118,9 +118,8 @@ class OrbitBuilder {
       bool met = false;
       const VertexGrid& grid = turned ? *canonical_grid_ : grid_;
       bool same_only = !turned;  // on a circle vertices may lie in more places than the point
-      grid.visit(point.position, [&](int other) {
-        same_only = same_only || sets_[static_cast<std::size_t>(other)] == point.set;
-      });
+      grid.visit(point.position,
+                 [&](int other) { same_only = same_only || sets_[static_cast<std::size_t>(other)] == point.set; });
       const auto follow = [&](int other) {
         const auto w = static_cast<std::size_t>(other);
         if (continuous_ && (turn_of_vertex_[w] >= 0) != turned) return;
@@ -191,8 +190,7 @@ std::vector<VertexOrbits::Offset> follower_offsets(const Mesh& mesh, const Regio
     const VertexOrbits::Follower& follower = orbits.followers[static_cast<std::size_t>(v)];
     Eigen::Vector3d place = words.motion(follower.word)(orbits.positions.row(follower.representative).transpose());
     if (follower.turn >= 0) place = orbits.turns[static_cast<std::size_t>(follower.turn)].motion(place);
-    result.push_back(
-        {mesh.vertices.row(v).transpose() - place, innermost_region(regions, set_of_vertex(orbits, v))});
+    result.push_back({mesh.vertices.row(v).transpose() - place, innermost_region(regions, set_of_vertex(orbits, v))});
   }
   return result;
 }

@@ -94,7 +94,8 @@ PointSets point_sets(const Mesh& mesh, const RegionMap& regions) {
     for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
     if (doubled) {
       std::vector<int> parents = linked(mesh, weld);
-      for (int v = 0; v < static_cast<int>(weld.size()); ++v) result.root[static_cast<std::size_t>(v)] = root(parents, v);
+      for (int v = 0; v < static_cast<int>(weld.size()); ++v)
+        result.root[static_cast<std::size_t>(v)] = root(parents, v);
     }
   }
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {

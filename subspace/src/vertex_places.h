@@ -19,9 +19,9 @@ std::vector<int> welded_vertices(const Points& vertices);
 /// with them without sharing vertices, as in soups. Parts that merely touch keep places of their own.
 std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions);
 
-/// As sets_of_vertices(), with what the motions of its places say of each vertex: where an image of a vertex is a vertex,
-/// the image of its set and the other's are one. Regions are drawn face by face, and where one ends a face earlier than
-/// its image, the vertices of both are decided alike here, once for all of an orbit.
+/// As sets_of_vertices(), with what the motions of its places say of each vertex: where an image of a vertex is a
+/// vertex, the image of its set and the other's are one. Regions are drawn face by face, and where one ends a face
+/// earlier than its image, the vertices of both are decided alike here, once for all of an orbit.
 std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid);
 
 }  // namespace orbifit

@@ -46,9 +46,8 @@ double worst_after_drag(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   mesh.vertices.rowwise().sum().maxCoeff(&high);
   const Vector3d there = mesh.vertices.row(high).transpose();
   Deformer deformer(subspace, mesh);
-  deformer.set_handles({handle_at(mesh, mesh.vertices.row(low).transpose(), 0.08 * size),
-                        handle_at(mesh, there, 0.08 * size)},
-                       100);
+  deformer.set_handles(
+      {handle_at(mesh, mesh.vertices.row(low).transpose(), 0.08 * size), handle_at(mesh, there, 0.08 * size)}, 100);
   const Motion drag = Motion{Eigen::Matrix3d::Identity(), 0.05 * size * Vector3d(1, -2, 1).normalized()} *
                       Motion::rotation(Vector3d(2, 1, 2).normalized(), 0.35, there);
   const Deformation deformation =
@@ -197,7 +196,8 @@ Mesh body(const Vector3d& half, int cuts) {
     }
   }
   mesh.vertices.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) mesh.vertices.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    mesh.vertices.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
   mesh.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     for (int k = 0; k < 3; ++k) mesh.faces(static_cast<Eigen::Index>(i), k) = faces[i][static_cast<std::size_t>(k)];
@@ -256,8 +256,8 @@ struct Car {
     }
     pattern.instances.front().motion = Motion{};
     annotation = empty_annotation(mesh, 0.005);
-    annotation.regions.push_back(make_region(*PointGroup::parse("Cs"), Vector3d::Zero(),
-                                             frame_about(Vector3d::UnitX()), all_faces(mesh), "whole"));
+    annotation.regions.push_back(make_region(*PointGroup::parse("Cs"), Vector3d::Zero(), frame_about(Vector3d::UnitX()),
+                                             all_faces(mesh), "whole"));
     annotation.regions.insert(annotation.regions.end(), wheels.begin(), wheels.end());
     for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
     set_parents(annotation.regions);

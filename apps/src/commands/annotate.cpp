@@ -243,8 +243,7 @@ CommandBody annotate(CLI::App& app) {
                "images that are missing are added");
   app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as it is given");
   return [arguments, &app](CommandContext& context) {
-    const bool adds =
-        arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
+    const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
     RegionHint hint;
     if (adds) hint = to_hint(*arguments);
     const Eigen::Vector3d near =

@@ -75,8 +75,8 @@ CommandBody deform(CLI::App& app) {
                    {arguments->mesh, arguments->handles, arguments->output, arguments->basis, radius_field});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    const SymmetryAnnotation annotation = made_consistent(
-        mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
+    const SymmetryAnnotation annotation =
+        made_consistent(mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
     HandleSet set = read_handles(arguments->handles, mesh);
     if (arguments->iterations > 0) set.iterations = arguments->iterations;
 

@@ -125,9 +125,8 @@ CommandBody fit(CLI::App& app) {
       context.run.message(arguments->scan + ": " + std::to_string(chosen.scan_points) + " of its " +
                           count_of(scan.points.rows(), "point") + " are used (--scan-points)");
     }
-    SymmetryAnnotation annotation =
-        arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
-                                      : read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
+                                                                  : read_annotation(arguments->annotation, mesh);
     if (!arguments->without.empty()) annotation = without(arguments->without, annotation);
     using Clock = std::chrono::steady_clock;
     const auto began = Clock::now();

@@ -7,6 +7,7 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 
@@ -83,7 +84,8 @@ CommandBody symmetrize(CLI::App& app) {
       check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->output});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = without(arguments->without, read_annotation(arguments->annotation, mesh));
+    SymmetryAnnotation annotation = made_consistent(
+        mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
     SymmetrizeReport report;
     const Mesh result = symmetrized(mesh, annotation, context.run, &report);
     const SymmetryReport after = symmetry_residual(result, annotation, nullptr, CarriedMotions::fixed, context.run);

@@ -283,6 +283,24 @@ std::optional<std::string> ConsistencySearch::ask_of_overlaps(Family& family) {
   return std::nullopt;
 }
 
+// Directions of the rows within a region that are far more exact than the region's own group.
+std::vector<Eigen::Vector3d> ConsistencySearch::exact_steps(std::size_t region) const {
+  std::vector<Eigen::Vector3d> result;
+  const KnownRegion& known = regions_[region];
+  for (const KnownPattern& pattern : patterns_) {
+    if (pattern.state != State::waiting ||
+        pattern.pattern.residual.max > policy_.far_more_exact * known.region.residual.max)
+      continue;
+    if (std::ranges::count_if(pattern.shapes, [&](int shape) { return shapes_.within(shape, known.shape); }) < 2)
+      continue;
+    for (const Motion& step : pattern.pattern.generators) {
+      const bool translation = (step.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9;
+      if (translation && step.translation.norm() > 0) result.push_back(step.translation.normalized());
+    }
+  }
+  return result;
+}
+
 // Places the first where all that is asked holds, and the others as its images.
 std::optional<std::string> ConsistencySearch::accept_family(const Family& family) {
   const std::size_t first = family.members.front().region;
@@ -292,7 +310,12 @@ std::optional<std::string> ConsistencySearch::accept_family(const Family& family
     if (member.region == first || regions_[member.region].source >= 0) continue;
     wanted.push_back(image_of(*regions_[member.region].place, inverse(member.way)));
   }
-  const auto fit = fitted_place(start, wanted, family.ties, extent(first), length(policy_.same_group));
+  const double near = length(policy_.same_group);
+  const std::vector<Eigen::Vector3d> steps = exact_steps(first);
+  auto fit = fitted_place(start, wanted, family.ties, extent(first), near, steps);
+  if (!steps.empty() && !(fit && fit->unmet <= rounding_)) {
+    fit = fitted_place(start, wanted, family.ties, extent(first), near);
+  }
   if (!fit) return "its group is not the one that larger groups take it to";
   if (!(fit->unmet <= rounding_)) return "its placement cannot agree with those of larger regions";
   std::vector<GroupPlace> places;
@@ -408,9 +431,8 @@ ConsistentAnnotation ConsistencySearch::run() {
     for (const int shape : patterns_[i].shapes) area = std::max(area, shapes_.area(shape));
     items.push_back({true, i, area / (1 - RegionShapes::kSliver), 0});
   }
-  std::ranges::stable_sort(items, [](const Item& a, const Item& b) {
-    return a.area != b.area ? a.area > b.area : a.order > b.order;
-  });
+  std::ranges::stable_sort(
+      items, [](const Item& a, const Item& b) { return a.area != b.area ? a.area > b.area : a.order > b.order; });
   for (std::size_t i = 0; i < items.size(); ++i) {
     context_.progress("consistency", static_cast<double>(i) / static_cast<double>(items.size()));
     const Item& item = items[i];
@@ -432,8 +454,8 @@ ConsistentAnnotation ConsistencySearch::run() {
   return result();
 }
 
-// Of two that overlap by a sliver the smaller loses it, and what it has outside of one that holds all but a sliver of it:
-// then each pair is disjoint, nested, or overlaps as the search has seen it.
+// Of two that overlap by a sliver the smaller loses it, and what it has outside of one that holds all but a sliver of
+// it: then each pair is disjoint, nested, or overlaps as the search has seen it.
 void ConsistencySearch::trim_slivers() {
   struct Part {
     std::vector<int>* faces;

@@ -26,6 +26,8 @@ struct ConsistencyPolicy {
   double arrived = 0.6;
   /// Share of the samples of an added image that its group must keep, and of its source's area that it must have.
   double kept = 0.85;
+  /// A pattern whose residual is below this share of a region's is right about directions.
+  double far_more_exact = 0.1;
   /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.
   double exact = 1e-13;
 };
@@ -82,6 +84,7 @@ class ConsistencySearch {
   std::optional<std::string> ask_of_overlaps(Family& family);
   std::optional<std::size_t> image_region(std::size_t region, int domain, const Motion& motion, int arrival) const;
   std::optional<std::size_t> nearest_image(std::size_t region, int domain, const Motion& motion, int arrival) const;
+  std::vector<Eigen::Vector3d> exact_steps(std::size_t region) const;
   std::optional<std::string> accept_family(const Family& family);
   void leave_out_region(std::size_t region, const std::string& reason);
 

@@ -207,7 +207,8 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
       Eigen::MatrixXd columns(3, count);
       for (Index g = 0; g < count; ++g) columns.col(g) = before[static_cast<std::size_t>(g)].translation;
       const VectorXd counts = columns.colPivHouseholderQr().solve(instance.motion.translation);
-      for (Index g = 0; g < count; ++g) best_counts[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
+      for (Index g = 0; g < count; ++g)
+        best_counts[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
     } else {
       double nearest = std::numeric_limits<double>::infinity();
       for (int k = -most; k <= most; ++k) {
@@ -253,8 +254,7 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
         double best = std::numeric_limits<double>::infinity();
         for (std::size_t s = 0; s < count; ++s) {
           if (!shapes_.meet(known.shapes[s], move.arrival)) continue;
-          const auto match =
-              shapes_.match(known.shapes[t], move.domain, move.motion, known.shapes[s], move.arrival);
+          const auto match = shapes_.match(known.shapes[t], move.domain, move.motion, known.shapes[s], move.arrival);
           if (match.share < policy_.arrived || match.distance >= best) continue;
           best = match.distance;
           to = s;
@@ -275,7 +275,8 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
     }
   }
   const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
-  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers)) return reason;
+  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers))
+    return reason;
   // To go by the groups around and come back by the steps keeps the first instance: in finitely many ways.
   std::vector<Motion> returns;
   const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };

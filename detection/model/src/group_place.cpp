@@ -206,7 +206,25 @@ VectorXd nearest_solution(Index unknowns, const std::function<VectorXd(const Vec
 }
 
 std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<GroupPlace>& wanted,
-                                     const std::vector<Tie>& ties, const Extent& extent, double near) {
+                                     const std::vector<Tie>& ties, const Extent& extent, double near,
+                                     const std::vector<Vector3d>& directions) {
+  struct Turned {
+    std::size_t mark;
+    Vector3d from, to;
+  };
+  std::vector<Turned> turned_directions;
+  const std::vector<Motion> start_marks = marks(start);
+  for (std::size_t m = 0; m < start_marks.size(); ++m) {
+    for (const Vector3d& from : directions) {
+      for (const Vector3d& to : directions) {
+        for (const double sign : {1.0, -1.0}) {
+          if (extent.reach * (start_marks[m].linear * from - sign * to).norm() <= near) {
+            turned_directions.push_back({m, from, sign * to});
+          }
+        }
+      }
+    }
+  }
   std::vector<Match> matches;
   for (const Tie& tie : ties) {
     const Motion way = way_of(tie, start);
@@ -250,6 +268,10 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
       const Motion image = conjugate(way, (tie.from ? from_marks : own_marks)[match.mark]);
       add_difference(image, (tie.to ? to_members : own_members)[match.member], tie.extent, rows);
     }
+    for (const Turned& each : turned_directions) {
+      const Vector3d off = extent.reach * (own_marks[each.mark].linear * each.from - each.to);
+      rows.insert(rows.end(), off.data(), off.data() + 3);
+    }
     return as_vector(rows);
   };
   const auto soft = [&](const VectorXd& x) {
@@ -259,7 +281,7 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
     return as_vector(rows);
   };
   PlaceFit fit;
-  if (matches.empty() && wanted.empty()) {
+  if (matches.empty() && wanted.empty() && turned_directions.empty()) {
     fit.place = start;
     return fit;
   }

@@ -67,13 +67,18 @@ struct PlaceFit {
 /// The place at which all ties hold that is nearest to `start` and, on average, to `wanted`; a tie between motions
 /// farther apart than `near` is not met. Gauss-Newton, the ties exactly (null space), in six unknowns.
 /// \param extent  of the region around x
+/// \param directions  unit vectors that the marks of x take to one another, or to their opposites, where they nearly
+/// do:
+///                    steps of rows that are known more exactly
 /// \return nothing where a mark has no counterpart within `near`
 std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<GroupPlace>& wanted,
-                                     const std::vector<Tie>& ties, const Extent& extent, double near);
+                                     const std::vector<Tie>& ties, const Extent& extent, double near,
+                                     const std::vector<Eigen::Vector3d>& directions = {});
 
 /// Unknowns near zero at which hard(x) = 0 and soft(x) is least: Gauss-Newton with numerical derivatives, at most
 /// twelve rounds. Lengths in mesh units; `scale` is the size of a unit step.
-Eigen::VectorXd nearest_solution(Eigen::Index unknowns, const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& hard,
+Eigen::VectorXd nearest_solution(Eigen::Index unknowns,
+                                 const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& hard,
                                  const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& soft, double scale);
 
 }  // namespace orbifit

@@ -209,8 +209,8 @@ RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& moti
   if (result.share < 0.5) return result;  // hopeless
   result.share = std::min(result.share, arriving(to, arrival, inverse(motion), from));
   const Motion told{Eigen::Matrix3d::Identity(), -origin_};
-  result.distance = separation(common_moments(from, domain), told * motion * inverse(told),
-                               common_moments(to, arrival), diagonal_);
+  result.distance =
+      separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival), diagonal_);
   return result;
 }
 
@@ -243,8 +243,7 @@ Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) c
   double count = 0;
   for (const Motion& motion : motions) {
     for (Eigen::Index k = 0; k < at(shape).samples.rows(); ++k) {
-      const double distance =
-          index(shape).nearest(motion(at(shape).samples.row(k).transpose())).distance / diagonal_;
+      const double distance = index(shape).nearest(motion(at(shape).samples.row(k).transpose())).distance / diagonal_;
       result.rms += distance * distance;
       result.max = std::max(result.max, distance);
       ++count;

@@ -6,19 +6,19 @@
 
 #include <Eigen/Geometry>
 
+#include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/piece_moments.h"
 #include "orbifit/model/surface_index.h"
-
-#include "orbifit/model/annotation.h"
 
 #include "group_place.h"
 
 namespace orbifit {
 
 /// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by
-/// less than a fiftieth of the smaller one's area is a sliver: borders drawn face by face overlap by that much by chance.
+/// less than a fiftieth of the smaller one's area is a sliver: borders drawn face by face overlap by that much by
+/// chance.
 class RegionShapes {
  public:
   /// \param near how far an image may lie from the surface, mesh units

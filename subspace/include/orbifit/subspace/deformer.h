@@ -26,7 +26,8 @@ struct Deformation {
 
 struct DeformerOptions {
   LaplacianKind laplacian = LaplacianKind::graph;
-  /// Parts that touch at rest are to touch afterwards: see find_contacts(). Not in mode fixed, which locks parts in place.
+  /// Parts that touch at rest are to touch afterwards: see find_contacts(). Not in mode fixed, which locks parts in
+  /// place.
   bool contacts = true;
 };
 

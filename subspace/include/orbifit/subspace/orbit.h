@@ -50,8 +50,8 @@ struct ClosureOptions {
 Orbit orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
                const ClosureOptions& options);
 
-/// orbit_of() of the point nearest to the seed that all motions fix which move the seed by less than the doublet distance:
-/// what is on a mirror or an axis but for that has the displacements of what is on it exactly.
+/// orbit_of() of the point nearest to the seed that all motions fix which move the seed by less than the doublet
+/// distance: what is on a mirror or an axis but for that has the displacements of what is on it exactly.
 Orbit snapped_orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
                        const ClosureOptions& options);
 

@@ -14,9 +14,9 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
+#include "orbifit/model/piece_moments.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/moving_surface.h"
-#include "orbifit/model/piece_moments.h"
 
 namespace orbifit {
 

@@ -26,8 +26,8 @@ std::vector<PieceMoments> moments_of_sets(const Mesh& mesh, const std::vector<in
                                           const Eigen::Vector3d& origin);
 
 /// How far apart `motion` of the one piece and the other are, as a fraction of `size`: the distance of their means, and
-/// the differences of their spreads and of their sides as squares of the same area. Infinite where one has no area. Costs
-/// no more the more triangles they have.
+/// the differences of their spreads and of their sides as squares of the same area. Infinite where one has no area.
+/// Costs no more the more triangles they have.
 double separation(const PieceMoments& piece, const Motion& motion, const PieceMoments& other, double size);
 
 }  // namespace orbifit
