@@ -17,35 +17,44 @@ bool ConsistencySearch::drop_contradictions() {
       const KnownRegion& known = regions_[j];
       if (known.state != State::placed || !shapes_.touch(known.shape, move.domain)) continue;
       const bool meets = shapes_.meet(known.shape, move.domain);
-      if (!meets && move.turning && !known.place->group.continuous()) continue;
       if (meets && shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
+      const bool nested = shapes_.within(known.shape, move.domain);
+      const std::vector<Motion> kept = nested ? std::vector<Motion>{} : kept_on(j, move.domain);
+      if (!nested && kept.empty()) continue;
+      if (!meets && move.turning && !known.place->group.continuous()) continue;
       bool has_image = false;
-      if (move.turning) {
+      if (move.turning && !nested) {
+        const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
+        has_image = std::ranges::all_of(kept, [&](const Motion& element) {
+          const GroupPlace axis = turning_part(turning);
+          return distance_from_continuous_group(turning, element, extent(j)) <= 10 * rounding_ ||
+                 group_distance(axis, element, axis, extent(j)) <= 10 * rounding_;
+        });
+      } else if (move.turning) {
         const GroupPlace turning = turning_part(*regions_[static_cast<std::size_t>(move.region)].place);
         has_image = std::ranges::all_of(marks(*known.place), [&](const Motion& mark) {
           return group_distance(turning, mark, turning, extent(j)) <= 10 * rounding_;
         });
       }
-      for (std::size_t k = 0; k < regions_.size() && !has_image; ++k) {
+      for (std::size_t k = 0; k < regions_.size() && !has_image && nested; ++k) {
         const KnownRegion& other = regions_[k];
         if (other.state != State::placed || !shapes_.touch(other.shape, move.arrival)) continue;
         if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;
-        const RegionShapes::Match match =
-            meets ? shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival)
-                  : shapes_.match(known.shape, known.shape, move.motion, other.shape, other.shape);
-        has_image = match.share >= 0.5;
+        has_image = shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival).share >= 0.5;
+      }
+      if (!nested && !move.turning) {
+        has_image = images_of_kept(j, move.domain, move.motion, move.arrival, 10 * rounding_, true).has_value();
       }
       if (has_image) continue;
-      const bool region = move.region >= 0;
       const bool mover_is_smaller = shapes_.area(move.domain) < shapes_.area(known.shape);
       const std::string reason = "it overlaps " + (mover_is_smaller ? label(j) : name_of(move)) +
                                  ", and the one's group has no image of the other";
-      if (!mover_is_smaller) {
-        leave_out_region(j, reason);
-      } else if (region) {
-        leave_out_region(static_cast<std::size_t>(move.region), reason);
+      const Claim mover = mover_of(move);
+      const Claim loser = mover_is_smaller ? mover : Claim{false, j};
+      if (!loser.pattern && regions_[loser.number].source >= 0) {
+        regions_[loser.number].state = State::out;
       } else {
-        leave_out_pattern(static_cast<std::size_t>(move.pattern), reason);
+        refuse({loser}, {reason, {mover_is_smaller ? Claim{false, j} : mover}});
       }
       return true;
     }

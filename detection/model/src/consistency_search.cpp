@@ -2,12 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 namespace orbifit {
 
 namespace {
+
+constexpr std::size_t kMostElements = 120;
+
+// All products of the generators, as far as they are few.
+std::vector<Motion> closure_of(const std::vector<Motion>& generators, const Extent& extent, double same) {
+  std::vector<Motion> result{Motion{}};
+  for (std::size_t head = 0; head < result.size() && result.size() < kMostElements; ++head) {
+    for (const Motion& generator : generators) {
+      for (const Motion& product : {generator * result[head], inverse(generator) * result[head]}) {
+        const bool known = std::ranges::any_of(result, [&](const Motion& motion) {
+          return motion_distance(motion, product, extent.centre, extent.reach) <= same;
+        });
+        if (!known) result.push_back(product);
+      }
+    }
+  }
+  return result;
+}
 
 bool is_identity(const Motion& motion, const Extent& extent, double tolerance) {
   return motion_distance(motion, Motion{}, extent.centre, extent.reach) <= tolerance;
@@ -34,22 +53,45 @@ Region at_place(const Region& region, const GroupPlace& place, double movement) 
 
 }  // namespace
 
-ConsistencySearch::ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation) {
+  RegionShapes result(mesh, ConsistencyPolicy{}.reach * annotation.tolerance * diagonal(mesh.vertices));
+  for (const Region& region : annotation.regions) result.add(region.faces);
+  for (const Pattern& pattern : annotation.patterns) {
+    for (const PatternInstance& instance : pattern.instances) result.add(instance.faces);
+  }
+  return result;
+}
+
+ConsistencySearch::ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, RegionShapes& shapes,
+                                     const std::map<Claim, std::string>& excluded, const RunContext& context)
     : mesh_(mesh),
       annotation_(annotation),
       context_(context),
       diagonal_(diagonal(mesh.vertices)),
       tolerance_(annotation.tolerance * diagonal_),
       rounding_(policy_.exact * (diagonal_ + mesh.vertices.cwiseAbs().maxCoeff())),
-      shapes_(mesh, policy_.reach * tolerance_) {
+      shapes_(shapes),
+      given_shapes_(shapes.count()) {
+  int shape = 0;
   for (const Region& region : annotation.regions) {
-    regions_.push_back({region, shapes_.add(region.faces), place_of(region), State::waiting, -1});
+    regions_.push_back({region, shape++, place_of(region), State::waiting, -1, regions_.size()});
   }
   for (const Pattern& pattern : annotation.patterns) {
     KnownPattern known{pattern, {}, State::waiting};
-    for (const PatternInstance& instance : pattern.instances) known.shapes.push_back(shapes_.add(instance.faces));
+    for (std::size_t t = 0; t < pattern.instances.size(); ++t) known.shapes.push_back(shape++);
     patterns_.push_back(std::move(known));
   }
+  for (const auto& [claim, reason] : excluded) {
+    if (claim.pattern) {
+      leave_out_pattern(claim.number, reason);
+    } else {
+      leave_out_region(claim.number, reason);
+    }
+  }
+}
+
+ConsistencySearch::~ConsistencySearch() {
+  shapes_.keep(given_shapes_);
 }
 
 std::string ConsistencySearch::label(std::size_t region) const {
@@ -78,6 +120,74 @@ void ConsistencySearch::leave_out_pattern(std::size_t number, const std::string&
   left_out_.push_back({true, known.pattern.id, known.pattern.name, to_string(known.pattern.kind), reason});
 }
 
+void ConsistencySearch::refuse(std::vector<Claim> claims, const Refusal& refusal) {
+  Refused refused{std::move(claims), refusal.reason, 0, {}};
+  for (const Claim& claim : refused.claims) {
+    refused.saving += saving(claim);
+    if (claim.pattern) {
+      leave_out_pattern(claim.number, refusal.reason);
+    } else {
+      leave_out_region(claim.number, refusal.reason);
+    }
+  }
+  for (const Claim& claim : refusal.by) {
+    const bool own = std::ranges::find(refused.claims, claim) != refused.claims.end();
+    if (own || (!claim.pattern && claim.number >= regions_.size()) || is_everything(claim)) continue;
+    std::vector<Claim> family = family_of(claim);
+    if (std::ranges::find(refused.against, family) == refused.against.end()) {
+      refused.against.push_back(std::move(family));
+    }
+  }
+  refused_.push_back(std::move(refused));
+}
+
+// Of the annotation's own; an image that was added stands or falls with what it is the image of.
+std::vector<Claim> ConsistencySearch::family_of(const Claim& claim) const {
+  if (claim.pattern) return {claim};
+  std::vector<Claim> result;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (regions_[i].source < 0 && regions_[i].family == regions_[claim.number].family) result.push_back({false, i});
+  }
+  return result;
+}
+
+bool ConsistencySearch::is_everything(const Claim& claim) const {
+  return !claim.pattern && regions_[claim.number].region.faces.size() == static_cast<std::size_t>(mesh_.faces.rows());
+}
+
+double ConsistencySearch::saving(std::size_t region) const {
+  const PointGroup& group = regions_[region].region.group;
+  const double area = shapes_.area(regions_[region].shape);
+  return group.continuous() ? area : area * (1 - 1.0 / group.order());
+}
+
+double ConsistencySearch::saving(const Claim& claim) const {
+  if (!claim.pattern) return saving(claim.number);
+  double sum = 0;
+  double largest = 0;
+  for (const int shape : patterns_[claim.number].shapes) {
+    sum += shapes_.area(shape);
+    largest = std::max(largest, shapes_.area(shape));
+  }
+  return sum - largest;
+}
+
+double ConsistencySearch::total_saving() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (regions_[i].state == State::placed) sum += saving(i);
+  }
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    if (patterns_[i].state == State::placed) sum += saving(Claim{true, i});
+  }
+  return sum;
+}
+
+Claim ConsistencySearch::mover_of(const Move& move) const {
+  return move.region >= 0 ? Claim{false, static_cast<std::size_t>(move.region)}
+                          : Claim{true, static_cast<std::size_t>(move.pattern)};
+}
+
 void ConsistencySearch::add_moves_of_region(std::size_t region) {
   const KnownRegion& known = regions_[region];
   const auto number = static_cast<int>(region);
@@ -92,6 +202,114 @@ void ConsistencySearch::add_moves_of_pattern(std::size_t pattern) {
     moves_.push_back({known.shapes[0], known.shapes[t], motion, -1, static_cast<int>(pattern)});
     moves_.push_back({known.shapes[t], known.shapes[0], inverse(motion), -1, static_cast<int>(pattern)});
   }
+}
+
+void ConsistencySearch::keep_shapes(int count) {
+  shapes_.keep(count);
+  std::erase_if(kept_, [&](const auto& entry) { return std::max(entry.first.first, entry.first.second) >= count; });
+}
+
+// The elements of a region's group, but the identity, that take some of what it shares with `domain` to what it shares
+// with it: the others lead out of the domain, so that what moves the domain need not take them along.
+std::vector<Motion> ConsistencySearch::kept_on(std::size_t region, int domain) {
+  const KnownRegion& known = regions_[region];
+  const GroupPlace& place = *known.place;
+  const std::vector<Motion> own = members(place);
+  const auto found = kept_.find({known.shape, domain});
+  if (found != kept_.end()) {  // the group may have been moved a little since
+    std::vector<Motion> result;
+    for (const Motion& motion : found->second) {
+      result.push_back(*std::ranges::min_element(own, {}, [&](const Motion& member) {
+        return motion_distance(motion, member, extent(region).centre, extent(region).reach);
+      }));
+    }
+    return result;
+  }
+  std::vector<Motion>& result = kept_[{known.shape, domain}];
+  const bool all = shapes_.within(known.shape, domain);
+  for (const Motion& element : own) {
+    if (is_identity(element, extent(region), rounding_)) continue;
+    bool kept = all || shapes_.returns(known.shape, domain, element);
+    if (!kept && place.group.continuous()) {
+      Motion turn = element;
+      for (int k = 0; k < 5 && !kept; ++k) {
+        turn = turn * element;
+        kept = shapes_.returns(known.shape, domain, turn);
+      }
+    }
+    if (kept) result.push_back(element);
+  }
+  return result;
+}
+
+// How far a motion is from being an element of a region's group, mesh units.
+double ConsistencySearch::distance_from_group(const Motion& motion, std::size_t region) const {
+  const GroupPlace& place = *regions_[region].place;
+  const Extent& around = extent(region);
+  double best = place.group.continuous() ? distance_from_continuous_group(place, motion, around)
+                                         : std::numeric_limits<double>::infinity();
+  for (const Motion& member : members(place)) {
+    best = std::min(best, motion_distance(motion, member, around.centre, around.reach));
+  }
+  return best;
+}
+
+// Whose groups hold what a motion makes of the elements that keep the part of a region that lies in `domain`: for each
+// of elements that generate them, the regions that together hold what the motion makes of that part. Nothing where
+// there are none.
+std::optional<std::vector<ConsistencySearch::KeptImage>> ConsistencySearch::images_of_kept(
+    std::size_t region, int domain, const Motion& motion, int arrival, double tolerance, bool placed_only) {
+  struct Candidate {
+    double distance;
+    std::size_t region;
+  };
+  const KnownRegion& from = regions_[region];
+  const Extent& around = extent(region);
+  const bool meets = shapes_.meet(from.shape, domain);
+  std::vector<std::size_t> there;
+  for (std::size_t other = 0; other < regions_.size(); ++other) {
+    const KnownRegion& known = regions_[other];
+    if (known.state == State::out || !known.place || (placed_only && known.state != State::placed)) continue;
+    if (meets ? shapes_.meet(known.shape, arrival) : shapes_.touch(known.shape, arrival)) there.push_back(other);
+  }
+  std::vector<KeptImage> result;
+  std::vector<Motion> generators;
+  std::vector<Motion> generated;
+  const std::vector<Motion> kept = kept_on(region, domain);
+  const auto is_generated = [&](const Motion& element) {
+    return std::ranges::any_of(generated, [&](const Motion& known) {
+      return motion_distance(known, element, around.centre, around.reach) <= length(1);
+    });
+  };
+  for (const Motion& element : kept) {
+    if (is_generated(element)) continue;
+    const Motion image = conjugate(motion, element);
+    std::vector<Candidate> candidates;
+    for (const std::size_t other : there) {
+      const double distance = distance_from_group(image, other);
+      if (distance <= tolerance) candidates.push_back({distance, other});
+    }
+    std::ranges::stable_sort(candidates, {}, &Candidate::distance);
+    std::vector<int> shapes;
+    std::vector<KeptImage> holding;
+    double covered = 0;
+    for (const Candidate& candidate : candidates) {
+      shapes.push_back(regions_[candidate.region].shape);
+      const double now = meets ? shapes_.covered(from.shape, domain, motion, shapes) : 1;
+      if (now <= covered + RegionShapes::kSliver) {
+        shapes.pop_back();
+        continue;
+      }
+      holding.push_back({element, candidate.region});
+      covered = now;
+    }
+    if (covered < policy_.arrived) continue;
+    result.insert(result.end(), holding.begin(), holding.end());
+    generators.push_back(element);
+    generated = closure_of(generators, around, length(1));
+  }
+  if (!std::ranges::all_of(kept, is_generated)) return std::nullopt;
+  return result;
 }
 
 // The region to which a motion takes (what lies in `domain` of) another: of the same group, near enough, on the same
@@ -126,11 +344,11 @@ std::optional<std::size_t> ConsistencySearch::nearest_image(std::size_t region, 
 }
 
 // The image of the family's member `at` is missing: it is added where the surface has it.
-std::optional<std::string> ConsistencySearch::add_image(const Move& move, std::size_t at, Family& family) {
+ConsistencySearch::Verdict ConsistencySearch::add_image(const Move& move, std::size_t at, Family& family) {
   const Member member = family.members[at];
   const int shape = regions_[member.region].shape;
-  const std::string nowhere = "the group of " + name_of(move) + " takes it where there is no such region";
-  if (!shapes_.within(shape, move.domain)) return nowhere;
+  const Refusal nowhere{"the group of " + name_of(move) + " takes it where there is no such region", {mover_of(move)}};
+  if (!shapes_.within(shape, move.domain)) return Refusal{nowhere.reason, nowhere.by, member.region, move.domain};
   const GroupPlace& first = *regions_[family.members.front().region].place;
   const Motion way = move.motion * member.way;
   const GroupPlace place = image_of(first, way);
@@ -139,9 +357,9 @@ std::optional<std::string> ConsistencySearch::add_image(const Move& move, std::s
   const int added = shapes_.add(faces);
   const bool stands = shapes_.area(added) >= policy_.kept * shapes_.area(shape) &&
                       shapes_.area(shape) >= policy_.kept * shapes_.area(added) &&
-                      shapes_.kept(added, members(place)) >= policy_.kept;
+                      shapes_.kept(added, members(place), shapes_.near()) >= policy_.kept;
   if (!stands) {
-    shapes_.keep(added);
+    keep_shapes(added);
     return nowhere;
   }
   for (std::size_t other = 0; other < regions_.size(); ++other) {
@@ -149,8 +367,9 @@ std::optional<std::string> ConsistencySearch::add_image(const Move& move, std::s
     if (known.state == State::out || !shapes_.same(known.shape, added)) continue;
     if (known.state == State::placed ||
         std::ranges::any_of(family.members, [&](const Member& m) { return m.region == other; })) {
-      shapes_.keep(added);
-      return "its image under " + name_of(move) + " contradicts " + label(other);
+      keep_shapes(added);
+      return Refusal{"its image under " + name_of(move) + " contradicts " + label(other),
+                     {mover_of(move), {false, other}}};
     }
     family.replaced.push_back(other);
   }
@@ -168,45 +387,118 @@ std::optional<std::string> ConsistencySearch::add_image(const Move& move, std::s
 }
 
 // What lies on a surface of revolution turns with it: its own motions keep the axis, or all directions would be turned
-// into one another.
-std::optional<std::string> ConsistencySearch::turn_with(const Move& move, std::size_t at, Family& family) const {
+// into one another. Of what overlaps it in part, or touches it, those that stay there belong to its group.
+ConsistencySearch::Verdict ConsistencySearch::turn_with(const Move& move, std::size_t at, Family& family) {
   const Member& member = family.members[at];
   const int shape = regions_[member.region].shape;
   const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
-  if (!shapes_.meet(shape, move.domain)) {
-    // What touches it need not turn with it; but no vertex lies on circles about two axes.
-    if (!regions_[member.region].place->group.continuous()) return std::nullopt;
-    const GroupPlace& own = *regions_[member.region].place;
-    const GroupPlace part = turning_part(own);
-    if (group_distance(part, Motion{}, turning_part(turning), extent(member.region)) > length(policy_.same_group)) {
-      return "it touches " + name_of(move) + ", which turns about another axis";
-    }
-  }
+  const GroupPlace& first = *regions_[family.members.front().region].place;
+  const Extent& around = extent(family.members.front().region);
   const Motion some = turning.group.has_axis() ? Motion::rotation(turning.frame.col(2), 1, turning.centre) : Motion{};
-  if (shapes_.meet(shape, move.domain) &&
-      shapes_.match(shape, move.domain, some, shape, move.arrival).share < policy_.arrived) {
-    return "it lies on " + name_of(move) + " and does not turn with it";
+  const bool nested = shapes_.within(shape, move.domain);
+  const bool meets = nested || shapes_.meet(shape, move.domain);
+  // What merely touches it turns with it only if it turns at all: no vertex lies on circles about two axes.
+  if (!meets && !regions_[member.region].place->group.continuous()) return std::nullopt;
+  const bool turns = meets && shapes_.match(shape, move.domain, some, shape, move.arrival).share >= policy_.arrived;
+  if (nested && !turns) {
+    return Refusal{"it lies on " + name_of(move) + " and does not turn with it", {mover_of(move)}};
   }
+  std::vector<Motion> own;
+  if (nested) own = marks(first);
+  for (const Motion& element : nested ? std::vector<Motion>{} : kept_on(member.region, move.domain)) {
+    const double off = turns ? group_distance(turning_part(turning), element, turning_part(turning), around)
+                             : distance_from_continuous_group(turning, element, extent(member.region));
+    if (off > length(policy_.same_group)) {
+      return Refusal{
+          "it overlaps " + name_of(move) + " and does not turn with it", {mover_of(move)}, member.region, move.domain};
+    }
+    own.push_back(conjugate(inverse(member.way), element));
+  }
+  const auto numbers = numbers_of(own, members(first), around, length(policy_.same_group));
+  if (!numbers) return Refusal{"its group is not the one that larger groups take it to", {mover_of(move)}};
+  family.asking.push_back(mover_of(move));
   Tie tie;
   tie.from = tie.to = image_of(turning_part(turning), inverse(member.way));
-  tie.extent = extent(family.members.front().region);
-  const std::size_t marks_of_first = marks(*regions_[family.members.front().region].place).size();
-  for (std::size_t k = 0; k < marks_of_first; ++k) {
-    tie.own = static_cast<int>(k);
+  tie.extent = around;
+  for (const std::size_t number : *numbers) {
+    tie.own = static_cast<int>(number);
     family.ties.push_back(tie);
+  }
+  return std::nullopt;
+}
+
+bool ConsistencySearch::can_wait_for(std::size_t region) const {
+  return regions_[region].state == State::waiting && std::ranges::find(begun_, region) == begun_.end();
+}
+
+// Where a move takes a member that its domain holds a part of, or touches: what keeps that part must be kept there.
+ConsistencySearch::Verdict ConsistencySearch::follow_partly(const Move& move, std::size_t at, Family& family) {
+  const Member member = family.members[at];
+  const std::vector<Motion> kept = kept_on(member.region, move.domain);
+  if (kept.empty()) return std::nullopt;
+  Refusal refusal{"the group of " + name_of(move) + " takes part of it where there is no such region",
+                  {mover_of(move)},
+                  member.region,
+                  move.domain};
+  const std::size_t first = family.members.front().region;
+  const double near = length(policy_.same_group);
+  const auto images = images_of_kept(member.region, move.domain, move.motion, move.arrival, near, false);
+  if (!images) return refusal;
+  for (const auto& [element, image] : *images) {
+    const KnownRegion& there = regions_[image];
+    const auto number =
+        numbers_of({conjugate(inverse(member.way), element)}, members(*regions_[first].place), extent(first), near);
+    if (!number) return Refusal{"its group is not the one that larger groups take it to", {mover_of(move)}};
+    const auto known = std::ranges::find(family.members, image, &Member::region);
+    const bool in_family = known != family.members.end();
+    if (!in_family && there.state != State::placed) {
+      // One that waits: of the same group, it belongs to the family; else it comes first.
+      const GroupPlace& place = *regions_[member.region].place;
+      const std::size_t all = members(place).size() - (place.group.continuous() ? 0 : 1);  // but the identity
+      if (kept.size() == all && group_distance(place, move.motion, *there.place, extent(image)) <= near) {
+        family.members.push_back({image, move.motion * member.way});
+      } else if (can_wait_for(image)) {
+        Refusal later = refusal;
+        later.first = image;
+        return later;
+      }
+      continue;
+    }
+    Tie tie;
+    tie.before = move.motion * member.way;
+    if (there.place->group.continuous()) {
+      // Of a group without end a member is not one of few: that it holds the image is asked of its axis.
+      if (in_family) continue;
+      tie.from = tie.to = turning_part(*there.place);
+      tie.after = inverse(tie.before);
+      tie.own = static_cast<int>(number->front());
+      tie.extent = extent(image);
+    } else {
+      tie.kept = *number;
+      if (in_family) {
+        tie.before = inverse(known->way) * tie.before;
+        tie.extent = extent(first);
+      } else {
+        tie.to = there.place;
+        tie.extent = extent(image);
+      }
+    }
+    family.ties.push_back(tie);
+    family.asking.push_back(mover_of(move));
   }
   return std::nullopt;
 }
 
 // Where a move takes a member: to itself or another, which asks something of the first; to a region placed before; or
 // to one that now belongs to the family.
-std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size_t at, Family& family) {
+ConsistencySearch::Verdict ConsistencySearch::follow(const Move& move, std::size_t at, Family& family) {
   const Member member = family.members[at];
   const int shape = regions_[member.region].shape;
   const bool meets = shapes_.meet(shape, move.domain);
   if (!meets && !shapes_.touch(shape, move.domain)) return std::nullopt;
   if (meets && shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
   if (move.turning) return turn_with(move, at, family);
+  if (!shapes_.within(shape, move.domain)) return follow_partly(move, at, family);
   Tie tie;
   const std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
   if (!image) return add_image(move, at, family);
@@ -215,6 +507,7 @@ std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size
     tie.to = regions_[*image].place;
     tie.extent = extent(*image);
     family.ties.push_back(tie);
+    family.asking.push_back(mover_of(move));
     return std::nullopt;
   }
   const auto known = std::ranges::find(family.members, *image, &Member::region);
@@ -224,58 +517,91 @@ std::optional<std::string> ConsistencySearch::follow(const Move& move, std::size
   }
   tie.before = inverse(known->way) * move.motion * member.way;
   tie.extent = extent(family.members.front().region);
-  if (!is_identity(tie.before, tie.extent, rounding_)) family.ties.push_back(tie);
+  if (!is_identity(tie.before, tie.extent, rounding_)) {
+    family.ties.push_back(tie);
+    family.asking.push_back(mover_of(move));
+  }
   return std::nullopt;
 }
 
-std::optional<std::string> ConsistencySearch::gather(std::size_t first, Family& family) {
+ConsistencySearch::Verdict ConsistencySearch::gather(std::size_t first, Family& family) {
   constexpr std::size_t kMostMembers = 2000;
   family.members.push_back({first, Motion{}});
   for (std::size_t at = 0; at < family.members.size(); ++at) {
     context_.check();
     for (std::size_t m = 0; m < moves_.size(); ++m) {
-      if (auto reason = follow(moves_[m], at, family)) return reason;
+      if (auto refusal = follow(moves_[m], at, family)) return refusal;
     }
-    if (family.members.size() > kMostMembers) return "it has images without end";
+    if (family.members.size() > kMostMembers) return Refusal{"it has images without end", {}};
   }
   return ask_of_overlaps(family);
 }
 
-// Where regions overlap and neither holds the other, the new one's motions take the other to images as well.
-std::optional<std::string> ConsistencySearch::ask_of_overlaps(Family& family) {
+// Where regions overlap or touch and neither holds the other, the new one's motions take along what keeps the other
+// there.
+ConsistencySearch::Verdict ConsistencySearch::ask_of_overlaps(Family& family) {
   const std::size_t first = family.members.front().region;
   const int shape = regions_[first].shape;
-  const std::vector<Motion> own = marks(*regions_[first].place);
-  const auto overlaps = [&](int other) {
-    return shapes_.meet(shape, other) && !shapes_.within(shape, other) &&
-           (!shapes_.within(other, shape) || shapes_.same(other, shape));
-  };
-  const auto missing = [&](std::size_t other) {
-    return "it overlaps " + label(other) + ", of which its group has no image";
+  const GroupPlace& place = *regions_[first].place;
+  const double near = length(policy_.same_group);
+  const std::vector<Motion> own = marks(place);
+  const auto numbers = numbers_of(own, members(place), extent(first), near);
+  const auto concerns = [&](int other) {
+    if (!shapes_.touch(shape, other)) return false;
+    return !shapes_.within(shape, other) || shapes_.same(other, shape);
   };
   for (std::size_t other = 0; other < regions_.size(); ++other) {
     const KnownRegion& known = regions_[other];
     const auto member = std::ranges::find(family.members, other, &Member::region);
     const bool in_family = member != family.members.end();
-    if (other == first || !(known.state == State::placed || in_family) || !overlaps(known.shape)) continue;
+    if (other == first || !(known.state == State::placed || in_family) || !concerns(known.shape)) continue;
+    if (kept_on(other, shape).empty()) continue;
+    const Motion to_first = in_family ? inverse(member->way) : Motion{};
+    const std::size_t whose = in_family ? first : other;
     for (std::size_t k = 0; k < own.size(); ++k) {
-      const auto image = image_region(other, shape, own[k], shape);
-      if (!image) return missing(other);
-      Tie tie;
-      tie.own = static_cast<int>(k);
-      tie.extent = extent(*image);
-      if (in_family) {
-        const auto to = std::ranges::find(family.members, *image, &Member::region);
-        if (to == family.members.end()) return missing(other);
-        tie.before = inverse(to->way);
-        tie.after = member->way;
-        tie.extent = extent(first);
-      } else {
-        if (regions_[*image].state != State::placed) return missing(other);
-        tie.from = known.place;
-        tie.to = regions_[*image].place;
+      const auto images = numbers ? images_of_kept(other, shape, own[k], shape, near, false) : std::nullopt;
+      if (!images) {
+        return Refusal{
+            "it overlaps " + label(other) + ", of which its group has no image", {{false, other}}, first, known.shape};
       }
-      family.ties.push_back(tie);
+      for (const auto& [element, image] : *images) {
+        const KnownRegion& there = regions_[image];
+        const auto to = std::ranges::find(family.members, image, &Member::region);
+        const bool to_family = to != family.members.end();
+        const auto number =
+            numbers_of({conjugate(to_first, element)}, members(*regions_[whose].place), extent(whose), near);
+        if (!number || (!to_family && there.state != State::placed)) continue;  // asked when that one is placed
+        Tie tie;
+        tie.own = static_cast<int>((*numbers)[k]);
+        tie.extent = to_family ? extent(first) : extent(image);
+        if (there.place->group.continuous()) {
+          if (to_family) {
+            // What keeps the other there must keep the axis.
+            if (in_family) continue;
+            tie.own = -1;
+            tie.before = conjugate(inverse(to->way), element);
+            tie.kept = {0};
+          } else {
+            if (in_family || !known.place->group.continuous()) continue;
+            tie.from = turning_part(*known.place);
+            tie.to = turning_part(*there.place);
+          }
+        } else {
+          tie.kept = *number;
+          if (in_family) {
+            tie.after = member->way;
+          } else {
+            tie.from = known.place;
+          }
+          if (to_family) {
+            tie.before = inverse(to->way);
+          } else {
+            tie.to = there.place;
+          }
+        }
+        family.ties.push_back(tie);
+        if (!in_family) family.asking.push_back({false, other});
+      }
     }
   }
   return std::nullopt;
@@ -300,7 +626,7 @@ std::vector<Eigen::Vector3d> ConsistencySearch::exact_steps(std::size_t region) 
 }
 
 // Places the first where all that is asked holds, and the others as its images.
-std::optional<std::string> ConsistencySearch::accept_family(const Family& family) {
+ConsistencySearch::Verdict ConsistencySearch::accept_family(const Family& family) {
   const std::size_t first = family.members.front().region;
   const GroupPlace start = *regions_[first].place;
   std::vector<GroupPlace> wanted;
@@ -314,8 +640,10 @@ std::optional<std::string> ConsistencySearch::accept_family(const Family& family
   if (!steps.empty() && !(fit && fit->unmet <= rounding_)) {
     fit = fitted_place(start, wanted, family.ties, extent(first), near);
   }
-  if (!fit) return "its group is not the one that larger groups take it to";
-  if (!(fit->unmet <= rounding_)) return "its placement cannot agree with those of larger regions";
+  if (!fit) return Refusal{"its group is not the one that larger groups take it to", family.asking};
+  if (!(fit->unmet <= rounding_)) {
+    return Refusal{"its placement cannot agree with those of larger regions", family.asking};
+  }
   std::vector<GroupPlace> places;
   for (const Member& member : family.members) {
     places.push_back(image_of(fit->place, member.way));
@@ -323,13 +651,25 @@ std::optional<std::string> ConsistencySearch::accept_family(const Family& family
     if (known.source >= 0) continue;
     const double moved = group_distance(*known.place, Motion{}, places.back(), extent(member.region));
     if (moved > length(policy_.movement)) {
-      return "to agree with larger regions it would have to move by " +
-             std::to_string(100 * moved / diagonal_).substr(0, 5) + " % of the diagonal";
+      return Refusal{"to agree with larger regions it would have to move by " +
+                         std::to_string(100 * moved / diagonal_).substr(0, 5) + " % of the diagonal",
+                     family.asking};
+    }
+  }
+  for (std::size_t k = 0; k < family.members.size(); ++k) {
+    const KnownRegion& known = regions_[family.members[k].region];
+    if (known.source >= 0 ||
+        group_distance(*known.place, Motion{}, places[k], extent(family.members[k].region)) <= 0.2 * tolerance_)
+      continue;
+    const double before = shapes_.kept(known.shape, members(*known.place), tolerance_);
+    if (shapes_.kept(known.shape, members(places[k]), tolerance_) < before - (1 - policy_.kept)) {
+      return Refusal{"where it agrees with larger regions it does not fit its surface", family.asking};
     }
   }
   for (std::size_t k = 0; k < family.members.size(); ++k) {
     KnownRegion& known = regions_[family.members[k].region];
     known.state = State::placed;
+    known.family = first;
     const Extent& around = extent(family.members[k].region);
     const double moved = group_distance(*known.place, Motion{}, places[k], around);
     if (known.source < 0 && moved <= rounding_ && stands_at(known.region, places[k], around, rounding_)) continue;
@@ -340,22 +680,72 @@ std::optional<std::string> ConsistencySearch::accept_family(const Family& family
   return std::nullopt;
 }
 
+// Of two regions that overlap the later one gives up what the former takes of it, to the last vertex, or what it has
+// outside of that, whichever is less, with all its images. \return whether enough is left
+bool ConsistencySearch::trim(std::size_t region, int other) {
+  KnownRegion& known = regions_[region];
+  const std::vector<int>& own = shapes_.faces(known.shape);
+  const bool inner = shapes_.common_area(known.shape, other) > 0.5 * shapes_.area(known.shape);
+  std::vector<int> taken;
+  if (inner) {
+    std::ranges::set_difference(own, shapes_.faces(other), std::back_inserter(taken));
+  } else {
+    taken = shapes_.faces_at(known.shape, other);
+  }
+  if (taken.empty() || taken.size() == own.size()) return false;
+  std::vector<int> rest = shapes_.without_orbit(known.shape, taken, *known.place);
+  const int trimmed = shapes_.add(rest);
+  const double given = shapes_.area(static_cast<int>(region));  // shapes of regions come first, in their order
+  if (shapes_.area(trimmed) < policy_.left * given || shapes_.area(trimmed) >= shapes_.area(known.shape)) {
+    keep_shapes(trimmed);
+    return false;
+  }
+  known.shape = trimmed;
+  known.region.faces = std::move(rest);
+  return true;
+}
+
 void ConsistencySearch::place_family(std::size_t first) {
   if (!regions_[first].place) {
-    leave_out_region(first, "its elements form no group of that symbol");
+    refuse({{false, first}}, {"its elements form no group of that symbol", {}});
     return;
   }
-  const std::size_t regions_before = regions_.size();
-  const int shapes_before = shapes_.count();
+  begun_.push_back(first);
+  const int given_shape = regions_[first].shape;
+  const std::vector<int> given_faces = regions_[first].region.faces;
   Family family;
-  std::optional<std::string> reason = gather(first, family);
-  if (!reason) reason = accept_family(family);
-  if (reason) {
-    for (const Member& member : family.members) {
-      if (member.region < regions_before) leave_out_region(member.region, *reason);
-    }
+  Verdict refusal;
+  std::size_t regions_before = 0;
+  for (bool again = true; again;) {
+    regions_before = regions_.size();
+    const int shapes_before = shapes_.count();
+    family = {};
+    refusal = gather(first, family);
+    if (!refusal) refusal = accept_family(family);
+    if (!refusal) break;
     regions_.resize(regions_before);
-    shapes_.keep(shapes_before);
+    keep_shapes(shapes_before);
+    again = false;
+    if (refusal->first) {
+      place_family(*refusal->first);
+      again = regions_[first].state == State::waiting;
+    } else if (refusal->across && *refusal->across < regions_before && refusal->shape < shapes_before) {
+      again = trim(*refusal->across, refusal->shape);
+    }
+  }
+  begun_.pop_back();
+  if (refusal) {
+    if (regions_[first].state != State::waiting) return;  // placed with what it waited for
+    regions_[first].shape = given_shape;
+    regions_[first].region.faces = given_faces;
+    std::vector<Claim> claims;
+    for (const Member& member : family.members) {
+      if (member.region < regions_before && regions_[member.region].source < 0 &&
+          regions_[member.region].state == State::waiting) {
+        claims.push_back({false, member.region});
+      }
+    }
+    refuse(std::move(claims), *refusal);
     return;
   }
   for (const std::size_t other : family.replaced) {
@@ -366,7 +756,7 @@ void ConsistencySearch::place_family(std::size_t first) {
   for (const Member& member : family.members) add_moves_of_region(member.region);
 }
 
-ConsistentAnnotation ConsistencySearch::run() {
+ConsistencyOutcome ConsistencySearch::run(std::optional<Claim> wanted) {
   struct Item {
     bool pattern;
     std::size_t number;
@@ -395,6 +785,9 @@ ConsistentAnnotation ConsistencySearch::run() {
     } else if (regions_[item.number].state == State::waiting) {
       place_family(item.number);
     }
+    if (wanted && !refused_.empty() &&
+        std::ranges::find(refused_.back().claims, *wanted) != refused_.back().claims.end())
+      return {{}, 0, std::move(refused_)};
   }
   while (drop_contradictions()) {
     moves_.clear();
@@ -405,7 +798,8 @@ ConsistentAnnotation ConsistencySearch::run() {
       if (patterns_[i].state == State::placed) add_moves_of_pattern(i);
     }
   }
-  return result();
+  const double saved = total_saving();
+  return {result(), saved, std::move(refused_)};
 }
 
 }  // namespace orbifit

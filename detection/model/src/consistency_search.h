@@ -1,8 +1,11 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "orbifit/model/consistent_annotation.h"
@@ -28,16 +31,63 @@ struct ConsistencyPolicy {
   double kept = 0.85;
   /// A pattern whose residual is below this share of a region's is right about directions.
   double far_more_exact = 0.1;
+  /// Share of its area that a region must keep where it gives up what another takes of it.
+  double left = 0.5;
   /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.
   double exact = 1e-13;
+  /// Searches at most, for what to keep of claims that contradict one another: each takes milliseconds to tenths of a
+  /// second.
+  int trials = 100;
 };
 
-/// Regions and patterns on the way to a consistent annotation. See consistent_annotation().
+/// A region or a pattern of the annotation, by its place in the list there.
+struct Claim {
+  bool pattern = false;
+  std::size_t number = 0;
+
+  auto operator<=>(const Claim&) const = default;
+};
+
+/// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
+struct Refused {
+  std::vector<Claim> claims;  ///< not empty
+  std::string reason;
+  double saving = 0;                        ///< area that they would have saved, mesh units
+  std::vector<std::vector<Claim>> against;  ///< families that are in the way, of which leaving out one may do
+};
+
+/// What one search keeps.
+struct ConsistencyOutcome {
+  ConsistentAnnotation kept;
+  double saving = 0;  ///< area that need not be told, of all that is kept, mesh units
+  std::vector<Refused> refused;
+
+  double refused_saving() const {
+    double sum = 0;
+    for (const Refused& each : refused) sum += each.saving;
+    return sum;
+  }
+};
+
+/// Regions and patterns on the way to a consistent annotation, largest first. See consistent_annotation().
 class ConsistencySearch {
  public:
-  ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+  /// \param shapes  of the regions' faces, then of the patterns' instances' (shapes_of()); more are added
+  /// \param excluded  what is left out from the start, and why
+  ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, RegionShapes& shapes,
+                    const std::map<Claim, std::string>& excluded, const RunContext& context);
+  ~ConsistencySearch();
+  ConsistencySearch(const ConsistencySearch&) = delete;
+  ConsistencySearch& operator=(const ConsistencySearch&) = delete;
 
-  ConsistentAnnotation run();
+  static RegionShapes shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation);
+
+  /// \param wanted  the search ends early, with an outcome that holds what was refused until then, when this is refused
+  ConsistencyOutcome run(std::optional<Claim> wanted = {});
+
+  /// The area that need not be told once the claim is kept: of a region all but the share that its group repeats, of a
+  /// pattern all instances but one; mesh units.
+  double saving(const Claim& claim) const;
 
  private:
   enum class State { waiting, placed, out };
@@ -46,7 +96,8 @@ class ConsistencySearch {
     int shape = -1;
     std::optional<GroupPlace> place;
     State state = State::waiting;
-    int source = -1;  // of an added image: number of the region it is the image of
+    int source = -1;         // of an added image: number of the region it is the image of
+    std::size_t family = 0;  // number of the family's first
   };
   struct KnownPattern {
     Pattern pattern;
@@ -69,7 +120,22 @@ class ConsistencySearch {
     std::vector<Member> members;
     std::vector<Tie> ties;
     std::vector<std::size_t> replaced;  // waiting regions whose place added images take
+    std::vector<Claim> asking;          // whose motions the ties are of
   };
+  // Why something cannot be placed, and what is in its way.
+  struct Refusal {
+    std::string reason;
+    std::vector<Claim> by;
+    std::optional<std::size_t> across{};  // the region that overlaps `shape`, where neither holds the other
+    int shape = -1;
+    std::optional<std::size_t> first{};  // the region that must be placed before
+  };
+  // An element, and a region whose group holds what a motion makes of it.
+  struct KeptImage {
+    Motion element;
+    std::size_t region;
+  };
+  using Verdict = std::optional<Refusal>;  // nothing: it can
 
   double length(double tolerances) const { return tolerances * tolerance_; }
   const Extent& extent(std::size_t region) const { return shapes_.extent(regions_[region].shape); }
@@ -77,19 +143,32 @@ class ConsistencySearch {
   std::string label(std::size_t region) const;
 
   void place_family(std::size_t first);
-  std::optional<std::string> gather(std::size_t first, Family& family);
-  std::optional<std::string> follow(const Move& move, std::size_t from, Family& family);
-  std::optional<std::string> turn_with(const Move& move, std::size_t at, Family& family) const;
-  std::optional<std::string> add_image(const Move& move, std::size_t at, Family& family);
-  std::optional<std::string> ask_of_overlaps(Family& family);
+  bool trim(std::size_t region, int other);
+  void keep_shapes(int count);
+  std::vector<Motion> kept_on(std::size_t region, int domain);
+  std::optional<std::vector<KeptImage>> images_of_kept(std::size_t region, int domain, const Motion& motion,
+                                                       int arrival, double tolerance, bool placed_only);
+  double distance_from_group(const Motion& motion, std::size_t region) const;
+  bool can_wait_for(std::size_t region) const;
+  Verdict follow_partly(const Move& move, std::size_t at, Family& family);
+  Verdict gather(std::size_t first, Family& family);
+  Verdict follow(const Move& move, std::size_t from, Family& family);
+  Verdict turn_with(const Move& move, std::size_t at, Family& family);
+  Verdict add_image(const Move& move, std::size_t at, Family& family);
+  Verdict ask_of_overlaps(Family& family);
   std::optional<std::size_t> image_region(std::size_t region, int domain, const Motion& motion, int arrival) const;
   std::optional<std::size_t> nearest_image(std::size_t region, int domain, const Motion& motion, int arrival) const;
   std::vector<Eigen::Vector3d> exact_steps(std::size_t region) const;
-  std::optional<std::string> accept_family(const Family& family);
+  Verdict accept_family(const Family& family);
   void leave_out_region(std::size_t region, const std::string& reason);
+  void refuse(std::vector<Claim> claims, const Refusal& refusal);
+  std::vector<Claim> family_of(const Claim& claim) const;
+  bool is_everything(const Claim& claim) const;
+  double saving(std::size_t region) const;
+  Claim mover_of(const Move& move) const;
 
   void place_pattern(std::size_t number);
-  std::optional<std::string> fit_pattern(KnownPattern& known) const;
+  Verdict fit_pattern(KnownPattern& known) const;
   std::optional<std::string> fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
                                         const std::vector<int>& roots,
                                         const std::vector<std::vector<Motion>>& stabilisers) const;
@@ -102,6 +181,7 @@ class ConsistencySearch {
   bool drop_contradictions();
   void trim_slivers();
   ConsistentAnnotation result();
+  double total_saving() const;
 
   const Mesh& mesh_;
   const SymmetryAnnotation& annotation_;
@@ -110,11 +190,15 @@ class ConsistencySearch {
   double diagonal_;
   double tolerance_;  // mesh units
   double rounding_;   // mesh units
-  RegionShapes shapes_;
+  RegionShapes& shapes_;
+  int given_shapes_;
   std::vector<KnownRegion> regions_;
   std::vector<KnownPattern> patterns_;
   std::vector<Move> moves_;
+  std::vector<std::size_t> begun_;  // regions whose families are being placed, each waiting for the next
+  std::map<std::pair<int, int>, std::vector<Motion>> kept_;  // kept_on() by shape and domain
   std::vector<LeftOut> left_out_;
+  std::vector<Refused> refused_;
   double largest_movement_ = 0;  // mesh units
 };
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "consistency_search.h"
+#include "consistency_choice.h"
 
 namespace orbifit {
 
@@ -15,7 +15,7 @@ std::string to_string(const LeftOut& left_out) {
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context) {
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
-  return ConsistencySearch(mesh, annotation, context).run();
+  return chosen_annotation(mesh, annotation, context);
 }
 
 SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {

@@ -101,7 +101,16 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
         const Motion seen = conjugate(forth ? motion : inverse(motion), stabiliser);
         const Extent& on = forth ? shapes_.extent(known.shapes[t]) : extent;
         const auto nearest = std::ranges::min_element(to, {}, [&](const Motion& m) { return distance(m, seen, on); });
-        if (distance(*nearest, seen, on) > near) return false;
+        if (distance(*nearest, seen, on) > near) {
+          // It may belong to the instance itself, whose own region is placed later.
+          const int shape = known.shapes[forth ? t : 0];
+          for (std::size_t r = 0; r < regions_.size(); ++r) {
+            if (regions_[r].state == State::out || !regions_[r].place || !shapes_.within(shape, regions_[r].shape))
+              continue;
+            if (distance_from_group(seen, r) <= near) return true;
+          }
+          return false;
+        }
         pairs.push_back(forth ? Pair{*nearest, stabiliser} : Pair{stabiliser, *nearest});
         return true;
       });
@@ -229,7 +238,8 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
   return std::nullopt;
 }
 
-std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) const {
+ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
+  std::vector<Claim> asking;
   const std::size_t count = known.shapes.size();
   std::vector<Motion> ways(count);
   std::vector<int> roots(count, -1);
@@ -259,8 +269,13 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
           best = match.distance;
           to = s;
         }
-        if (to == count) return "the group of " + name_of(move) + " takes its instances where it has none";
+        if (to == count) {
+          return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
+        }
+        if (std::ranges::find(asking, mover_of(move)) == asking.end()) asking.push_back(mover_of(move));
         if (move.region >= 0) normalisers.push_back(move.motion);
+        // What moves a part of an instance only cannot be followed by what moves another.
+        if (!shapes_.within(known.shapes[t], move.domain)) continue;
         edges.push_back({t, to, move.motion});
         if (roots[to] < 0) {
           roots[to] = static_cast<int>(root);
@@ -275,26 +290,27 @@ std::optional<std::string> ConsistencySearch::fit_pattern(KnownPattern& known) c
     }
   }
   const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
-  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers))
-    return reason;
+  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers)) {
+    return Refusal{*reason, asking};
+  }
   // To go by the groups around and come back by the steps keeps the first instance: in finitely many ways.
   std::vector<Motion> returns;
   const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };
   for (const Edge& edge : edges) returns.push_back(inverse(place(edge.to)) * edge.motion * place(edge.from));
   const Extent& first = shapes_.extent(known.shapes[0]);
   if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMostStabilisers) {
-    return "its steps and the groups around it do not close";
+    return Refusal{"its steps and the groups around it do not close", asking};
   }
   return std::nullopt;
 }
 
 void ConsistencySearch::place_pattern(std::size_t number) {
   KnownPattern fitted = patterns_[number];
-  std::optional<std::string> reason;
-  if (fitted.shapes.size() < 2) reason = "it has fewer than two instances";
-  if (!reason) reason = fit_pattern(fitted);
-  if (reason) {
-    leave_out_pattern(number, *reason);
+  Verdict refusal;
+  if (fitted.shapes.size() < 2) refusal = Refusal{"it has fewer than two instances", {}};
+  if (!refusal) refusal = fit_pattern(fitted);
+  if (refusal) {
+    refuse({{true, number}}, *refusal);
     return;
   }
   patterns_[number] = std::move(fitted);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "orbifit/model/disjoint_sets.h"
@@ -60,6 +61,12 @@ std::vector<int> numbered_points(const Mesh& mesh) {
   std::vector<int> result(count);
   for (std::size_t v = 0; v < count; ++v) result[v] = sets.root(static_cast<int>(v));
   return result;
+}
+
+// Whether some element turns the axis over.
+bool swaps_ends(const PointGroup& group) {
+  using Family = PointGroup::Family;
+  return group.family == Family::Cinfh || group.family == Family::Dinf || group.family == Family::Dinfh;
 }
 
 // The van der Corput sequence: evenly spread numbers in [0, 1).
@@ -172,17 +179,62 @@ bool RegionShapes::meet(int a, int b) const {
   return common_area(a, b) > kSliver * std::min(area(a), area(b));
 }
 
+std::vector<int> RegionShapes::common_points(int a, int b) const {
+  std::vector<int> result;
+  std::ranges::set_intersection(at(a).points, at(b).points, std::back_inserter(result));
+  return result;
+}
+
 bool RegionShapes::touch(int a, int b) const {
-  if (meet(a, b)) return true;
-  const std::vector<int>& here = at(a).points;
-  const std::vector<int>& there = at(b).points;
-  auto i = here.begin();
-  auto j = there.begin();
-  while (i != here.end() && j != there.end()) {
-    if (*i == *j) return true;
-    *i < *j ? ++i : ++j;
+  return meet(a, b) || !common_points(a, b).empty();
+}
+
+std::vector<int> RegionShapes::faces_at(int a, int b) const {
+  const std::vector<int>& points = at(b).points;
+  std::vector<int> result;
+  for (const int face : at(a).faces) {
+    const auto shared = [&](int vertex) {
+      return std::ranges::binary_search(points, point_of_vertex_[static_cast<std::size_t>(vertex)]);
+    };
+    if (std::ranges::any_of(mesh_.faces.row(face), shared)) result.push_back(face);
   }
-  return false;
+  return result;
+}
+
+Points RegionShapes::common_samples(int a, int b) const {
+  Shape common;
+  std::ranges::set_intersection(at(a).faces, at(b).faces, std::back_inserter(common.faces));
+  common.area = common_area(a, b);
+  sample(common);
+  return std::move(common.samples);
+}
+
+bool RegionShapes::returns(int a, int b, const Motion& motion) const {
+  if (meet(a, b)) {
+    const Points samples = common_samples(a, b);
+    Eigen::Index count = 0;
+    for (Eigen::Index k = 0; k < samples.rows(); ++k) {
+      const auto nearest = index(a).nearest(motion(samples.row(k).transpose()), near_);
+      if (nearest.face >= 0 && at(b).holds[static_cast<std::size_t>(nearest.face)] != 0) ++count;
+    }
+    return static_cast<double>(count) > kSliver * static_cast<double>(samples.rows());
+  }
+  const std::vector<int> points = common_points(a, b);
+  const auto position = [&](int point) { return Vector3d(mesh_.vertices.row(point).transpose()); };
+  return std::ranges::any_of(points, [&](int point) {
+    const Vector3d image = motion(position(point));
+    return std::ranges::any_of(points, [&](int other) { return (position(other) - image).norm() <= near_; });
+  });
+}
+
+double RegionShapes::covered(int from, int domain, const Motion& motion, const std::vector<int>& shapes) const {
+  const Points samples = common_samples(from, domain);
+  Eigen::Index count = 0;
+  for (Eigen::Index k = 0; k < samples.rows(); ++k) {
+    const Vector3d image = motion(samples.row(k).transpose());
+    count += std::ranges::any_of(shapes, [&](int shape) { return index(shape).within(image, near_); }) ? 1 : 0;
+  }
+  return samples.rows() > 0 ? static_cast<double>(count) / static_cast<double>(samples.rows()) : 0.0;
 }
 
 bool RegionShapes::within(int inner, int outer) const {
@@ -226,13 +278,53 @@ std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& m
   return result;
 }
 
-double RegionShapes::kept(int shape, const std::vector<Motion>& motions) const {
+std::vector<int> RegionShapes::without_orbit(int shape, const std::vector<int>& taken, const GroupPlace& place) {
+  std::vector<char> gone(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  for (const int face : taken) gone[static_cast<std::size_t>(face)] = 1;
+  if (place.group.continuous()) {
+    // Those as far from the axis, and along it, as one that is taken.
+    const Vector3d axis = place.frame.col(2);
+    using Cell = std::pair<long, long>;
+    const auto cell_of = [&](int face) {
+      const Vector3d offset = centroids_.row(face).transpose() - place.centre;
+      if (!place.group.has_axis()) return Cell(std::lround(offset.norm() / near_), 0);
+      const double along = offset.dot(axis);
+      return Cell(std::lround((offset - along * axis).norm() / near_), std::lround(along / near_));
+    };
+    std::set<Cell> cells;
+    for (const int face : taken) {
+      const Cell cell = cell_of(face);
+      for (long r = -1; r <= 1; ++r) {
+        for (long z = -1; z <= 1; ++z) {
+          cells.emplace(cell.first + r, cell.second + z);
+          if (swaps_ends(place.group)) cells.emplace(cell.first + r, -cell.second + z);
+        }
+      }
+    }
+    for (const int face : at(shape).faces) {
+      if (cells.contains(cell_of(face))) gone[static_cast<std::size_t>(face)] = 1;
+    }
+  } else {
+    const int away = add(taken);
+    for (const Motion& motion : members(place)) {
+      for (const int face : image_faces(away, shape, motion, shape)) gone[static_cast<std::size_t>(face)] = 1;
+    }
+    keep(away);
+  }
+  std::vector<int> result;
+  for (const int face : at(shape).faces) {
+    if (gone[static_cast<std::size_t>(face)] == 0) result.push_back(face);
+  }
+  return result;
+}
+
+double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double near) const {
   const Shape& known = at(shape);
   if (known.sample_faces.empty()) return 0;
   int all = 0;
   for (Eigen::Index k = 0; k < known.samples.rows(); ++k) {
     const Vector3d sample = known.samples.row(k).transpose();
-    if (std::ranges::all_of(motions, [&](const Motion& motion) { return index(shape).within(motion(sample), near_); }))
+    if (std::ranges::all_of(motions, [&](const Motion& motion) { return index(shape).within(motion(sample), near); }))
       ++all;
   }
   return static_cast<double>(all) / static_cast<double>(known.samples.rows());

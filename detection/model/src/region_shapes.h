@@ -44,9 +44,18 @@ class RegionShapes {
   bool meet(int a, int b) const;
   /// Whether they meet, or share a vertex: of soups, vertices at one position whose faces have an edge in common there.
   bool touch(int a, int b) const;
+  /// The faces of `a` that `b` holds or has a vertex of.
+  std::vector<int> faces_at(int a, int b) const;
   /// Whether `outer` holds all of `inner` but a sliver, or everything.
   bool within(int inner, int outer) const;
   bool same(int a, int b) const { return within(a, b) && within(b, a); }
+
+  /// Whether `motion` takes some of what the two shapes have in common to what they have in common: faces, or vertices
+  /// where they merely touch.
+  bool returns(int a, int b, const Motion& motion) const;
+
+  /// Share of the part of `from` within `domain` that `motion` takes to any of the shapes.
+  double covered(int from, int domain, const Motion& motion, const std::vector<int>& shapes) const;
 
   struct Match {
     double share = 0;     ///< of the samples that arrive, there or back, whichever are fewer
@@ -60,8 +69,12 @@ class RegionShapes {
   /// `from` as its nearest of `domain`.
   std::vector<int> image_faces(int from, int domain, const Motion& motion, int arrival) const;
 
-  /// Share of the shape's samples that all the motions keep on it.
-  double kept(int shape, const std::vector<Motion>& motions) const;
+  /// The faces of a shape that the group takes to none of `taken` (ascending): what is left keeps the group where the
+  /// shape does.
+  std::vector<int> without_orbit(int shape, const std::vector<int>& taken, const GroupPlace& place);
+
+  /// Share of the shape's samples that all the motions keep within `near` of it.
+  double kept(int shape, const std::vector<Motion>& motions, double near) const;
 
   /// Distances of the samples' images from the shape, root mean square and largest, fractions of the diagonal.
   Residual residual(int shape, const std::vector<Motion>& motions) const;
@@ -84,6 +97,8 @@ class RegionShapes {
   const SurfaceIndex& index(int shape) const;
   PieceMoments common_moments(int a, int b) const;
   void sample(Shape& shape) const;
+  std::vector<int> common_points(int a, int b) const;
+  Points common_samples(int a, int b) const;
 
   const Mesh& mesh_;
   double near_;
