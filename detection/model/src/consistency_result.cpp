@@ -17,33 +17,23 @@ bool ConsistencySearch::drop_contradictions() {
       const KnownRegion& known = regions_[j];
       if (known.state != State::placed || !shapes_.touch(known.shape, move.domain)) continue;
       const bool meets = shapes_.meet(known.shape, move.domain);
-      if (meets && shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
-      const bool nested = shapes_.within(known.shape, move.domain);
-      const std::vector<Motion> kept = nested ? std::vector<Motion>{} : kept_on(j, move.domain);
-      if (!nested && kept.empty()) continue;
       if (!meets && move.turning && !known.place->group.continuous()) continue;
+      if (meets && shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
       bool has_image = false;
-      if (move.turning && !nested) {
-        const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
-        has_image = std::ranges::all_of(kept, [&](const Motion& element) {
-          const GroupPlace axis = turning_part(turning);
-          return distance_from_continuous_group(turning, element, extent(j)) <= 10 * rounding_ ||
-                 group_distance(axis, element, axis, extent(j)) <= 10 * rounding_;
-        });
-      } else if (move.turning) {
+      if (move.turning) {
         const GroupPlace turning = turning_part(*regions_[static_cast<std::size_t>(move.region)].place);
         has_image = std::ranges::all_of(marks(*known.place), [&](const Motion& mark) {
           return group_distance(turning, mark, turning, extent(j)) <= 10 * rounding_;
         });
       }
-      for (std::size_t k = 0; k < regions_.size() && !has_image && nested; ++k) {
+      for (std::size_t k = 0; k < regions_.size() && !has_image; ++k) {
         const KnownRegion& other = regions_[k];
         if (other.state != State::placed || !shapes_.touch(other.shape, move.arrival)) continue;
         if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;
-        has_image = shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival).share >= 0.5;
-      }
-      if (!nested && !move.turning) {
-        has_image = images_of_kept(j, move.domain, move.motion, move.arrival, 10 * rounding_, true).has_value();
+        const RegionShapes::Match match =
+            meets ? shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival)
+                  : shapes_.match(known.shape, known.shape, move.motion, other.shape, other.shape);
+        has_image = match.share >= 0.5;
       }
       if (has_image) continue;
       const bool mover_is_smaller = shapes_.area(move.domain) < shapes_.area(known.shape);

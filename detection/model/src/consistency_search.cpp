@@ -10,24 +10,6 @@ namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kMostElements = 120;
-
-// All products of the generators, as far as they are few.
-std::vector<Motion> closure_of(const std::vector<Motion>& generators, const Extent& extent, double same) {
-  std::vector<Motion> result{Motion{}};
-  for (std::size_t head = 0; head < result.size() && result.size() < kMostElements; ++head) {
-    for (const Motion& generator : generators) {
-      for (const Motion& product : {generator * result[head], inverse(generator) * result[head]}) {
-        const bool known = std::ranges::any_of(result, [&](const Motion& motion) {
-          return motion_distance(motion, product, extent.centre, extent.reach) <= same;
-        });
-        if (!known) result.push_back(product);
-      }
-    }
-  }
-  return result;
-}
-
 bool is_identity(const Motion& motion, const Extent& extent, double tolerance) {
   return motion_distance(motion, Motion{}, extent.centre, extent.reach) <= tolerance;
 }
@@ -204,114 +186,6 @@ void ConsistencySearch::add_moves_of_pattern(std::size_t pattern) {
   }
 }
 
-void ConsistencySearch::keep_shapes(int count) {
-  shapes_.keep(count);
-  std::erase_if(kept_, [&](const auto& entry) { return std::max(entry.first.first, entry.first.second) >= count; });
-}
-
-// The elements of a region's group, but the identity, that take some of what it shares with `domain` to what it shares
-// with it: the others lead out of the domain, so that what moves the domain need not take them along.
-std::vector<Motion> ConsistencySearch::kept_on(std::size_t region, int domain) {
-  const KnownRegion& known = regions_[region];
-  const GroupPlace& place = *known.place;
-  const std::vector<Motion> own = members(place);
-  const auto found = kept_.find({known.shape, domain});
-  if (found != kept_.end()) {  // the group may have been moved a little since
-    std::vector<Motion> result;
-    for (const Motion& motion : found->second) {
-      result.push_back(*std::ranges::min_element(own, {}, [&](const Motion& member) {
-        return motion_distance(motion, member, extent(region).centre, extent(region).reach);
-      }));
-    }
-    return result;
-  }
-  std::vector<Motion>& result = kept_[{known.shape, domain}];
-  const bool all = shapes_.within(known.shape, domain);
-  for (const Motion& element : own) {
-    if (is_identity(element, extent(region), rounding_)) continue;
-    bool kept = all || shapes_.returns(known.shape, domain, element);
-    if (!kept && place.group.continuous()) {
-      Motion turn = element;
-      for (int k = 0; k < 5 && !kept; ++k) {
-        turn = turn * element;
-        kept = shapes_.returns(known.shape, domain, turn);
-      }
-    }
-    if (kept) result.push_back(element);
-  }
-  return result;
-}
-
-// How far a motion is from being an element of a region's group, mesh units.
-double ConsistencySearch::distance_from_group(const Motion& motion, std::size_t region) const {
-  const GroupPlace& place = *regions_[region].place;
-  const Extent& around = extent(region);
-  double best = place.group.continuous() ? distance_from_continuous_group(place, motion, around)
-                                         : std::numeric_limits<double>::infinity();
-  for (const Motion& member : members(place)) {
-    best = std::min(best, motion_distance(motion, member, around.centre, around.reach));
-  }
-  return best;
-}
-
-// Whose groups hold what a motion makes of the elements that keep the part of a region that lies in `domain`: for each
-// of elements that generate them, the regions that together hold what the motion makes of that part. Nothing where
-// there are none.
-std::optional<std::vector<ConsistencySearch::KeptImage>> ConsistencySearch::images_of_kept(
-    std::size_t region, int domain, const Motion& motion, int arrival, double tolerance, bool placed_only) {
-  struct Candidate {
-    double distance;
-    std::size_t region;
-  };
-  const KnownRegion& from = regions_[region];
-  const Extent& around = extent(region);
-  const bool meets = shapes_.meet(from.shape, domain);
-  std::vector<std::size_t> there;
-  for (std::size_t other = 0; other < regions_.size(); ++other) {
-    const KnownRegion& known = regions_[other];
-    if (known.state == State::out || !known.place || (placed_only && known.state != State::placed)) continue;
-    if (meets ? shapes_.meet(known.shape, arrival) : shapes_.touch(known.shape, arrival)) there.push_back(other);
-  }
-  std::vector<KeptImage> result;
-  std::vector<Motion> generators;
-  std::vector<Motion> generated;
-  const std::vector<Motion> kept = kept_on(region, domain);
-  const auto is_generated = [&](const Motion& element) {
-    return std::ranges::any_of(generated, [&](const Motion& known) {
-      return motion_distance(known, element, around.centre, around.reach) <= length(1);
-    });
-  };
-  for (const Motion& element : kept) {
-    if (is_generated(element)) continue;
-    const Motion image = conjugate(motion, element);
-    std::vector<Candidate> candidates;
-    for (const std::size_t other : there) {
-      const double distance = distance_from_group(image, other);
-      if (distance <= tolerance) candidates.push_back({distance, other});
-    }
-    std::ranges::stable_sort(candidates, {}, &Candidate::distance);
-    std::vector<int> shapes;
-    std::vector<KeptImage> holding;
-    double covered = 0;
-    for (const Candidate& candidate : candidates) {
-      shapes.push_back(regions_[candidate.region].shape);
-      const double now = meets ? shapes_.covered(from.shape, domain, motion, shapes) : 1;
-      if (now <= covered + RegionShapes::kSliver) {
-        shapes.pop_back();
-        continue;
-      }
-      holding.push_back({element, candidate.region});
-      covered = now;
-    }
-    if (covered < policy_.arrived) continue;
-    result.insert(result.end(), holding.begin(), holding.end());
-    generators.push_back(element);
-    generated = closure_of(generators, around, length(1));
-  }
-  if (!std::ranges::all_of(kept, is_generated)) return std::nullopt;
-  return result;
-}
-
 // The region to which a motion takes (what lies in `domain` of) another: of the same group, near enough, on the same
 // surface; and of all that are, the nearest, which has no nearer one that goes there.
 std::optional<std::size_t> ConsistencySearch::image_region(std::size_t region, int domain, const Motion& motion,
@@ -359,7 +233,7 @@ ConsistencySearch::Verdict ConsistencySearch::add_image(const Move& move, std::s
                       shapes_.area(shape) >= policy_.kept * shapes_.area(added) &&
                       shapes_.kept(added, members(place), shapes_.near()) >= policy_.kept;
   if (!stands) {
-    keep_shapes(added);
+    shapes_.keep(added);
     return nowhere;
   }
   for (std::size_t other = 0; other < regions_.size(); ++other) {
@@ -367,7 +241,7 @@ ConsistencySearch::Verdict ConsistencySearch::add_image(const Move& move, std::s
     if (known.state == State::out || !shapes_.same(known.shape, added)) continue;
     if (known.state == State::placed ||
         std::ranges::any_of(family.members, [&](const Member& m) { return m.region == other; })) {
-      keep_shapes(added);
+      shapes_.keep(added);
       return Refusal{"its image under " + name_of(move) + " contradicts " + label(other),
                      {mover_of(move), {false, other}}};
     }
@@ -387,104 +261,40 @@ ConsistencySearch::Verdict ConsistencySearch::add_image(const Move& move, std::s
 }
 
 // What lies on a surface of revolution turns with it: its own motions keep the axis, or all directions would be turned
-// into one another. Of what overlaps it in part, or touches it, those that stay there belong to its group.
-ConsistencySearch::Verdict ConsistencySearch::turn_with(const Move& move, std::size_t at, Family& family) {
+// into one another.
+ConsistencySearch::Verdict ConsistencySearch::turn_with(const Move& move, std::size_t at, Family& family) const {
   const Member& member = family.members[at];
   const int shape = regions_[member.region].shape;
   const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
-  const GroupPlace& first = *regions_[family.members.front().region].place;
-  const Extent& around = extent(family.members.front().region);
-  const Motion some = turning.group.has_axis() ? Motion::rotation(turning.frame.col(2), 1, turning.centre) : Motion{};
-  const bool nested = shapes_.within(shape, move.domain);
-  const bool meets = nested || shapes_.meet(shape, move.domain);
-  // What merely touches it turns with it only if it turns at all: no vertex lies on circles about two axes.
-  if (!meets && !regions_[member.region].place->group.continuous()) return std::nullopt;
-  const bool turns = meets && shapes_.match(shape, move.domain, some, shape, move.arrival).share >= policy_.arrived;
-  if (nested && !turns) {
-    return Refusal{"it lies on " + name_of(move) + " and does not turn with it", {mover_of(move)}};
-  }
-  std::vector<Motion> own;
-  if (nested) own = marks(first);
-  for (const Motion& element : nested ? std::vector<Motion>{} : kept_on(member.region, move.domain)) {
-    const double off = turns ? group_distance(turning_part(turning), element, turning_part(turning), around)
-                             : distance_from_continuous_group(turning, element, extent(member.region));
-    if (off > length(policy_.same_group)) {
-      return Refusal{
-          "it overlaps " + name_of(move) + " and does not turn with it", {mover_of(move)}, member.region, move.domain};
+  const bool meets = shapes_.meet(shape, move.domain);
+  const auto refusal = [&](const std::string& reason) {
+    Refusal result{reason, {mover_of(move)}};
+    if (!shapes_.within(shape, move.domain)) {
+      result.across = member.region;
+      result.shape = move.domain;
     }
-    own.push_back(conjugate(inverse(member.way), element));
+    return result;
+  };
+  if (!meets) {
+    // What touches it need not turn with it; but no vertex lies on circles about two axes.
+    if (!regions_[member.region].place->group.continuous()) return std::nullopt;
+    const GroupPlace part = turning_part(*regions_[member.region].place);
+    if (group_distance(part, Motion{}, turning_part(turning), extent(member.region)) > length(policy_.same_group)) {
+      return refusal("it touches " + name_of(move) + ", which turns about another axis");
+    }
   }
-  const auto numbers = numbers_of(own, members(first), around, length(policy_.same_group));
-  if (!numbers) return Refusal{"its group is not the one that larger groups take it to", {mover_of(move)}};
+  const Motion some = turning.group.has_axis() ? Motion::rotation(turning.frame.col(2), 1, turning.centre) : Motion{};
+  if (meets && shapes_.match(shape, move.domain, some, shape, move.arrival).share < policy_.arrived) {
+    return refusal("it lies on " + name_of(move) + " and does not turn with it");
+  }
   family.asking.push_back(mover_of(move));
   Tie tie;
   tie.from = tie.to = image_of(turning_part(turning), inverse(member.way));
-  tie.extent = around;
-  for (const std::size_t number : *numbers) {
-    tie.own = static_cast<int>(number);
+  tie.extent = extent(family.members.front().region);
+  const std::size_t marks_of_first = marks(*regions_[family.members.front().region].place).size();
+  for (std::size_t k = 0; k < marks_of_first; ++k) {
+    tie.own = static_cast<int>(k);
     family.ties.push_back(tie);
-  }
-  return std::nullopt;
-}
-
-bool ConsistencySearch::can_wait_for(std::size_t region) const {
-  return regions_[region].state == State::waiting && std::ranges::find(begun_, region) == begun_.end();
-}
-
-// Where a move takes a member that its domain holds a part of, or touches: what keeps that part must be kept there.
-ConsistencySearch::Verdict ConsistencySearch::follow_partly(const Move& move, std::size_t at, Family& family) {
-  const Member member = family.members[at];
-  const std::vector<Motion> kept = kept_on(member.region, move.domain);
-  if (kept.empty()) return std::nullopt;
-  Refusal refusal{"the group of " + name_of(move) + " takes part of it where there is no such region",
-                  {mover_of(move)},
-                  member.region,
-                  move.domain};
-  const std::size_t first = family.members.front().region;
-  const double near = length(policy_.same_group);
-  const auto images = images_of_kept(member.region, move.domain, move.motion, move.arrival, near, false);
-  if (!images) return refusal;
-  for (const auto& [element, image] : *images) {
-    const KnownRegion& there = regions_[image];
-    const auto number =
-        numbers_of({conjugate(inverse(member.way), element)}, members(*regions_[first].place), extent(first), near);
-    if (!number) return Refusal{"its group is not the one that larger groups take it to", {mover_of(move)}};
-    const auto known = std::ranges::find(family.members, image, &Member::region);
-    const bool in_family = known != family.members.end();
-    if (!in_family && there.state != State::placed) {
-      // One that waits: of the same group, it belongs to the family; else it comes first.
-      const GroupPlace& place = *regions_[member.region].place;
-      const std::size_t all = members(place).size() - (place.group.continuous() ? 0 : 1);  // but the identity
-      if (kept.size() == all && group_distance(place, move.motion, *there.place, extent(image)) <= near) {
-        family.members.push_back({image, move.motion * member.way});
-      } else if (can_wait_for(image)) {
-        Refusal later = refusal;
-        later.first = image;
-        return later;
-      }
-      continue;
-    }
-    Tie tie;
-    tie.before = move.motion * member.way;
-    if (there.place->group.continuous()) {
-      // Of a group without end a member is not one of few: that it holds the image is asked of its axis.
-      if (in_family) continue;
-      tie.from = tie.to = turning_part(*there.place);
-      tie.after = inverse(tie.before);
-      tie.own = static_cast<int>(number->front());
-      tie.extent = extent(image);
-    } else {
-      tie.kept = *number;
-      if (in_family) {
-        tie.before = inverse(known->way) * tie.before;
-        tie.extent = extent(first);
-      } else {
-        tie.to = there.place;
-        tie.extent = extent(image);
-      }
-    }
-    family.ties.push_back(tie);
-    family.asking.push_back(mover_of(move));
   }
   return std::nullopt;
 }
@@ -498,7 +308,6 @@ ConsistencySearch::Verdict ConsistencySearch::follow(const Move& move, std::size
   if (!meets && !shapes_.touch(shape, move.domain)) return std::nullopt;
   if (meets && shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) return std::nullopt;
   if (move.turning) return turn_with(move, at, family);
-  if (!shapes_.within(shape, move.domain)) return follow_partly(move, at, family);
   Tie tie;
   const std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
   if (!image) return add_image(move, at, family);
@@ -537,71 +346,41 @@ ConsistencySearch::Verdict ConsistencySearch::gather(std::size_t first, Family& 
   return ask_of_overlaps(family);
 }
 
-// Where regions overlap or touch and neither holds the other, the new one's motions take along what keeps the other
-// there.
+// Where regions overlap and neither holds the other, the new one's motions take the other to images as well.
 ConsistencySearch::Verdict ConsistencySearch::ask_of_overlaps(Family& family) {
   const std::size_t first = family.members.front().region;
   const int shape = regions_[first].shape;
-  const GroupPlace& place = *regions_[first].place;
-  const double near = length(policy_.same_group);
-  const std::vector<Motion> own = marks(place);
-  const auto numbers = numbers_of(own, members(place), extent(first), near);
-  const auto concerns = [&](int other) {
-    if (!shapes_.touch(shape, other)) return false;
-    return !shapes_.within(shape, other) || shapes_.same(other, shape);
+  const std::vector<Motion> own = marks(*regions_[first].place);
+  const auto overlaps = [&](int other) {
+    return shapes_.meet(shape, other) && !shapes_.within(shape, other) &&
+           (!shapes_.within(other, shape) || shapes_.same(other, shape));
   };
   for (std::size_t other = 0; other < regions_.size(); ++other) {
     const KnownRegion& known = regions_[other];
     const auto member = std::ranges::find(family.members, other, &Member::region);
     const bool in_family = member != family.members.end();
-    if (other == first || !(known.state == State::placed || in_family) || !concerns(known.shape)) continue;
-    if (kept_on(other, shape).empty()) continue;
-    const Motion to_first = in_family ? inverse(member->way) : Motion{};
-    const std::size_t whose = in_family ? first : other;
+    if (other == first || !(known.state == State::placed || in_family) || !overlaps(known.shape)) continue;
+    const Refusal missing{
+        "it overlaps " + label(other) + ", of which its group has no image", {{false, other}}, first, known.shape};
     for (std::size_t k = 0; k < own.size(); ++k) {
-      const auto images = numbers ? images_of_kept(other, shape, own[k], shape, near, false) : std::nullopt;
-      if (!images) {
-        return Refusal{
-            "it overlaps " + label(other) + ", of which its group has no image", {{false, other}}, first, known.shape};
+      const auto image = image_region(other, shape, own[k], shape);
+      if (!image) return missing;
+      Tie tie;
+      tie.own = static_cast<int>(k);
+      tie.extent = extent(*image);
+      if (in_family) {
+        const auto to = std::ranges::find(family.members, *image, &Member::region);
+        if (to == family.members.end()) return missing;
+        tie.before = inverse(to->way);
+        tie.after = member->way;
+        tie.extent = extent(first);
+      } else {
+        if (regions_[*image].state != State::placed) return missing;
+        tie.from = known.place;
+        tie.to = regions_[*image].place;
       }
-      for (const auto& [element, image] : *images) {
-        const KnownRegion& there = regions_[image];
-        const auto to = std::ranges::find(family.members, image, &Member::region);
-        const bool to_family = to != family.members.end();
-        const auto number =
-            numbers_of({conjugate(to_first, element)}, members(*regions_[whose].place), extent(whose), near);
-        if (!number || (!to_family && there.state != State::placed)) continue;  // asked when that one is placed
-        Tie tie;
-        tie.own = static_cast<int>((*numbers)[k]);
-        tie.extent = to_family ? extent(first) : extent(image);
-        if (there.place->group.continuous()) {
-          if (to_family) {
-            // What keeps the other there must keep the axis.
-            if (in_family) continue;
-            tie.own = -1;
-            tie.before = conjugate(inverse(to->way), element);
-            tie.kept = {0};
-          } else {
-            if (in_family || !known.place->group.continuous()) continue;
-            tie.from = turning_part(*known.place);
-            tie.to = turning_part(*there.place);
-          }
-        } else {
-          tie.kept = *number;
-          if (in_family) {
-            tie.after = member->way;
-          } else {
-            tie.from = known.place;
-          }
-          if (to_family) {
-            tie.before = inverse(to->way);
-          } else {
-            tie.to = there.place;
-          }
-        }
-        family.ties.push_back(tie);
-        if (!in_family) family.asking.push_back({false, other});
-      }
+      family.ties.push_back(tie);
+      if (!in_family) family.asking.push_back({false, other});
     }
   }
   return std::nullopt;
@@ -697,7 +476,7 @@ bool ConsistencySearch::trim(std::size_t region, int other) {
   const int trimmed = shapes_.add(rest);
   const double given = shapes_.area(static_cast<int>(region));  // shapes of regions come first, in their order
   if (shapes_.area(trimmed) < policy_.left * given || shapes_.area(trimmed) >= shapes_.area(known.shape)) {
-    keep_shapes(trimmed);
+    shapes_.keep(trimmed);
     return false;
   }
   known.shape = trimmed;
@@ -710,7 +489,6 @@ void ConsistencySearch::place_family(std::size_t first) {
     refuse({{false, first}}, {"its elements form no group of that symbol", {}});
     return;
   }
-  begun_.push_back(first);
   const int given_shape = regions_[first].shape;
   const std::vector<int> given_faces = regions_[first].region.faces;
   Family family;
@@ -724,18 +502,13 @@ void ConsistencySearch::place_family(std::size_t first) {
     if (!refusal) refusal = accept_family(family);
     if (!refusal) break;
     regions_.resize(regions_before);
-    keep_shapes(shapes_before);
+    shapes_.keep(shapes_before);
     again = false;
-    if (refusal->first) {
-      place_family(*refusal->first);
-      again = regions_[first].state == State::waiting;
-    } else if (refusal->across && *refusal->across < regions_before && refusal->shape < shapes_before) {
+    if (refusal->across && *refusal->across < regions_before && refusal->shape < shapes_before) {
       again = trim(*refusal->across, refusal->shape);
     }
   }
-  begun_.pop_back();
   if (refusal) {
-    if (regions_[first].state != State::waiting) return;  // placed with what it waited for
     regions_[first].shape = given_shape;
     regions_[first].region.faces = given_faces;
     std::vector<Claim> claims;

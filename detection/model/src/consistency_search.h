@@ -128,12 +128,6 @@ class ConsistencySearch {
     std::vector<Claim> by;
     std::optional<std::size_t> across{};  // the region that overlaps `shape`, where neither holds the other
     int shape = -1;
-    std::optional<std::size_t> first{};  // the region that must be placed before
-  };
-  // An element, and a region whose group holds what a motion makes of it.
-  struct KeptImage {
-    Motion element;
-    std::size_t region;
   };
   using Verdict = std::optional<Refusal>;  // nothing: it can
 
@@ -144,16 +138,9 @@ class ConsistencySearch {
 
   void place_family(std::size_t first);
   bool trim(std::size_t region, int other);
-  void keep_shapes(int count);
-  std::vector<Motion> kept_on(std::size_t region, int domain);
-  std::optional<std::vector<KeptImage>> images_of_kept(std::size_t region, int domain, const Motion& motion,
-                                                       int arrival, double tolerance, bool placed_only);
-  double distance_from_group(const Motion& motion, std::size_t region) const;
-  bool can_wait_for(std::size_t region) const;
-  Verdict follow_partly(const Move& move, std::size_t at, Family& family);
   Verdict gather(std::size_t first, Family& family);
   Verdict follow(const Move& move, std::size_t from, Family& family);
-  Verdict turn_with(const Move& move, std::size_t at, Family& family);
+  Verdict turn_with(const Move& move, std::size_t at, Family& family) const;
   Verdict add_image(const Move& move, std::size_t at, Family& family);
   Verdict ask_of_overlaps(Family& family);
   std::optional<std::size_t> image_region(std::size_t region, int domain, const Motion& motion, int arrival) const;
@@ -195,8 +182,6 @@ class ConsistencySearch {
   std::vector<KnownRegion> regions_;
   std::vector<KnownPattern> patterns_;
   std::vector<Move> moves_;
-  std::vector<std::size_t> begun_;  // regions whose families are being placed, each waiting for the next
-  std::map<std::pair<int, int>, std::vector<Motion>> kept_;  // kept_on() by shape and domain
   std::vector<LeftOut> left_out_;
   std::vector<Refused> refused_;
   double largest_movement_ = 0;  // mesh units

@@ -101,16 +101,7 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
         const Motion seen = conjugate(forth ? motion : inverse(motion), stabiliser);
         const Extent& on = forth ? shapes_.extent(known.shapes[t]) : extent;
         const auto nearest = std::ranges::min_element(to, {}, [&](const Motion& m) { return distance(m, seen, on); });
-        if (distance(*nearest, seen, on) > near) {
-          // It may belong to the instance itself, whose own region is placed later.
-          const int shape = known.shapes[forth ? t : 0];
-          for (std::size_t r = 0; r < regions_.size(); ++r) {
-            if (regions_[r].state == State::out || !regions_[r].place || !shapes_.within(shape, regions_[r].shape))
-              continue;
-            if (distance_from_group(seen, r) <= near) return true;
-          }
-          return false;
-        }
+        if (distance(*nearest, seen, on) > near) return false;
         pairs.push_back(forth ? Pair{*nearest, stabiliser} : Pair{stabiliser, *nearest});
         return true;
       });
@@ -274,8 +265,6 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
         }
         if (std::ranges::find(asking, mover_of(move)) == asking.end()) asking.push_back(mover_of(move));
         if (move.region >= 0) normalisers.push_back(move.motion);
-        // What moves a part of an instance only cannot be followed by what moves another.
-        if (!shapes_.within(known.shapes[t], move.domain)) continue;
         edges.push_back({t, to, move.motion});
         if (roots[to] < 0) {
           roots[to] = static_cast<int>(root);

@@ -1,7 +1,6 @@
 #include "group_place.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -66,15 +65,6 @@ int nearest(const Motion& motion, const std::vector<Motion>& among, const Extent
   return found;
 }
 
-// What a tie asks to be taken along, of the group that it is about.
-std::vector<Motion> asked_of(const Tie& tie, const GroupPlace& place) {
-  if (tie.kept.empty()) return marks(place);
-  const std::vector<Motion> all = members(place);
-  std::vector<Motion> result;
-  for (const std::size_t number : tie.kept) result.push_back(all[number]);
-  return result;
-}
-
 struct Match {
   const Tie* tie;
   std::size_t mark;
@@ -83,7 +73,7 @@ struct Match {
 
 Motion way_of(const Tie& tie, const GroupPlace& place) {
   if (tie.own < 0) return tie.before * tie.after;
-  return tie.before * members(place)[static_cast<std::size_t>(tie.own)] * tie.after;
+  return tie.before * marks(place)[static_cast<std::size_t>(tie.own)] * tie.after;
 }
 
 VectorXd as_vector(const std::vector<double>& rows) {
@@ -155,33 +145,6 @@ GroupPlace turning_part(const GroupPlace& place) {
   return {{spherical(place.group) ? Family::K : Family::Cinf, 1}, place.centre, place.frame};
 }
 
-double distance_from_continuous_group(const GroupPlace& place, const Motion& motion, const Extent& extent) {
-  const bool improper = motion.linear.determinant() < 0;
-  if (spherical(place.group)) {
-    return improper && place.group.family != Family::Kh ? kFar : (motion(place.centre) - place.centre).norm();
-  }
-  const Vector3d axis = place.frame.col(2);
-  const bool over = axis.dot(motion.linear * axis) < 0;
-  const auto has_kind = [&] {
-    switch (place.group.family) {
-      case Family::Cinfv:
-        return !over;
-      case Family::Cinfh:
-        return improper == over;
-      case Family::Dinf:
-        return !improper;
-      case Family::Dinfh:
-        return true;
-      default:
-        return !improper && !over;
-    }
-  };
-  if (!has_kind()) return kFar;
-  const GroupPlace turning = turning_part(place);
-  const double along = std::abs(axis.dot(motion(place.centre) - place.centre));
-  return std::max(along, group_distance(turning, motion, turning, extent));
-}
-
 GroupPlace image_of(const GroupPlace& place, const Motion& motion) {
   GroupPlace result{place.group, motion(place.centre), motion.linear * place.frame};
   if (result.frame.determinant() < 0) result.frame.col(1) = -result.frame.col(1);
@@ -198,18 +161,6 @@ double group_distance(const GroupPlace& from, const Motion& way, const GroupPlac
     worst = std::max(worst, best);
   }
   return worst;
-}
-
-std::optional<std::vector<std::size_t>> numbers_of(const std::vector<Motion>& wanted, const std::vector<Motion>& among,
-                                                   const Extent& extent, double near) {
-  std::vector<std::size_t> result;
-  for (const Motion& motion : wanted) {
-    double best = 0;
-    const int number = nearest(motion, among, extent, best);
-    if (number < 0 || best > near) return std::nullopt;
-    result.push_back(static_cast<std::size_t>(number));
-  }
-  return result;
 }
 
 VectorXd nearest_solution(Index unknowns, const std::function<VectorXd(const VectorXd&)>& hard,
@@ -278,7 +229,7 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
   for (const Tie& tie : ties) {
     const Motion way = way_of(tie, start);
     const std::vector<Motion> among = members(tie.to ? *tie.to : start);
-    const std::vector<Motion> from = asked_of(tie, tie.from ? *tie.from : start);
+    const std::vector<Motion> from = marks(tie.from ? *tie.from : start);
     for (std::size_t m = 0; m < from.size(); ++m) {
       double best = 0;
       const int member = nearest(conjugate(way, from[m]), among, tie.extent, best);
@@ -305,16 +256,16 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
     std::vector<double> rows;
     const Tie* last = nullptr;
     Motion way;
-    std::vector<Motion> to_members, asked;
+    std::vector<Motion> to_members, from_marks;
     for (const Match& match : matches) {
       const Tie& tie = *match.tie;
       if (last != &tie) {
         way = way_of(tie, now);
         if (tie.to) to_members = members(*tie.to);
-        asked = asked_of(tie, tie.from ? *tie.from : now);
+        if (tie.from) from_marks = marks(*tie.from);
         last = &tie;
       }
-      const Motion image = conjugate(way, asked[match.mark]);
+      const Motion image = conjugate(way, (tie.from ? from_marks : own_marks)[match.mark]);
       add_difference(image, (tie.to ? to_members : own_members)[match.member], tie.extent, rows);
     }
     for (const Turned& each : turned_directions) {

@@ -43,10 +43,6 @@ std::vector<Motion> movers(const GroupPlace& place);
 /// All rotations about a continuous group's axis, or centre, alone.
 GroupPlace turning_part(const GroupPlace& place);
 
-/// How far `motion` is, on the extent, from the nearest element of a continuous group; infinite where the group has
-/// none of its kind.
-double distance_from_continuous_group(const GroupPlace& place, const Motion& motion, const Extent& extent);
-
 /// The place as `motion` moves it.
 GroupPlace image_of(const GroupPlace& place, const Motion& motion);
 
@@ -54,20 +50,14 @@ GroupPlace image_of(const GroupPlace& place, const Motion& motion);
 /// the image of a mark of `from` and the member of `to` nearest to it.
 double group_distance(const GroupPlace& from, const Motion& way, const GroupPlace& to, const Extent& extent);
 
-/// What is asked of a place x: before * (own member) * after takes `from` to `to`.
+/// What is asked of a place x: before * (own mark) * after takes `from` to `to`.
 struct Tie {
   Motion before, after;
-  int own = -1;                    ///< number among members(x) of the motion in between; -1: none
+  int own = -1;                    ///< number of the mark of x in between; -1: none
   std::optional<GroupPlace> from;  ///< nothing: x
-  std::vector<std::size_t> kept;  ///< numbers among members() of `from` that are to become members of `to`; none: marks
-  std::optional<GroupPlace> to;   ///< nothing: x
-  Extent extent;                  ///< around `to`
+  std::optional<GroupPlace> to;    ///< nothing: x
+  Extent extent;                   ///< around `to`
 };
-
-/// The numbers among `among` of the motions nearest to `wanted`, each within `near` on the extent; nothing where one
-/// has none.
-std::optional<std::vector<std::size_t>> numbers_of(const std::vector<Motion>& wanted, const std::vector<Motion>& among,
-                                                   const Extent& extent, double near);
 
 struct PlaceFit {
   GroupPlace place;

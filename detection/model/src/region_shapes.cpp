@@ -179,14 +179,17 @@ bool RegionShapes::meet(int a, int b) const {
   return common_area(a, b) > kSliver * std::min(area(a), area(b));
 }
 
-std::vector<int> RegionShapes::common_points(int a, int b) const {
-  std::vector<int> result;
-  std::ranges::set_intersection(at(a).points, at(b).points, std::back_inserter(result));
-  return result;
-}
-
 bool RegionShapes::touch(int a, int b) const {
-  return meet(a, b) || !common_points(a, b).empty();
+  if (meet(a, b)) return true;
+  const std::vector<int>& here = at(a).points;
+  const std::vector<int>& there = at(b).points;
+  auto i = here.begin();
+  auto j = there.begin();
+  while (i != here.end() && j != there.end()) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
 }
 
 std::vector<int> RegionShapes::faces_at(int a, int b) const {
@@ -199,42 +202,6 @@ std::vector<int> RegionShapes::faces_at(int a, int b) const {
     if (std::ranges::any_of(mesh_.faces.row(face), shared)) result.push_back(face);
   }
   return result;
-}
-
-Points RegionShapes::common_samples(int a, int b) const {
-  Shape common;
-  std::ranges::set_intersection(at(a).faces, at(b).faces, std::back_inserter(common.faces));
-  common.area = common_area(a, b);
-  sample(common);
-  return std::move(common.samples);
-}
-
-bool RegionShapes::returns(int a, int b, const Motion& motion) const {
-  if (meet(a, b)) {
-    const Points samples = common_samples(a, b);
-    Eigen::Index count = 0;
-    for (Eigen::Index k = 0; k < samples.rows(); ++k) {
-      const auto nearest = index(a).nearest(motion(samples.row(k).transpose()), near_);
-      if (nearest.face >= 0 && at(b).holds[static_cast<std::size_t>(nearest.face)] != 0) ++count;
-    }
-    return static_cast<double>(count) > kSliver * static_cast<double>(samples.rows());
-  }
-  const std::vector<int> points = common_points(a, b);
-  const auto position = [&](int point) { return Vector3d(mesh_.vertices.row(point).transpose()); };
-  return std::ranges::any_of(points, [&](int point) {
-    const Vector3d image = motion(position(point));
-    return std::ranges::any_of(points, [&](int other) { return (position(other) - image).norm() <= near_; });
-  });
-}
-
-double RegionShapes::covered(int from, int domain, const Motion& motion, const std::vector<int>& shapes) const {
-  const Points samples = common_samples(from, domain);
-  Eigen::Index count = 0;
-  for (Eigen::Index k = 0; k < samples.rows(); ++k) {
-    const Vector3d image = motion(samples.row(k).transpose());
-    count += std::ranges::any_of(shapes, [&](int shape) { return index(shape).within(image, near_); }) ? 1 : 0;
-  }
-  return samples.rows() > 0 ? static_cast<double>(count) / static_cast<double>(samples.rows()) : 0.0;
 }
 
 bool RegionShapes::within(int inner, int outer) const {

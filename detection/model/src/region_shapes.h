@@ -50,13 +50,6 @@ class RegionShapes {
   bool within(int inner, int outer) const;
   bool same(int a, int b) const { return within(a, b) && within(b, a); }
 
-  /// Whether `motion` takes some of what the two shapes have in common to what they have in common: faces, or vertices
-  /// where they merely touch.
-  bool returns(int a, int b, const Motion& motion) const;
-
-  /// Share of the part of `from` within `domain` that `motion` takes to any of the shapes.
-  double covered(int from, int domain, const Motion& motion, const std::vector<int>& shapes) const;
-
   struct Match {
     double share = 0;     ///< of the samples that arrive, there or back, whichever are fewer
     double distance = 0;  ///< separation() of the two pieces: of several that match, the least is the image
@@ -97,8 +90,6 @@ class RegionShapes {
   const SurfaceIndex& index(int shape) const;
   PieceMoments common_moments(int a, int b) const;
   void sample(Shape& shape) const;
-  std::vector<int> common_points(int a, int b) const;
-  Points common_samples(int a, int b) const;
 
   const Mesh& mesh_;
   double near_;
