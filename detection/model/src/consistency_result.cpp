@@ -26,7 +26,7 @@ bool ConsistencySearch::drop_contradictions() {
           return group_distance(turning, mark, turning, extent(j)) <= 10 * rounding_;
         });
       }
-      for (std::size_t k = 0; k < regions_.size() && !has_image; ++k) {
+      for (std::size_t k = 0; k < regions_.size() && !has_image && !move.turning; ++k) {
         const KnownRegion& other = regions_[k];
         if (other.state != State::placed || !shapes_.touch(other.shape, move.arrival)) continue;
         if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;

@@ -248,18 +248,24 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
     for (std::size_t head = 0; head < queue.size(); ++head) {
       const std::size_t t = queue[head];
       for (const Move& move : moves_) {
-        if (!shapes_.meet(known.shapes[t], move.domain)) continue;
+        const bool meets = shapes_.meet(known.shapes[t], move.domain);
+        // What merely touches it need not come along, but where it does the two agree.
+        if (!meets && (move.turning || !shapes_.touch(known.shapes[t], move.domain))) continue;
         if (move.turning && shapes_.same(known.shapes[t], move.domain)) continue;
         if (shapes_.within(move.domain, known.shapes[t]) && !shapes_.within(known.shapes[t], move.domain)) continue;
         std::size_t to = count;
         double best = std::numeric_limits<double>::infinity();
         for (std::size_t s = 0; s < count; ++s) {
-          if (!shapes_.meet(known.shapes[s], move.arrival)) continue;
-          const auto match = shapes_.match(known.shapes[t], move.domain, move.motion, known.shapes[s], move.arrival);
+          if (!(meets ? shapes_.meet(known.shapes[s], move.arrival) : shapes_.touch(known.shapes[s], move.arrival)))
+            continue;
+          const int domain = meets ? move.domain : known.shapes[t];
+          const int arrival = meets ? move.arrival : known.shapes[s];
+          const auto match = shapes_.match(known.shapes[t], domain, move.motion, known.shapes[s], arrival);
           if (match.share < policy_.arrived || match.distance >= best) continue;
           best = match.distance;
           to = s;
         }
+        if (to == count && !meets) continue;
         if (to == count) {
           return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
         }
