@@ -32,7 +32,7 @@ struct ConsistencyPolicy {
   /// A pattern whose residual is below this share of a region's is right about directions.
   double far_more_exact = 0.1;
   /// Share of its area that a region must keep where it gives up what another takes of it.
-  double left = 1.5;
+  double left = 0.5;
   /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.
   double exact = 1e-13;
   /// Searches at most, for what to keep of claims that contradict one another: each takes milliseconds to tenths of a
