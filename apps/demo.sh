@@ -3,16 +3,24 @@
 # it finds and leaves out/index.html, which needs nothing else.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-build_release -DORBIFIT_BUILD_TESTS=OFF
+install_packages "${program_packages[@]}"
+build_release -DORBIFIT_BUILD_TESTS=OFF -DORBIFIT_BUILD_BASELINES=OFF
 orbifit=$build/apps/orbifit
 out=$root/out
 rm -rf "$out"
 mkdir -p "$out/models"
 cd "$out"
 
-if [ ! -f "$meshes" ]; then # a minimal image leaves documentation out: take it from the package itself
-  (cd models && apt-get download -qq libcgal-demo && dpkg-deb -x libcgal-demo_*.deb . && rm -f ./*.deb)
-  meshes=$out/models$meshes
+# A real mesh, of those that CGAL's demonstration brings; the package is taken apart rather than installed, since it
+# depends on fifty others.
+meshes=/usr/share/doc/libcgal-dev/data.tar.gz
+if [ ! -f "$meshes" ]; then
+  cd models
+  apt-get download -qq libcgal-demo 2>/dev/null || { "${as_root[@]}" apt-get update -qq && apt-get download -qq libcgal-demo; }
+  dpkg-deb -x libcgal-demo_*.deb .
+  rm libcgal-demo_*.deb
+  cd ..
+  meshes=models$meshes
 fi
 tar xzOf "$meshes" data/meshes/pinion.off >models/pinion.off
 

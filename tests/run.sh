@@ -2,5 +2,6 @@
 # Installs what is missing, builds, and runs every test. Arguments go to ctest: ./tests/run.sh -R point_group
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
 
-build_release -DORBIFIT_BUILD_TESTS=ON
+install_packages "${program_packages[@]}" "${test_packages[@]}"
+build_release -DORBIFIT_BUILD_TESTS=ON -DORBIFIT_BUILD_BASELINES=ON
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@"

@@ -38,9 +38,11 @@ using CommandBody = std::function<int(CommandContext&)>;
 /// One row of the program's table of commands.
 struct Command {
   const char* name;
-  const char* summary;                   ///< one line
-  const char* examples;                  ///< whole command lines, one a line
-  CommandBody (*define)(CLI::App& app);  ///< adds the command's own options to `app`
+  const char* summary;   ///< one line
+  const char* examples;  ///< whole command lines, one a line
+  CommandBody (*define)(
+      CLI::App& app);             ///< adds the command's own options to `app`; null where another program does it
+  const char* program = nullptr;  ///< the other program's name
 };
 
 /// Refuses an output before the long computation instead of after it.

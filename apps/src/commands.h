@@ -3,7 +3,8 @@
 #include "command.h"
 
 /// One function a subcommand: adds its options to `app` and returns what runs once they are parsed. Each stands in
-/// commands/NAME.cpp; the table in main.cpp gives its name, summary and examples.
+/// commands/NAME.cpp; the table in main.cpp gives its name, summary and examples. A command may be a program of its
+/// own.
 namespace orbifit::commands {
 
 CommandBody annotate(CLI::App& app);
@@ -20,5 +21,16 @@ CommandBody report(CLI::App& app);
 CommandBody scan(CLI::App& app);
 CommandBody subspace(CLI::App& app);
 CommandBody symmetrize(CLI::App& app);
+
+/// orbifit starts it; the function above stands in that program alone, which links what is under the GPL.
+inline constexpr Command kCompare{
+    "compare",
+    "Fit by ours and by least-squares methods, and set their figures side by side.",
+    "orbifit compare fan.ply scan.ply --annotation fan.json -o comparison\n"
+    "orbifit compare chair.ply scan.ply --annotation chair.json --truth chair_true.ply --aligned -o comparison\n"
+    "orbifit compare chair.ply scan.ply --annotation chair.json --methods ours,kurz --brief -o comparison",
+    nullptr,
+    "orbifit-compare",
+};
 
 }  // namespace orbifit::commands

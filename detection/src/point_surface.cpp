@@ -10,10 +10,8 @@
 #include <numeric>
 #include <string>
 
-#include <Eigen/Dense>
-
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
+#include "orbifit/model/fitted_plane.h"
 #include "orbifit/model/point_group.h"
 #include "orbifit/model/point_index.h"
 
@@ -93,45 +91,27 @@ std::vector<int> thin(const Points& points, const std::vector<char>& outlier, do
   return kept;
 }
 
-struct PlaneFit {
-  Vector3d normal = Vector3d::UnitZ();
-  Vector3d mean = Vector3d::Zero();
-  double thickness = 0;  // standard deviation across the plane
-  double width = 0;      // and along it, the lesser
-};
-
-PlaneFit fit_plane(const Points& points, const std::vector<PointIndex::Neighbour>& neighbours) {
-  Vector3d mean = Vector3d::Zero();
-  for (const auto& n : neighbours) mean += row(points, n.index);
-  mean /= static_cast<double>(neighbours.size());
-  Matrix3d covariance = Matrix3d::Zero();
-  for (const auto& n : neighbours) {
-    const Vector3d d = row(points, n.index) - mean;
-    covariance += d * d.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance / static_cast<double>(neighbours.size()));
-  const Vector3d deviations = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
-  return {solver.eigenvectors().col(0), mean, deviations[0], deviations[1]};
-}
-
 // Planes through ever more neighbours, until these spread far enough to outweigh the noise.
-std::vector<PlaneFit> fit_planes(const Points& points, const std::vector<int>& kept, const PointIndex& index,
-                                 const RunContext& context) {
-  constexpr double kFlat = 0.1;  // thickness to width
-  std::vector<PlaneFit> best;
+std::vector<FittedPlane> fit_planes(const Points& points, const std::vector<int>& kept, const PointIndex& index,
+                                    const RunContext& context) {
+  constexpr double kFlat = 0.1;  // deviation across the plane to the lesser along it
+  std::vector<FittedPlane> best;
   double best_ratio = std::numeric_limits<double>::infinity();
   for (const int count : {12, 24, 48, 96, 160}) {
     if (count > points.rows() / 4) break;
-    std::vector<PlaneFit> planes(kept.size());
+    std::vector<FittedPlane> planes(kept.size());
     parallel_for(context, kept.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        planes[i] = fit_plane(points, index.nearest(points.row(kept[i]), count));
+        std::vector<int> near;
+        for (const auto& n : index.nearest(points.row(kept[i]), count)) near.push_back(n.index);
+        planes[i] = fitted_plane(points, near);
       }
     });
     context.check();
     std::vector<double> ratios(kept.size());
-    std::ranges::transform(planes, ratios.begin(),
-                           [](const PlaneFit& p) { return p.width > 0 ? p.thickness / p.width : 1; });
+    std::ranges::transform(planes, ratios.begin(), [](const FittedPlane& p) {
+      return p.deviations[1] > 0 ? p.deviations[0] / p.deviations[1] : 1;
+    });
     const double ratio = median(std::move(ratios));
     if (ratio < best_ratio) {
       best_ratio = ratio;
@@ -223,7 +203,7 @@ PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& 
                      "the scan has " + std::to_string(count) + " points at places of their own; symmetries " +
                          "are looked for from " + std::to_string(kLeastPoints) + " on");
   }
-  const std::vector<PlaneFit> planes = fit_planes(all, kept, all_index, context);
+  const std::vector<FittedPlane> planes = fit_planes(all, kept, all_index, context);
   std::vector<double> thicknesses;
   const bool known_normals = scan.normals.rows() == scan.points.rows();
   result.points.resize(count, 3);
@@ -231,13 +211,13 @@ PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& 
   result.normals.resize(count, 3);
   for (int i = 0; i < count; ++i) {
     const int number = kept[static_cast<std::size_t>(i)];
-    const PlaneFit& plane = planes[static_cast<std::size_t>(i)];
+    const FittedPlane& plane = planes[static_cast<std::size_t>(i)];
     result.points.row(i) = all.row(number);
     result.smooth.row(i) = all.row(number);
-    result.smooth.row(i) -= plane.normal.transpose() * plane.normal.dot(row(all, number) - plane.mean);
+    result.smooth.row(i) -= plane.normal.transpose() * plane.normal.dot(row(all, number) - plane.point);
     const bool usable = known_normals && std::abs(scan.normals.row(number).norm() - 1) < 0.1;
     result.normals.row(i) = usable ? Vector3d(scan.normals.row(number).normalized()) : plane.normal;
-    thicknesses.push_back(plane.thickness);
+    thicknesses.push_back(plane.deviations[0]);
   }
   result.noise = median(thicknesses);
   const PointIndex index(result.points);

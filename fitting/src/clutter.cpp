@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "orbifit/model/dense.h"
+#include "orbifit/model/fitted_plane.h"
 #include "orbifit/model/random.h"
 
 namespace orbifit {
@@ -34,15 +34,6 @@ struct Plane {
     return std::abs(normal.dot(p - point)) <= thickness && std::abs(normal.dot(n)) >= kLikeNormal;
   }
 };
-
-// Through the points in the mean, with the direction in which they vary least.
-Plane fitted_plane(const PreparedScan& scan, const std::vector<int>& points) {
-  const Points chosen = scan.points(points, Eigen::all);
-  const Eigen::RowVector3d mean = chosen.colwise().mean();
-  const Points centred = chosen.rowwise() - mean;
-  const Eigen::Matrix3d spread = centred.transpose() * centred;
-  return {mean.transpose(), Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0)};
-}
 
 }  // namespace
 
@@ -100,7 +91,8 @@ PreparedScan without_planes(const SurfaceIndex& surface, double template_diagona
       best = std::move(found);
     }
     if (best.empty()) break;
-    const std::vector<int> gone = members(fitted_plane(scan, best), 1.5);
+    const FittedPlane fitted = fitted_plane(scan.points, best);
+    const std::vector<int> gone = members({fitted.point, fitted.normal}, 1.5);
     std::vector<int> rest;
     std::ranges::set_difference(left, gone, std::back_inserter(rest));
     left = std::move(rest);

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <unordered_set>
 #include <vector>
 
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
+#include "orbifit/model/fitted_plane.h"
 #include "orbifit/model/point_index.h"
 #include "orbifit/model/random.h"
 
@@ -80,14 +81,9 @@ std::vector<int> some_of(Eigen::Index total, int most, std::uint64_t seed) {
 double noise_of(const Points& points, const PointIndex& index, const std::vector<int>& typical, int neighbours) {
   std::vector<double> offsets;
   for (const int i : typical) {
-    std::vector<int> near;
-    for (const auto& neighbour : index.nearest(points.row(i).transpose(), neighbours)) near.push_back(neighbour.index);
-    const Points patch = points(near, Eigen::all);
-    const Points centred = patch.rowwise() - patch.colwise().mean();
-    const Eigen::Matrix3d spread = centred.transpose() * centred;
-    const double least =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues()[0];
-    offsets.push_back(std::sqrt(std::max(0.0, least) / std::max(1.0, static_cast<double>(near.size()) - 3)));
+    const std::vector<int> near = nearest_points(index, points.row(i), neighbours);
+    const auto count = static_cast<double>(near.size());
+    offsets.push_back(fitted_plane(points, near).deviations[0] * std::sqrt(count / std::max(1.0, count - 3)));
   }
   const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
   std::nth_element(offsets.begin(), middle, offsets.end());
@@ -131,7 +127,9 @@ PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& 
     result.normals = scan.normals(kept, Eigen::all);
     result.normals_oriented = true;
   } else {
-    result.normals = plane_normals(scan.points, kept, options.neighbours);
+    std::optional<PointIndex> of_all;
+    if (some.rows() < scan.points.rows()) of_all.emplace(scan.points);
+    result.normals = plane_normals(scan.points, of_all ? *of_all : index, kept, options.neighbours, context);
   }
   if (scan.viewpoints.rows() > 1) result.viewpoints = scan.viewpoints(kept, Eigen::all);
   if (scan.viewpoints.rows() == 1) result.viewpoints = scan.viewpoints;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "orbifit/model/fitted_plane.h"
 
 namespace orbifit {
 
@@ -27,13 +27,10 @@ bool lies_on_a_surface(const Points& all, const PointIndex& index, const Eigen::
     farthest = std::max(farthest, each.distance);
   }
   if (near.size() < 3) return true;  // copies of one another: nothing can be said
-  const Points neighbours = all(near, Eigen::all);
-  const Eigen::RowVector3d mean = neighbours.colwise().mean();
-  const Points centred = neighbours.rowwise() - mean;
-  const Eigen::Matrix3d spread = centred.transpose() * centred;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
-  const double off = std::abs(axes.eigenvectors().col(0).dot(point - mean.transpose()));
-  return axes.eigenvalues()[0] <= kNoPlane * spread.trace() && off <= kOffPlane * farthest;
+  const FittedPlane plane = fitted_plane(all, near);
+  const Eigen::Vector3d variances = plane.deviations.cwiseAbs2();
+  const double off = std::abs(plane.normal.dot(point - plane.point));
+  return variances[0] <= kNoPlane * variances.sum() && off <= kOffPlane * farthest;
 }
 
 }  // namespace
