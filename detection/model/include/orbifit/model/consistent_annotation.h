@@ -15,7 +15,7 @@ struct LeftOut {
   int id = 0;
   std::string name;
   std::string group;   ///< Schoenflies symbol, or the pattern's kind
-  std::string reason;  ///< "the mirror of "whole" takes it where there is no such region"
+  std::string reason;  ///< "the group of "whole" (Cs) takes it where there is no such region"
 };
 
 /// "region 3 "leg" (C2v): ..."
@@ -41,11 +41,18 @@ struct ConsistentAnnotation {
 /// the annotation lacks are added where the surface has them. The placement of the family's first region is fitted:
 /// as near as possible to where the placements of all members, taken back to it, are, subject to what the motions
 /// that take it to itself ask of it, which then holds to rounding. The others are its images, in closed form. A family
-/// that cannot be placed within the annotation's tolerance is left out, with its reason. Patterns take part in the same
-/// way: their steps are fitted to the groups around them, and take regions within one instance to those of the others.
+/// that cannot be placed within the annotation's tolerance is refused, with its reason. Of two regions that overlap in
+/// part, and where the one's group has no image of the other, the smaller gives up what the larger takes of it, with all
+/// images of that, as long as half of it stays. Patterns take part in the same way: their steps are fitted to the groups
+/// around them, and take regions within one instance to those of the others.
+///
+/// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
+/// barred it where that saves more. A region of order |G| saves 1 - 1/|G| of its area, since the rest follows from one
+/// part; a pattern saves all instances but one. Regions of the whole are never given up.
 ///
 /// An annotation that is consistent comes back as it is. \pre the annotation fits the mesh (read_annotation checks it)
-/// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries.
+/// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries; at most a hundred times
+/// that where much is refused.
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context);
 
