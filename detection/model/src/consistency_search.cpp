@@ -137,10 +137,14 @@ bool ConsistencySearch::is_everything(const Claim& claim) const {
   return !claim.pattern && regions_[claim.number].region.faces.size() == static_cast<std::size_t>(mesh_.faces.rows());
 }
 
+double ConsistencySearch::bits(const Residual& residual) const {
+  return std::max(1.0, -std::log2(residual.rms + policy_.told));
+}
+
 double ConsistencySearch::saving(std::size_t region) const {
-  const PointGroup& group = regions_[region].region.group;
-  const double area = shapes_.area(regions_[region].shape);
-  return group.continuous() ? area : area * (1 - 1.0 / group.order());
+  const Region& known = regions_[region].region;
+  const double area = shapes_.area(regions_[region].shape) * bits(known.residual);
+  return known.group.continuous() ? area : area * (1 - 1.0 / known.group.order());
 }
 
 double ConsistencySearch::saving(const Claim& claim) const {
@@ -151,7 +155,7 @@ double ConsistencySearch::saving(const Claim& claim) const {
     sum += shapes_.area(shape);
     largest = std::max(largest, shapes_.area(shape));
   }
-  return sum - largest;
+  return (sum - largest) * bits(patterns_[claim.number].pattern.residual);
 }
 
 double ConsistencySearch::total_saving() const {

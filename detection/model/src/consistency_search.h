@@ -33,6 +33,8 @@ struct ConsistencyPolicy {
   double far_more_exact = 0.1;
   /// Share of its area that a region must keep where it gives up what another takes of it.
   double left = 0.5;
+  /// To what positions are told, as a fraction of the diagonal: what files of single precision hold.
+  double told = 1e-6;
   /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.
   double exact = 1e-13;
   /// Searches at most, for what to keep of claims that contradict one another: each takes milliseconds to tenths of a
@@ -52,14 +54,14 @@ struct Claim {
 struct Refused {
   std::vector<Claim> claims;  ///< not empty
   std::string reason;
-  double saving = 0;                        ///< area that they would have saved, mesh units
+  double saving = 0;                        ///< what they would have saved
   std::vector<std::vector<Claim>> against;  ///< families that are in the way, of which leaving out one may do
 };
 
 /// What one search keeps.
 struct ConsistencyOutcome {
   ConsistentAnnotation kept;
-  double saving = 0;  ///< area that need not be told, of all that is kept, mesh units
+  double saving = 0;  ///< of all that is kept
   std::vector<Refused> refused;
 
   double refused_saving() const {
@@ -85,8 +87,9 @@ class ConsistencySearch {
   /// \param wanted  the search ends early, with an outcome that holds what was refused until then, when this is refused
   ConsistencyOutcome run(std::optional<Claim> wanted = {});
 
-  /// The area that need not be told once the claim is kept: of a region all but the share that its group repeats, of a
-  /// pattern all instances but one; mesh units.
+  /// What need not be told once the claim is kept: the area that follows from the rest, of a region all but the share
+  /// that its group repeats, of a pattern all instances but one, times the bits of each position that follow, which are
+  /// the fewer the larger the residual is.
   double saving(const Claim& claim) const;
 
  private:
@@ -152,6 +155,7 @@ class ConsistencySearch {
   std::vector<Claim> family_of(const Claim& claim) const;
   bool is_everything(const Claim& claim) const;
   double saving(std::size_t region) const;
+  double bits(const Residual& residual) const;
   Claim mover_of(const Move& move) const;
 
   void place_pattern(std::size_t number);

@@ -48,7 +48,8 @@ struct ConsistentAnnotation {
 ///
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
 /// barred it where that saves more. A region of order |G| saves 1 - 1/|G| of its area, since the rest follows from one
-/// part; a pattern saves all instances but one. Regions of the whole are never given up.
+/// part, and a pattern all instances but one; each position saves the more bits the smaller the residual is. Regions of
+/// the whole are never given up.
 ///
 /// An annotation that is consistent comes back as it is. \pre the annotation fits the mesh (read_annotation checks it)
 /// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries; at most a hundred times
