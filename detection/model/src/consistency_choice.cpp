@@ -22,7 +22,9 @@ class Choice {
       : mesh_(mesh),
         annotation_(annotation),
         context_(context),
-        shapes_(ConsistencySearch::shapes_of(mesh, annotation)) {}
+        shapes_(ConsistencySearch::shapes_of(mesh, annotation)),
+        trials_(ConsistencyPolicy{}.work /
+                (1.0 + static_cast<double>(annotation.regions.size()) * static_cast<double>(mesh.faces.rows()))) {}
 
   ConsistentAnnotation run() {
     best_ = search(excluded_);
@@ -66,7 +68,7 @@ class Choice {
     const Claim wanted = refused.claims.front();
     Excluded trial = excluded_;
     double cost = 0;
-    while (!refused.against.empty() && searches_ < ConsistencyPolicy{}.trials) {
+    while (!refused.against.empty() && searches_ < trials_) {
       const auto least = std::ranges::min_element(refused.against, {}, [&](const auto& f) { return saving(f); });
       cost += saving(*least);
       if (cost >= best_.refused_saving()) return false;
@@ -97,7 +99,7 @@ class Choice {
   void readmit() {
     const Excluded all = excluded_;
     for (const auto& [claim, reason] : all) {
-      if (searches_ >= ConsistencyPolicy{}.trials) return;
+      if (searches_ >= trials_) return;
       Excluded trial = excluded_;
       trial.erase(claim);
       if (trial.size() != excluded_.size() && tried_.emplace(trial).second) take(trial, search(trial));
@@ -111,7 +113,8 @@ class Choice {
   Excluded excluded_;
   ConsistencyOutcome best_;
   std::set<Excluded> tried_;
-  int searches_ = 0;
+  double trials_;
+  double searches_ = 0;
 };
 
 }  // namespace

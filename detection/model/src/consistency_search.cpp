@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <tuple>
 #include <utility>
 
 namespace orbifit {
@@ -488,13 +490,34 @@ bool ConsistencySearch::trim(std::size_t region, int other) {
   return true;
 }
 
+// Where one of a family gave something up, all give up its images. \return whether enough is left of each
+bool ConsistencySearch::trim_alike(const Family& family) {
+  const auto left = [&](std::size_t region, std::vector<int> faces) {
+    const int before = regions_[region].shape;
+    const int after = shapes_.add(faces);
+    regions_[region].shape = after;
+    regions_[region].region.faces = std::move(faces);
+    return shapes_.area(after) >= policy_.kept * shapes_.area(before);
+  };
+  const std::size_t first = family.members.front().region;
+  for (const Member& member : family.members) {
+    const int shape = regions_[member.region].shape;
+    const int own = regions_[first].shape;
+    if (!left(first, shapes_.image_faces(shape, shape, inverse(member.way), own))) return false;
+  }
+  for (const Member& member : family.members) {
+    const int own = regions_[first].shape;
+    if (!left(member.region, shapes_.image_faces(own, own, member.way, regions_[member.region].shape))) return false;
+  }
+  return true;
+}
+
 void ConsistencySearch::place_family(std::size_t first) {
   if (!regions_[first].place) {
     refuse({{false, first}}, {"its elements form no group of that symbol", {}});
     return;
   }
-  const int given_shape = regions_[first].shape;
-  const std::vector<int> given_faces = regions_[first].region.faces;
+  std::map<std::size_t, std::pair<int, std::vector<int>>> given;  // of regions that were trimmed: shape and faces
   Family family;
   Verdict refusal;
   std::size_t regions_before = 0;
@@ -503,18 +526,21 @@ void ConsistencySearch::place_family(std::size_t first) {
     const int shapes_before = shapes_.count();
     family = {};
     refusal = gather(first, family);
+    if (!refusal && !given.empty() && !trim_alike(family))
+      refusal = Refusal{"its images overlap others differently", {}};
     if (!refusal) refusal = accept_family(family);
     if (!refusal) break;
     regions_.resize(regions_before);
     shapes_.keep(shapes_before);
     again = false;
     if (refusal->across && *refusal->across < regions_before && refusal->shape < shapes_before) {
+      const KnownRegion& across = regions_[*refusal->across];
+      given.try_emplace(*refusal->across, across.shape, across.region.faces);
       again = trim(*refusal->across, refusal->shape);
     }
   }
   if (refusal) {
-    regions_[first].shape = given_shape;
-    regions_[first].region.faces = given_faces;
+    for (auto& [region, before] : given) std::tie(regions_[region].shape, regions_[region].region.faces) = before;
     std::vector<Claim> claims;
     for (const Member& member : family.members) {
       if (member.region < regions_before && regions_[member.region].source < 0 &&

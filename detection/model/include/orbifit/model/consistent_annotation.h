@@ -52,8 +52,8 @@ struct ConsistentAnnotation {
 /// the whole are never given up.
 ///
 /// An annotation that is consistent comes back as it is. \pre the annotation fits the mesh (read_annotation checks it)
-/// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries; at most a hundred times
-/// that where much is refused.
+/// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries; where much is
+/// refused, a multiple of that which is the smaller the more there is to do.
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context);
 
