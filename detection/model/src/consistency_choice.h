@@ -10,7 +10,8 @@ namespace orbifit {
 /// Of claims that contradict one another, those to keep: the ones that together save the most area. A search that takes
 /// all of them, largest first, tells what it refuses and what is in the way; wherever what was refused saves more than
 /// that, a search without the latter is tried, and taken if what it keeps saves more in all.
-/// The whole shape's regions are never given up. Cost: a search for each trial, as far as `ConsistencyPolicy::work` goes.
+/// The whole shape's regions are never given up. Cost: a search for each trial, as far as `ConsistencyPolicy::work`
+/// goes.
 ConsistentAnnotation chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                        const RunContext& context);
 

@@ -42,9 +42,9 @@ struct ConsistentAnnotation {
 /// as near as possible to where the placements of all members, taken back to it, are, subject to what the motions
 /// that take it to itself ask of it, which then holds to rounding. The others are its images, in closed form. A family
 /// that cannot be placed within the annotation's tolerance is refused, with its reason. Of two regions that overlap in
-/// part, and where the one's group has no image of the other, the smaller gives up what the larger takes of it, with all
-/// images of that, as long as half of it stays. Patterns take part in the same way: their steps are fitted to the groups
-/// around them, and take regions within one instance to those of the others.
+/// part, and where the one's group has no image of the other, the smaller gives up what the larger takes of it, with
+/// all images of that, as long as half of it stays. Patterns take part in the same way: their steps are fitted to the
+/// groups around them, and take regions within one instance to those of the others.
 ///
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
 /// barred it where that saves more. A region of order |G| saves 1 - 1/|G| of its area, since the rest follows from one
