@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "vertex_grid.h"
+#include "orbifit/model/vertex_grid.h"
 
 namespace orbifit {
 

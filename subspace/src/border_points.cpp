@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "vertex_places.h"
+#include "orbifit/model/vertex_sets.h"
 
 namespace orbifit {
 

@@ -9,11 +9,11 @@
 #include <optional>
 #include <utility>
 
+#include "orbifit/model/vertex_grid.h"
+#include "orbifit/model/vertex_sets.h"
 #include "orbifit/subspace/carried_regions.h"
 
 #include "plain_lift.h"
-#include "vertex_grid.h"
-#include "vertex_places.h"
 
 namespace orbifit {
 
@@ -166,7 +166,10 @@ class PairResidual {
         mesh_(mesh),
         baked_(vertex_displacements(subspace, state)),
         images_(mesh.vertices, kMet * subspace.diagonal),
-        field_(subspace, state) {}
+        field_(subspace, state) {
+    if (subspace.lift_kind != LiftKind::orbit) return;
+    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v) sets_.push_back(set_of_vertex(subspace.orbits, v));
+  }
 
   /// Images at vertices are measured at once, others by finish().
   /// \param motion that of element number `element` of the place, or with a rotation of its continuum after it
@@ -174,11 +177,13 @@ class PairResidual {
   void add(int vertex, const Motion& motion, const Motion& carried, int from_place, int element) {
     const Vector3d place = mesh_.vertices.row(vertex).transpose();
     const Vector3d image = motion(place);
+    const int image_set = sets_.empty() ? 0 : subspace_.regions->carried_set(set_of(vertex), from_place, element);
     int met = -1;
     const auto& followers = subspace_.orbits.followers;
     const int own = followers[static_cast<std::size_t>(vertex)].representative;
     images_.visit(image, [&](int other) {
-      if (met < 0 && followers[static_cast<std::size_t>(other)].representative == own) met = other;
+      if (met >= 0 || followers[static_cast<std::size_t>(other)].representative != own) return;
+      if (set_of(other) == image_set) met = other;  // of parts that touch, the one that it is on
     });
     if (met < 0) {
       off_vertices_.push_back({vertex, motion, carried, from_place, element});
@@ -204,8 +209,7 @@ class PairResidual {
       const Pair& pair = off_vertices_[k];
       const Vector3d place = mesh_.vertices.row(pair.vertex).transpose();
       const Vector3d image = pair.motion(place);
-      const bool orbits = subspace_.lift_kind == LiftKind::orbit;
-      const int set = orbits ? set_of_vertex(subspace_.orbits, pair.vertex) : 0;
+      const int set = set_of(pair.vertex);
       const int image_set = subspace_.regions->carried_set(set, pair.from_place, pair.element);
       measure(field_(place, set), field_(image, image_set), place, pair.motion, pair.carried);
     }
@@ -227,6 +231,8 @@ class PairResidual {
     int from_place, element;
   };
 
+  int set_of(int vertex) const { return sets_.empty() ? 0 : sets_[static_cast<std::size_t>(vertex)]; }
+
   // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
   void measure(const Vector3d& here, const Vector3d& there, const Vector3d& place, const Motion& motion,
                const Motion& carried) {
@@ -238,6 +244,7 @@ class PairResidual {
 
   const Subspace& subspace_;
   const Mesh& mesh_;
+  std::vector<int> sets_;  // of the vertices; empty where the lift knows none
   std::vector<Pair> off_vertices_;
   Points baked_;
   VertexGrid images_;  // vertices that may be images

@@ -1,53 +1,32 @@
 #include "orbifit/subspace/region_map.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <numeric>
-
-#include <Eigen/Geometry>
-
-#include "orbifit/model/point_group.h"
+#include <limits>
+#include <string>
 
 #include "lattice.h"
-#include "vertex_places.h"
 
 namespace orbifit {
 
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using Family = PointGroup::Family;
 
-constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
-constexpr double kOnAxis = 1e-12;   // of a point's offset
-constexpr int kMostFold = 120;
-
-// One element of each component of a continuous group; mirrors contain the reference direction.
-std::vector<Motion> components(const PointGroup& group, const Continuum& continuum) {
-  const Vector3d& centre = continuum.centre;
-  const Motion level = Motion::reflection(continuum.axis, centre);
-  const Motion upright = Motion::reflection(continuum.axis.cross(continuum.reference), centre);
-  const Motion half_turn = Motion::rotation(continuum.reference, std::numbers::pi, centre);
-  switch (group.family) {
-    case Family::Cinfv:
-      return {Motion{}, upright};
-    case Family::Cinfh:
-      return {Motion{}, level};
-    case Family::Dinf:
-      return {Motion{}, half_turn};
-    case Family::Dinfh:
-      return {Motion{}, upright, level, half_turn};
-    case Family::Kh:
-      return {Motion{}, Motion::about(-Matrix3d::Identity(), centre)};
-    default:
-      return {Motion{}};
+std::vector<Lattice> lattices_of(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
+  std::vector<Lattice> result;
+  for (const Pattern& pattern : annotation.patterns) {
+    result.push_back(lattice_of(mesh, pattern));
+    if (!result.back().regular && pattern.kind != Pattern::Kind::congruent) {
+      context.message("pattern \"" + pattern.name + "\": its instances miss the lattice; they are kept as copies");
+    }
   }
+  return result;
 }
 
-bool same_line(const Continuum& a, const Vector3d& axis, const Vector3d& point, double size) {
-  return a.axis.cross(axis).norm() < kSameLine && a.axis.cross(point - a.centre).norm() < kSameLine * size;
+std::vector<std::vector<Motion>> motions_of(const std::vector<Lattice>& lattices) {
+  std::vector<std::vector<Motion>> result;
+  for (const Lattice& lattice : lattices) result.push_back(lattice.motions);
+  return result;
 }
 
 }  // namespace
@@ -72,173 +51,34 @@ Carried carried_sum(const Carried& a, const Matrix3d& factor, const Carried& b) 
   return result;
 }
 
-double Continuum::distance(const Vector3d& point) const {
-  return spherical ? (point - centre).norm() : axis.cross(point - centre).norm();
-}
+RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+    : RegionMap(mesh, annotation, lattices_of(mesh, annotation, context)) {}
 
-Vector3d Continuum::foot(const Vector3d& point) const {
-  return spherical ? centre : Vector3d(centre + axis * axis.dot(point - centre));
-}
-
-Motion Continuum::turn_to(const Vector3d& point) const {
-  const Vector3d offset = point - foot(point);
-  const double scale = (point - centre).norm();
-  if (offset.norm() <= kOnAxis * scale || scale == 0) return {};
-  if (spherical) {
-    const Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(axis, offset).toRotationMatrix();
-    return Motion::about(turn, centre);
+RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const std::vector<Lattice>& lattices)
+    : DomainMap(mesh, annotation, motions_of(lattices)),
+      shifts_(static_cast<std::size_t>(places())),
+      carriers_(count()),
+      surfaces_(static_cast<std::size_t>(places())) {
+  for (std::size_t p = 0; p < lattices.size(); ++p) {
+    const Lattice& lattice = lattices[p];
+    first_step_.push_back(lattice.regular ? carriers_ : -1);
+    for (std::size_t a = 0; a < lattice.shifts.size(); ++a) {
+      Carried& shift = shifts_[static_cast<std::size_t>(first_place_of_pattern(static_cast<int>(p))) + a];
+      for (const auto& [variable, matrix] : lattice.shifts[a]) shift.emplace_back(carriers_ + variable, matrix);
+    }
+    carriers_ += lattice.variables;
   }
-  const double angle = std::atan2(axis.dot(reference.cross(offset)), reference.dot(offset));
-  return angle == 0 ? Motion{} : Motion::rotation(axis, angle, centre);
-}
-
-RegionMap::RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
-  for (const Region& region : annotation.regions) add_region(mesh, region);
-  regions_ = carriers_ = places();
-  share_references(diagonal(mesh.vertices));
-  for (const Region& region : annotation.regions) {
-    Place& place = places_[static_cast<std::size_t>(&region - annotation.regions.data())];
-    if (place.continuum) place.motions = components(region.group, *place.continuum);
-  }
-  for (const Pattern& pattern : annotation.patterns) add_pattern(mesh, pattern, context);
-
-  const auto faces = static_cast<std::size_t>(mesh.faces.rows());
-  std::vector<std::vector<int>> members(faces);
   for (int place = 0; place < places(); ++place) {
-    for (const int face : at(place).faces) members[static_cast<std::size_t>(face)].push_back(place);
+    if (whole(place)) continue;
+    mesh_ = mesh;
+    break;
   }
-  set_of_face_.resize(faces);
-  intern({});
-  for (std::size_t face = 0; face < faces; ++face) set_of_face_[face] = intern(members[face]);
-  bool surfaces_needed = false;
-  for (Place& place : places_) {
-    place.whole = static_cast<Eigen::Index>(place.faces.size()) == mesh.faces.rows();
-    surfaces_needed = surfaces_needed || !place.whole;
-    for (const int face : place.faces) {
-      for (const int vertex : mesh.faces.row(face)) place.box.extend(mesh.vertices.row(vertex).transpose());
-    }
-  }
-  if (surfaces_needed) mesh_ = mesh;
-  size_ = diagonal(mesh.vertices);
-  surfaces_.resize(places_.size());
-  images_.resize(places_.size());
-  origin_ = bounding_box_centre(mesh.vertices);
-  moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
-  meeting_.resize(places_.size());
-  // Also those that share no face but vertices: what lies on both must keep both.
-  std::vector<int> sets = sets_of_vertices(mesh, *this);
-  sets.insert(sets.end(), set_of_face_.begin(), set_of_face_.end());
-  std::ranges::sort(sets);
-  sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
-  for (const int set : sets) {
-    for (const int place : set_places(set)) {
-      auto& met = meeting_[static_cast<std::size_t>(place)];
-      met.insert(met.end(), set_places(set).begin(), set_places(set).end());
-    }
-  }
-  for (std::vector<int>& met : meeting_) {
-    std::ranges::sort(met);
-    met.erase(std::unique(met.begin(), met.end()), met.end());
-  }
-}
-
-void RegionMap::add_region(const Mesh&, const Region& region) {
-  Place place;
-  place.name = region.name.empty() ? "region " + std::to_string(region.id) : region.name;
-  place.motions = region.elements;
-  place.centre = region.centre;
-  place.faces = region.faces;
-  if (region.group.continuous()) {
-    Continuum continuum;
-    continuum.centre = region.centre;
-    continuum.spherical = !region.group.has_axis();
-    if (!continuum.spherical) continuum.axis = region.axis.normalized();
-    continuum.reference = frame_about(continuum.axis).col(0);
-    place.continuum = continuum;
-  }
-  places_.push_back(std::move(place));
-}
-
-// Regions on one line share its direction, and the half-plane of canonical places lies in a mirror of finite groups
-// about the line, so that copies of a ring have their symmetries.
-void RegionMap::share_references(double size) {
-  for (std::size_t b = 0; b < places_.size(); ++b) {
-    if (!places_[b].continuum || places_[b].continuum->spherical) continue;
-    Continuum& own = *places_[b].continuum;
-    bool shared = false;
-    for (std::size_t a = 0; a < b && !shared; ++a) {
-      if (!places_[a].continuum || places_[a].continuum->spherical) continue;
-      if (!same_line(*places_[a].continuum, own.axis, own.centre, size)) continue;
-      const Vector3d centre = own.centre;
-      own = *places_[a].continuum;
-      own.centre = own.foot(centre);
-      shared = true;
-    }
-    if (shared) continue;
-    std::size_t most = 0;
-    for (const Place& place : places_) {
-      int rotations = 1;
-      Vector3d across = Vector3d::Zero();
-      for (const Motion& element : place.motions) {
-        const AxisAngle turn = axis_angle(element.linear);
-        const bool fixes = (element(own.centre) - own.centre).norm() < kSameLine * size;
-        if (!fixes) continue;
-        if (turn.determinant > 0 && turn.angle > 0 && turn.axis.cross(own.axis).norm() < kSameLine) ++rotations;
-        // A mirror is -1 times a half turn about its normal.
-        if (turn.determinant < 0 && std::abs(turn.angle - std::numbers::pi) < 1e-9 &&
-            std::abs(turn.axis.dot(own.axis)) < kSameLine) {
-          across = turn.axis.cross(own.axis);
-        }
-      }
-      if (!place.continuum && rotations > 1) own.fold = std::lcm(own.fold, rotations);
-      if (across.norm() > 0.5 && place.motions.size() > most) {
-        most = place.motions.size();
-        own.reference = (across - own.axis * own.axis.dot(across)).normalized();
-      }
-    }
-    if (own.fold > kMostFold) own.fold = 1;
-  }
-}
-
-void RegionMap::add_pattern(const Mesh& mesh, const Pattern& pattern, const RunContext& context) {
-  first_place_.push_back(places());
-  const Lattice lattice = lattice_of(mesh, pattern);
-  if (!lattice.regular && pattern.kind != Pattern::Kind::congruent) {
-    context.message("pattern \"" + pattern.name + "\": its instances miss the lattice; they are kept as copies");
-  }
-  const int first = places();
-  first_step_.push_back(lattice.regular ? carriers_ : -1);
-  for (std::size_t a = 0; a < pattern.instances.size(); ++a) {
-    Place place;
-    place.name = (pattern.name.empty() ? "pattern " + std::to_string(pattern.id) : pattern.name) + ", instance " +
-                 std::to_string(a);
-    place.faces = pattern.instances[a].faces;
-    place.pattern_first = first;
-    const Motion back = inverse(lattice.motions[a]);
-    for (const Motion& motion : lattice.motions) place.motions.push_back(motion * back);
-    place.motions[a] = Motion{};
-    for (const auto& [variable, matrix] : lattice.shifts[a]) place.shift.emplace_back(carriers_ + variable, matrix);
-    places_.push_back(std::move(place));
-  }
-  carriers_ += lattice.variables;
-}
-
-int RegionMap::arrival(int place, int element) const {
-  return at(place).pattern_first < 0 ? place : at(place).pattern_first + element;
-}
-
-int RegionMap::inverse_element(int place, int element) const {
-  if (at(place).pattern_first >= 0) return place - at(place).pattern_first;
-  const std::vector<Motion>& motions = at(place).motions;
-  const Eigen::Matrix3d back = motions[static_cast<std::size_t>(element)].linear.transpose();
-  const auto nearest = std::ranges::min_element(motions, {}, [&](const Motion& m) { return (m.linear - back).norm(); });
-  return static_cast<int>(nearest - motions.begin());
 }
 
 Carried RegionMap::carried(int place, int element, const Matrix3d& linear) const {
   if (at(place).pattern_first < 0) return {{place, Matrix3d::Identity() - linear}};
   // u_b = O (u_a - tau_a) + tau_b
-  return carried_sum(at(at(place).pattern_first + element).shift, -linear, at(place).shift);
+  return carried_sum(instance_shift(at(place).pattern_first + element), -linear, instance_shift(place));
 }
 
 Carried RegionMap::generator_shift(int pattern, int generator) const {
@@ -262,38 +102,6 @@ std::vector<Motion> RegionMap::test_elements(int region) const {
   return result;
 }
 
-int RegionMap::intern(const std::vector<int>& set) const {
-  const auto [entry, added] = number_of_set_.try_emplace(set, static_cast<int>(sets_.size()));
-  if (added) sets_.push_back(&entry->first);
-  return entry->second;
-}
-
-bool RegionMap::holds(int set, int place) const {
-  return std::ranges::binary_search(set_places(set), place);
-}
-
-bool RegionMap::contains(int set, int subset) const {
-  return set == subset || std::ranges::includes(set_places(set), set_places(subset));
-}
-
-int RegionMap::with(int set, int place) const {
-  const std::uint64_t key =
-      static_cast<std::uint64_t>(static_cast<std::uint32_t>(set)) << 32U | static_cast<std::uint32_t>(place);
-  const auto known = with_.find(key);
-  if (known != with_.end()) return known->second;
-  std::vector<int> members = set_places(set);
-  const auto position = std::ranges::lower_bound(members, place);
-  if (position == members.end() || *position != place) members.insert(position, place);
-  return with_[key] = intern(members);
-}
-
-int RegionMap::joined(int a, int b) const {
-  if (contains(a, b)) return a;
-  int result = a;
-  for (const int place : std::vector<int>(set_places(b))) result = with(result, place);
-  return result;
-}
-
 const MovingSurface& RegionMap::surface(int place) const {
   auto& surface = surfaces_[static_cast<std::size_t>(place)];
   if (!surface) surface = std::make_unique<MovingSurface>(mesh_, at(place).faces);
@@ -312,15 +120,6 @@ double RegionMap::distance(const Vector3d& point, int place, double most, int* l
   const auto nearest = surface(place).nearest(point, most, likely != nullptr ? *likely : -1);
   if (likely != nullptr && nearest.face >= 0) *likely = nearest.place;
   return nearest.distance;
-}
-
-int innermost_region(const RegionMap& regions, int set) {
-  int best = -1;
-  for (const int place : regions.set_places(set)) {
-    if (place >= regions.count()) continue;
-    if (best < 0 || regions.face_count(place) < regions.face_count(best)) best = place;
-  }
-  return best;
 }
 
 }  // namespace orbifit

@@ -5,9 +5,8 @@
 #include <optional>
 
 #include "orbifit/model/space_order.h"
-
-#include "vertex_grid.h"
-#include "vertex_places.h"
+#include "orbifit/model/vertex_grid.h"
+#include "orbifit/model/vertex_sets.h"
 
 namespace orbifit {
 

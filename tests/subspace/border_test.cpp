@@ -10,11 +10,11 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/random.h"
+#include "orbifit/model/vertex_sets.h"
 #include "orbifit/subspace/displacement_field.h"
 
 #include "parts.h"
 #include "subspaces.h"
-#include "vertex_places.h"
 
 namespace orbifit {
 namespace {

@@ -13,12 +13,12 @@
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/random.h"
+#include "orbifit/model/vertex_grid.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
 #include "subspaces.h"
 #include "temporary_folder.h"
-#include "vertex_grid.h"
 
 namespace orbifit {
 namespace {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "consistency_closure.h"
 #include "consistency_search.h"
 
 namespace orbifit {
@@ -31,6 +32,7 @@ class Choice {
     while (improve()) {
     }
     readmit();
+    leave_out_disagreements(mesh_, annotation_, best_.kept, context_);
     return std::move(best_.kept);
   }
 

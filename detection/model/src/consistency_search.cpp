@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -35,7 +36,21 @@ Region at_place(const Region& region, const GroupPlace& place, double movement) 
   return result;
 }
 
+double bits(const Residual& residual) {
+  return std::max(1.0, -std::log2(residual.rms + ConsistencyPolicy{}.told));
+}
+
 }  // namespace
+
+double saving_of(double area, const PointGroup& group, const Residual& residual) {
+  const double saved = area * bits(residual);
+  return group.continuous() ? saved : saved * (1 - 1.0 / group.order());
+}
+
+double saving_of(const std::vector<double>& areas, const Residual& residual) {
+  if (areas.empty()) return 0;
+  return (std::accumulate(areas.begin(), areas.end(), 0.0) - *std::ranges::max_element(areas)) * bits(residual);
+}
 
 RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation) {
   RegionShapes result(mesh, ConsistencyPolicy{}.reach * annotation.tolerance * diagonal(mesh.vertices));
@@ -139,25 +154,16 @@ bool ConsistencySearch::is_everything(const Claim& claim) const {
   return !claim.pattern && regions_[claim.number].region.faces.size() == static_cast<std::size_t>(mesh_.faces.rows());
 }
 
-double ConsistencySearch::bits(const Residual& residual) const {
-  return std::max(1.0, -std::log2(residual.rms + policy_.told));
-}
-
 double ConsistencySearch::saving(std::size_t region) const {
   const Region& known = regions_[region].region;
-  const double area = shapes_.area(regions_[region].shape) * bits(known.residual);
-  return known.group.continuous() ? area : area * (1 - 1.0 / known.group.order());
+  return saving_of(shapes_.area(regions_[region].shape), known.group, known.residual);
 }
 
 double ConsistencySearch::saving(const Claim& claim) const {
   if (!claim.pattern) return saving(claim.number);
-  double sum = 0;
-  double largest = 0;
-  for (const int shape : patterns_[claim.number].shapes) {
-    sum += shapes_.area(shape);
-    largest = std::max(largest, shapes_.area(shape));
-  }
-  return (sum - largest) * bits(patterns_[claim.number].pattern.residual);
+  std::vector<double> areas;
+  for (const int shape : patterns_[claim.number].shapes) areas.push_back(shapes_.area(shape));
+  return saving_of(areas, patterns_[claim.number].pattern.residual);
 }
 
 double ConsistencySearch::total_saving() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "orbifit/model/consistent_annotation.h"
 
+#include "closed_sets.h"
 #include "group_place.h"
 #include "region_shapes.h"
 
@@ -42,13 +42,11 @@ struct ConsistencyPolicy {
   double work = 8e6;
 };
 
-/// A region or a pattern of the annotation, by its place in the list there.
-struct Claim {
-  bool pattern = false;
-  std::size_t number = 0;
-
-  auto operator<=>(const Claim&) const = default;
-};
+/// What need not be told once a region, or a pattern, is kept: the area that follows from the rest, of a region all but
+/// the share that its group repeats, of a pattern all instances but the largest, times the bits of each position that
+/// follow, which are the fewer the larger the residual is.
+double saving_of(double area, const PointGroup& group, const Residual& residual);
+double saving_of(const std::vector<double>& areas, const Residual& residual);
 
 /// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
 struct Refused {
@@ -87,9 +85,7 @@ class ConsistencySearch {
   /// \param wanted  the search ends early, with an outcome that holds what was refused until then, when this is refused
   ConsistencyOutcome run(std::optional<Claim> wanted = {});
 
-  /// What need not be told once the claim is kept: the area that follows from the rest, of a region all but the share
-  /// that its group repeats, of a pattern all instances but one, times the bits of each position that follow, which are
-  /// the fewer the larger the residual is.
+  /// See saving_of().
   double saving(const Claim& claim) const;
 
  private:
@@ -156,7 +152,6 @@ class ConsistencySearch {
   std::vector<Claim> family_of(const Claim& claim) const;
   bool is_everything(const Claim& claim) const;
   double saving(std::size_t region) const;
-  double bits(const Residual& residual) const;
   Claim mover_of(const Move& move) const;
 
   void place_pattern(std::size_t number);

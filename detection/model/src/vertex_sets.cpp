@@ -1,4 +1,4 @@
-#include "vertex_places.h"
+#include "orbifit/model/vertex_sets.h"
 
 #include <algorithm>
 #include <array>
@@ -83,12 +83,12 @@ struct PointSets {
   std::vector<int> sets;  // of each root
 };
 
-PointSets point_sets(const Mesh& mesh, const RegionMap& regions) {
+PointSets point_sets(const Mesh& mesh, const DomainMap& domains) {
   PointSets result;
   result.sets.assign(static_cast<std::size_t>(mesh.vertices.rows()), 0);
   result.root.resize(result.sets.size());
   std::iota(result.root.begin(), result.root.end(), 0);
-  if (regions.places() > 0) {
+  if (domains.places() > 0) {
     const std::vector<int> weld = welded_vertices(mesh.vertices);
     bool doubled = false;
     for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
@@ -101,8 +101,8 @@ PointSets point_sets(const Mesh& mesh, const RegionMap& regions) {
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
     for (const int vertex : mesh.faces.row(face)) {
       int& here = result.sets[static_cast<std::size_t>(result.root[static_cast<std::size_t>(vertex)])];
-      const int set = regions.set_of_face(static_cast<int>(face));
-      if (here != set) here = regions.joined(here, set);
+      const int set = domains.set_of_face(static_cast<int>(face));
+      if (here != set) here = domains.joined(here, set);
     }
   }
   return result;
@@ -117,14 +117,14 @@ std::vector<int> by_vertex(const PointSets& points) {
 
 }  // namespace
 
-std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions) {
-  return by_vertex(point_sets(mesh, regions));
+std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains) {
+  return by_vertex(point_sets(mesh, domains));
 }
 
-std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid) {
-  PointSets points = point_sets(mesh, regions);
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid) {
+  PointSets points = point_sets(mesh, domains);
   bool partial = false;
-  for (int place = 0; place < regions.places(); ++place) partial = partial || !regions.whole(place);
+  for (int place = 0; place < domains.places(); ++place) partial = partial || !domains.whole(place);
   if (!partial) return by_vertex(points);
   // Parts that touch have vertices at one place; their surfaces face different ways there.
   constexpr double kSameSide = 0.7;  // cosine: the corners of a part and of what it stands on are farther apart
@@ -140,7 +140,7 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
     return points.sets[static_cast<std::size_t>(points.root[static_cast<std::size_t>(vertex)])];
   };
   const auto join = [&](int vertex, int set) {
-    const int joined = regions.joined(set_of(vertex), set);
+    const int joined = domains.joined(set_of(vertex), set);
     if (joined == set_of(vertex)) return;
     set_of(vertex) = joined;
     const int root = points.root[static_cast<std::size_t>(vertex)];
@@ -153,11 +153,11 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
     queued[static_cast<std::size_t>(vertex)] = 0;
     const Eigen::Vector3d position = mesh.vertices.row(vertex).transpose();
     const Eigen::Vector3d normal = normals.row(vertex).transpose();
-    const std::vector<int> places = regions.set_places(set_of(vertex));
+    const std::vector<int> places = domains.set_places(set_of(vertex));
     for (const int place : places) {
-      for (int element = 0; element < static_cast<int>(regions.elements(place).size()); ++element) {
-        const int carried = regions.carried_set(set_of(vertex), place, element);
-        const Motion& motion = regions.elements(place)[static_cast<std::size_t>(element)];
+      for (int element = 0; element < static_cast<int>(domains.elements(place).size()); ++element) {
+        const int carried = domains.carried_set(set_of(vertex), place, element);
+        const Motion& motion = domains.elements(place)[static_cast<std::size_t>(element)];
         const Eigen::Vector3d image = motion(position);
         const Eigen::Vector3d turned = motion.linear * normal;
         bool same = false;
@@ -165,14 +165,14 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regi
         grid.visit(image, [&](int other) {
           same = same || set_of(other) == carried;
           const bool faces_alike = turned.dot(normals.row(other).transpose()) > kSameSide;
-          if (faces_alike && regions.comparable(set_of(other), carried)) met.push_back(other);
+          if (faces_alike && domains.comparable(set_of(other), carried)) met.push_back(other);
         });
         if (same) continue;
         for (const int other : met) {
           join(other, carried);
           // The two are images of one another, also where the other's image has more vertices than this one.
-          const int arrival = regions.arrival(place, element);
-          join(vertex, regions.carried_set(set_of(other), arrival, regions.inverse_element(place, element)));
+          const int arrival = domains.arrival(place, element);
+          join(vertex, domains.carried_set(set_of(other), arrival, domains.inverse_element(place, element)));
         }
       }
     }

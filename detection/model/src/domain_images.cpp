@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "orbifit/subspace/region_map.h"
+#include "orbifit/model/domain_map.h"
 
 namespace orbifit {
 
@@ -20,7 +20,7 @@ bool is_identity(const Motion& motion) {
 }  // namespace
 
 // Of the faces that both places hold; of all of the second where they merely touch.
-PieceMoments RegionMap::common_moments(int a, int b) const {
+PieceMoments DomainMap::common_moments(int a, int b) const {
   PieceMoments result;
   for (std::size_t set = 0; set < moments_.size(); ++set) {
     if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
@@ -32,7 +32,7 @@ PieceMoments RegionMap::common_moments(int a, int b) const {
   return result;
 }
 
-bool RegionMap::around(int outer, int inner) const {
+bool DomainMap::around(int outer, int inner) const {
   for (std::size_t set = 0; set < moments_.size(); ++set) {
     if (holds(static_cast<int>(set), inner) && !holds(static_cast<int>(set), outer)) return false;
   }
@@ -40,12 +40,12 @@ bool RegionMap::around(int outer, int inner) const {
 }
 
 // As the moments have it.
-Motion RegionMap::told_from_origin(const Motion& motion) const {
+Motion DomainMap::told_from_origin(const Motion& motion) const {
   return Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
 }
 
 // Whether the motion takes the group of one region, placed, to that of another.
-bool RegionMap::group_goes_to(int from, const Motion& motion, int to) const {
+bool DomainMap::group_goes_to(int from, const Motion& motion, int to) const {
   const Place& a = at(from);
   const Place& b = at(to);
   if (a.motions.size() != b.motions.size() || a.continuum.has_value() != b.continuum.has_value()) return false;
@@ -64,7 +64,7 @@ bool RegionMap::group_goes_to(int from, const Motion& motion, int to) const {
   });
 }
 
-RegionMap::Images RegionMap::find_images(int place, int element) const {
+DomainMap::Images DomainMap::find_images(int place, int element) const {
   Images result;
   const int arrival = this->arrival(place, element);
   const Motion& motion = at(place).motions[static_cast<std::size_t>(element)];
@@ -125,7 +125,7 @@ RegionMap::Images RegionMap::find_images(int place, int element) const {
   return result;
 }
 
-RegionMap::Images& RegionMap::images(int place, int element) const {
+DomainMap::Images& DomainMap::images(int place, int element) const {
   auto& images = images_[static_cast<std::size_t>(place)];
   if (images.empty()) images.resize(elements(place).size());
   auto& entry = images[static_cast<std::size_t>(element)];
@@ -133,7 +133,7 @@ RegionMap::Images& RegionMap::images(int place, int element) const {
   return *entry;
 }
 
-std::vector<int> RegionMap::exact_images(int place, int element) const {
+std::vector<int> DomainMap::exact_images(int place, int element) const {
   constexpr double kExact = 1e-9;  // of the diagonal, and of the area
   constexpr int kNone = -1;
   std::vector<int> result(static_cast<std::size_t>(places()), kNone);
@@ -150,7 +150,7 @@ std::vector<int> RegionMap::exact_images(int place, int element) const {
   return result;
 }
 
-std::vector<int> RegionMap::images_of(int other, int place, int element) const {
+std::vector<int> DomainMap::images_of(int other, int place, int element) const {
   std::vector<int> result;
   for (const auto& [from, to] : images(place, element).pairs) {
     if (from == other) result.push_back(to);
@@ -158,7 +158,7 @@ std::vector<int> RegionMap::images_of(int other, int place, int element) const {
   return result;
 }
 
-int RegionMap::carried_set(int set, int place, int element) const {
+int DomainMap::carried_set(int set, int place, int element) const {
   Images& known = images(place, element);
   const auto [entry, added] = known.sets.try_emplace(set, -1);
   if (added) {

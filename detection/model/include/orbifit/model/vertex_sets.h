@@ -2,10 +2,9 @@
 
 #include <vector>
 
+#include "orbifit/model/domain_map.h"
 #include "orbifit/model/mesh.h"
-#include "orbifit/subspace/region_map.h"
-
-#include "vertex_grid.h"
+#include "orbifit/model/vertex_grid.h"
 
 namespace orbifit {
 
@@ -17,11 +16,11 @@ std::vector<int> welded_vertices(const Points& vertices);
 
 /// The set of places of each vertex: those of all faces around it, also of those that share its position and an edge
 /// with them without sharing vertices, as in soups. Parts that merely touch keep places of their own.
-std::vector<int> sets_of_vertices(const Mesh& mesh, const RegionMap& regions);
+std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains);
 
 /// As sets_of_vertices(), with what the motions of its places say of each vertex: where an image of a vertex is a
 /// vertex, the image of its set and the other's are one. Regions are drawn face by face, and where one ends a face
 /// earlier than its image, the vertices of both are decided alike here, once for all of an orbit.
-std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const RegionMap& regions, const VertexGrid& grid);
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid);
 
 }  // namespace orbifit

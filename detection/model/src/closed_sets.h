@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// A region or a pattern of the annotation, by its place in the list there.
+struct Claim {
+  bool pattern = false;
+  std::size_t number = 0;
+
+  auto operator<=>(const Claim&) const = default;
+};
+
+/// Two claims, the lesser first, and how often the one's motions lose the other, or find it where it was not.
+using Disagreements = std::map<std::pair<Claim, Claim>, int>;
+
+/// Whether the motions of all regions and patterns take sets of places to sets of places, as a groupoid does: from each
+/// set that a face or a vertex of the mesh has, each motion goes to one set that has an image of every member, its
+/// inverse comes back, and to go by two motions of one group is to go by their product. Then the closure of a point
+/// under the motions is the same wherever it begins, and a field made of such closures is exact by construction. Where
+/// it does not hold, two claims are named each time. Empty: it holds. Cost O(F), and for each set the orders of the
+/// groups that hold it.
+Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+
+}  // namespace orbifit

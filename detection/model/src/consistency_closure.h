@@ -1,0 +1,16 @@
+#pragma once
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/consistent_annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit {
+
+/// Leaves out of `kept` what disagreements() names, until it names nothing: of all claims that disagree, again and
+/// again the one that saves least for what it bars. The whole shape's regions are never given up. \param given  where
+/// `kept` was chosen from
+void leave_out_disagreements(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
+                             const RunContext& context);
+
+}  // namespace orbifit
