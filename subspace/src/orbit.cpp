@@ -223,12 +223,7 @@ class Closure {
       if (continuous_place(set) != continuous_place(carried)) turn_back(continuous_place(set));
       if (set != carried) known = doublets_.find(position, set);
     }
-    const Motion& whole = words_.motion(word);
-    const Eigen::Vector3d& start = orbit_.points.front().position;
-    if (options_.snap > 0 && (whole(start) - start).norm() < options_.snap &&
-        (whole.linear - Eigen::Matrix3d::Identity()).norm() > 1e-7) {
-      orbit_.stabilisers.push_back(whole);
-    }
+    note_stabiliser(known, word);
     if (known >= 0) {
       meet(known, word, arrival, carried);
     } else {
@@ -239,6 +234,17 @@ class Closure {
       add({position, word, set}, regions_.with(0, arrival));
     }
     turn_alike(from, place, element, motion, known);
+  }
+
+  // To go by a word and come back by that of the point it arrives at keeps the seed, or nearly.
+  void note_stabiliser(int known, int word) {
+    if (!(options_.snap > 0)) return;
+    const Motion back =
+        known > 0 ? inverse(words_.motion(orbit_.points[static_cast<std::size_t>(known)].word)) : Motion{};
+    const Motion loop = back * words_.motion(word);
+    const Eigen::Vector3d& start = orbit_.points.front().position;
+    if ((loop(start) - start).norm() >= options_.snap) return;
+    if ((loop.linear - Eigen::Matrix3d::Identity()).norm() > 1e-7) orbit_.stabilisers.push_back(loop);
   }
 
   // A motion that takes one continuous group to another: to turn by the one, go, and turn back by the other must be to

@@ -160,6 +160,7 @@ class ConsistencySearch {
                                         const std::vector<int>& roots,
                                         const std::vector<std::vector<Motion>>& stabilisers) const;
   std::optional<std::string> fit_lattice(KnownPattern& known, const std::vector<Motion>& normalisers) const;
+  Motion with_told_directions(const KnownPattern& known, const Motion& motion) const;
   bool symmetry_of_instance(const KnownPattern& known, const Motion& motion) const;
   void leave_out_pattern(std::size_t number, const std::string& reason);
 

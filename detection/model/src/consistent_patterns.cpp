@@ -75,6 +75,26 @@ bool ConsistencySearch::symmetry_of_instance(const KnownPattern& known, const Mo
   });
 }
 
+// Copies whose directions differ by less than what positions are told to are as the groups around have it, or alike:
+// where copies touch, going round them would turn a point by that little.
+Motion ConsistencySearch::with_told_directions(const KnownPattern& known, const Motion& motion) const {
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  const auto alike = [&](const Eigen::Matrix3d& linear) {
+    return extent.reach * (motion.linear - linear).norm() <= policy_.told * diagonal_;
+  };
+  const auto turned = [&](const Eigen::Matrix3d& linear) {
+    return Motion{linear, motion(extent.centre) - linear * extent.centre};
+  };
+  if (alike(Eigen::Matrix3d::Identity())) return turned(Eigen::Matrix3d::Identity());
+  for (const KnownRegion& region : regions_) {
+    if (region.state != State::placed || !shapes_.within(known.shapes[0], region.shape)) continue;
+    for (const Motion& element : region.region.elements) {
+      if (alike(element.linear)) return turned(element.linear);
+    }
+  }
+  return motion;
+}
+
 // Copies that the groups around take to one another stand where those take them; between others the motion takes what
 // keeps the one to what keeps the other.
 std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
@@ -91,6 +111,7 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
       if (!symmetry_of_instance(known, inverse(due) * motion)) motion = due;
       continue;
     }
+    motion = with_told_directions(known, motion);
     struct Pair {
       Motion there, here;
     };
