@@ -14,7 +14,7 @@ namespace orbifit {
 
 // What writing and reading a subspace share (docs/basis-format.md).
 
-inline constexpr SectionFormat kBasisFormat{"ORBIFITB", 1, "a basis"};
+inline constexpr SectionFormat kBasisFormat{"ORBIFITB", 2, "a basis"};
 inline constexpr std::size_t kBasisSections = 7;
 
 using MotionRows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;

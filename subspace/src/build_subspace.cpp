@@ -125,6 +125,7 @@ void add_atoms(const Subspace& subspace, CarriedBasis& basis) {
     const int region = atom.sample >= 0 ? innermost_region(*subspace.regions, set) : atom.place;
     if (region >= 0) rotation = basis.rotations[static_cast<std::size_t>(region)];
     const auto word = static_cast<std::size_t>(atom.word);
+    basis.atom_positions.push_back(map.position);
     basis.atom_rotations.push_back(basis.transports.words[word].frame.transpose() * rotation *
                                    basis.transports.rest_words[word].frame);
   }
@@ -202,8 +203,8 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   if (options.mode == GroupMode::moving)
     subspace.orbits.offsets = follower_offsets(mesh, *subspace.regions, subspace.orbits, *words);
   subspace.basis = basis_without_atoms(subspace, {});
-  subspace.lift = orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits,
-                             {averaged, options.mode == GroupMode::moving}, context);
+  subspace.lift =
+      orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits, averaged, context);
   add_atoms(subspace, subspace.basis);
   context.progress("lift", 1);
   return subspace;

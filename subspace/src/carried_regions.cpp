@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kFree = 1e-7;
 constexpr double kNear = 1e-5;    // of the diagonal
-constexpr double kAgree = 1e-11;  // of the diagonal
+constexpr double kAgree = 1e-12;  // of the diagonal
 
 }  // namespace
 

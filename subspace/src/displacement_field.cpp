@@ -11,7 +11,6 @@
 
 #include "orbifit/model/vertex_grid.h"
 #include "orbifit/model/vertex_sets.h"
-#include "orbifit/subspace/carried_regions.h"
 
 #include "plain_lift.h"
 
@@ -49,21 +48,20 @@ class FieldEvaluator {
     if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) add_new_words();
     const Vector3d start = orbit.points.front().position;
     Vector3d u = Vector3d::Zero();
-    Vector3d middle = Vector3d::Zero();
-    Matrix3d blend = Matrix3d::Zero();
     for (const OrbitPoint& place : orbit.points) {
       plain_.terms(place.position, place.set, scratch_);
       for (const LiftTerm& term : scratch_.terms) {
         const Seen& seen = look(term, place.word);
         const double weight = term.weight / static_cast<double>(orbit.points.size());
         u += weight * seen.displacement;
-        middle += weight * seen.position;
-        blend += weight * seen.rotation;
+        if (basis_.rotations.empty()) continue;
+        Vector3d arm = -seen.position;
+        if (is_position(static_cast<LiftAtom::Kind>(term.kind))) arm += start;
+        u += weight * (seen.rotation * arm - arm);
       }
     }
     Vector3d around = Vector3d::Zero();  // how what lies between the point and the one it is snapped to turns along
     if (!basis_.rotations.empty()) {
-      u += blended_rotation(blend) * (start - middle) - (start - middle);
       const int region = innermost_region(*subspace_.regions, set);
       const Vector3d offset = point - (orbit.turned_by < 0 ? start : orbit.turn(start));
       if (region >= 0) around = basis_.rotations[static_cast<std::size_t>(region)] * offset - offset;

@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 constexpr double kHoldCoordinates = 1e-10;  // of the mean of the diagonal, on coordinates
 constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of the largest
 constexpr double kMostTurn = 0.35;          // radians in one iteration
-constexpr double kConflict = 1e-9;          // of the diagonal
+constexpr double kConflict = 1e-12;         // of the diagonal
 
 // The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset.
 class SampleEnergy {

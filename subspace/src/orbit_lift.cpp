@@ -70,7 +70,6 @@ class AtomTable {
   const Eigen::VectorXd& carriers() const { return fingerprint_.carriers; }
 
   const std::vector<LiftAtom>& atoms() const { return atoms_; }
-  const std::vector<Vector3d>& positions() const { return positions_; }
   std::vector<LiftAtom> take() { return std::move(atoms_); }
 
  private:
@@ -223,19 +222,18 @@ struct RawTerm {
 }  // namespace
 
 OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
-                     const SymmetricBasis& basis, const VertexOrbits& vertices, const OrbitLiftOptions& options,
+                     const SymmetricBasis& basis, const VertexOrbits& vertices, bool averaged,
                      const RunContext& context) {
-  const PlainLift plain(sampling, regions, options.averaged);
-  if (options.averaged) regions.prepare();
+  const PlainLift plain(sampling, regions, averaged);
+  if (averaged) regions.prepare();
   const PlacesBefore places(regions, words);
   AtomTable table(sampling, regions, words, basis);
   std::vector<int> stood_for(vertices.point_words.size(), 1);
-  if (options.averaged) stood_for = points_stood_for(sampling, regions, words, table.carriers(), vertices);
+  if (averaged) stood_for = points_stood_for(sampling, regions, words, table.carriers(), vertices);
   OrbitLift lift;
   const auto count = static_cast<std::size_t>(vertices.representatives());
   lift.first.reserve(count / OrbitLift::kLanes + 2);
   lift.first.push_back(0);
-  if (options.moving) lift.rest.resize(static_cast<Eigen::Index>(count), 3);
 
   // In blocks: terms on all threads, atoms numbered in order on one, so that the numbers never depend on the threads.
   constexpr std::size_t kBlock = 16384;
@@ -282,11 +280,6 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
       quantise(row, table.atoms());
       block[(begin + i) % OrbitLift::kLanes] = row;
       if ((begin + i + 1) % OrbitLift::kLanes == 0 || begin + i + 1 == count) append_block(block, lift);
-      if (!options.moving) continue;
-      Vector3d middle = Vector3d::Zero();
-      for (const auto& [atom, weight] : row) middle += weight * table.positions()[static_cast<std::size_t>(atom)];
-      const auto r = static_cast<Eigen::Index>(begin + i);
-      lift.rest.row(r) = vertices.positions.row(r) - middle.transpose();
     }
   }
   lift.atoms = table.take();

@@ -15,11 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-Points get_points(SectionReader& section, const char* field, std::size_t count) {
-  const std::vector<double> numbers = section.array<double>(field, 3 * count);
-  return Eigen::Map<const Points>(numbers.data(), static_cast<Eigen::Index>(count), 3);
-}
-
 Eigen::VectorXd get_vector(SectionReader& section, const char* field, std::size_t count) {
   const std::vector<double> numbers = section.array<double>(field, count);
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(count));
@@ -225,7 +220,6 @@ void get_lift(SectionReader section, const Subspace& subspace, OrbitLift& lift) 
   lift.first = section.starts<std::int64_t>("first entries", blocks, lift.atom.size());
   lift.weight = section.array<float>("weights", OrbitLift::kLanes * lift.atom.size());
   lift.used = section.integer("weights used", 0);
-  lift.rest = get_points(section, "rest", subspace.mode == GroupMode::moving ? representatives : 0);
   section.end();
 }
 

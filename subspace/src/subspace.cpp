@@ -42,14 +42,16 @@ void bind(const Binding& binding, const Vector3d& position, const Eigen::VectorX
   u = bound;
 }
 
-// The part of the lift that turns with the regions (method notes 2.2): (R - 1) (p - sum of w x), R blended.
+// The part of the lift that turns with the regions (method notes 2.2): the sum of w (R - 1) (p - x), each atom turning
+// the point about itself. Linear in each, so that it does not matter by which of several words an atom is seen.
 void add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, int representative, Vector3d& u) {
-  Matrix3d blend = Matrix3d::Zero();
+  const Vector3d start = subspace.orbits.positions.row(representative).transpose();
   subspace.lift.visit(representative, [&](int atom, double weight) {
-    blend += weight * basis.atom_rotations[static_cast<std::size_t>(atom)];
+    const auto a = static_cast<std::size_t>(atom);
+    Vector3d arm = -basis.atom_positions[a];
+    if (is_position(subspace.lift.atoms[a].kind)) arm += start;
+    u += weight * (basis.atom_rotations[a] * arm - arm);
   });
-  const Vector3d rest = subspace.lift.rest.row(representative).transpose();
-  u += blended_rotation(blend) * rest - rest;
 }
 
 // Everything that one lift needs of the state.

@@ -12,6 +12,22 @@ namespace orbifit {
 
 namespace {
 
+// Of many points the first, and those that stand out most from it, from the line through both, and from the plane
+// through the three: what is affine in the position and holds there holds at all of them.
+std::vector<Eigen::Vector3d> spanning_points(const std::vector<Eigen::Vector3d>& points, double tolerance) {
+  std::vector<Eigen::Vector3d> result{points.front()};
+  Eigen::Matrix3d across = Eigen::Matrix3d::Identity();  // takes away the directions that are spanned
+  while (result.size() < 4) {
+    const auto height = [&](const Eigen::Vector3d& point) { return (across * (point - points.front())).norm(); };
+    const auto farthest = std::ranges::max_element(points, {}, height);
+    if (!(height(*farthest) > tolerance)) break;
+    const Eigen::Vector3d direction = (across * (*farthest - points.front())).normalized();
+    across -= direction * direction.transpose() * across;
+    result.push_back(*farthest);
+  }
+  return result;
+}
+
 // Representatives next to one another share samples, which makes the lift's lists short.
 VertexOrbits in_space_order(VertexOrbits orbits) {
   const auto count = static_cast<std::size_t>(orbits.representatives());
@@ -68,6 +84,7 @@ class OrbitBuilder {
       if (v % 4096 == 0) context.progress("vertex orbits", double(v) / double(sets_.size()));
       if (result_.followers[v].representative < 0) add_orbit(static_cast<int>(v));
     }
+    add_bound_points();
     result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
     result_.positions.resize(static_cast<Eigen::Index>(positions_.size()), 3);
     for (std::size_t i = 0; i < positions_.size(); ++i)
@@ -145,8 +162,22 @@ class OrbitBuilder {
     std::ranges::sort(pairs);
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     const auto [entry, added] = bindings_.try_emplace(pairs, static_cast<int>(result_.bindings.size()));
-    if (added) result_.bindings.push_back({orbit.points.front().position, pairs});
+    if (added) {
+      result_.bindings.push_back({orbit.points.front().position, pairs});
+      bound_points_.emplace_back();
+    }
+    bound_points_[static_cast<std::size_t>(entry->second)].push_back(orbit.points.front().position);
     return entry->second;
+  }
+
+  // Groups that turn ask something else of each point; what they ask is affine in its position.
+  void add_bound_points() {
+    for (std::size_t i = 0; i < bound_points_.size(); ++i) {
+      const std::vector<Eigen::Vector3d> points = spanning_points(bound_points_[i], closure_.doublet);
+      for (std::size_t k = 1; k < points.size(); ++k) {
+        result_.bindings.push_back({points[k], result_.bindings[i].words});
+      }
+    }
   }
 
   const Mesh& mesh_;
@@ -162,6 +193,7 @@ class OrbitBuilder {
   std::vector<int> turn_of_vertex_;
   std::vector<Eigen::Vector3d> positions_;
   std::map<std::vector<WordPair>, int> bindings_;
+  std::vector<std::vector<Eigen::Vector3d>> bound_points_;  // of each binding
 };
 
 }  // namespace

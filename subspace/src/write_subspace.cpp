@@ -129,7 +129,7 @@ void put_orbits(SectionWriter& file, const VertexOrbits& orbits) {
 }
 
 void put_lift(SectionWriter& file, const OrbitLift& lift) {
-  const auto& [atoms, first, atom, weight, used, rest] = lift;
+  const auto& [atoms, first, atom, weight, used] = lift;
   file.begin("lift");
   put_each(file, atoms, [](const auto& one) { return one.sample; });
   put_each(file, atoms, [](const auto& one) { return one.word; });
@@ -139,7 +139,6 @@ void put_lift(SectionWriter& file, const OrbitLift& lift) {
   file.array(first);
   file.array(weight);
   file.integer(used);
-  put_points(file, rest);
 }
 
 void put_basis(SectionWriter& file, const SymmetricBasis& basis) {

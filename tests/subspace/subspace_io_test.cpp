@@ -255,8 +255,8 @@ TEST_F(RefusedBasis, OfAnotherFormatOrVersion) {
   EXPECT_NE(refusal("ply\nformat ascii 1.0\n").find("is not a basis"), std::string::npos);
   EXPECT_NE(refusal("").find("is empty"), std::string::npos);
   std::string newer = content_;
-  newer[8] = 2;
-  EXPECT_NE(refusal(newer).find("version: is 2; this program reads version 1"), std::string::npos) << refusal(newer);
+  newer[8] = 3;
+  EXPECT_NE(refusal(newer).find("version: is 3; this program reads version 2"), std::string::npos) << refusal(newer);
   EXPECT_THROW(read_subspace(folder_.file("none.basis"), model_.mesh, model_.truth, RunContext{}), InputError);
 }
 

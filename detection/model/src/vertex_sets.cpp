@@ -148,6 +148,18 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& doma
     queued[static_cast<std::size_t>(root)] = 1;
     queue.push_back(root);
   };
+  // Where a place has one point alone at a position, that is meant, whichever way the surface faces there.
+  const auto lone_point = [&](const Eigen::Vector3d& position, int place) {
+    constexpr int kNone = -1;
+    constexpr int kSeveral = -2;
+    int found = kNone;
+    grid.visit(position, [&](int other) {
+      const int root = points.root[static_cast<std::size_t>(other)];
+      if (found == root || !domains.holds(set_of(other), place)) return;
+      found = found == kNone ? root : kSeveral;
+    });
+    return found >= 0;
+  };
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const int vertex = queue[head];
     queued[static_cast<std::size_t>(vertex)] = 0;
@@ -155,23 +167,26 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& doma
     const Eigen::Vector3d normal = normals.row(vertex).transpose();
     const std::vector<int> places = domains.set_places(set_of(vertex));
     for (const int place : places) {
+      const bool alone_here = lone_point(position, place);
       for (int element = 0; element < static_cast<int>(domains.elements(place).size()); ++element) {
+        const int arrival = domains.arrival(place, element);
         const int carried = domains.carried_set(set_of(vertex), place, element);
         const Motion& motion = domains.elements(place)[static_cast<std::size_t>(element)];
         const Eigen::Vector3d image = motion(position);
         const Eigen::Vector3d turned = motion.linear * normal;
         bool same = false;
         std::vector<int> met;
+        const bool alone = alone_here && lone_point(image, arrival);
         grid.visit(image, [&](int other) {
           same = same || set_of(other) == carried;
-          const bool faces_alike = turned.dot(normals.row(other).transpose()) > kSameSide;
-          if (faces_alike && domains.comparable(set_of(other), carried)) met.push_back(other);
+          const bool meant =
+              alone ? domains.holds(set_of(other), arrival) : turned.dot(normals.row(other).transpose()) > kSameSide;
+          if (meant && domains.comparable(set_of(other), carried)) met.push_back(other);
         });
         if (same) continue;
         for (const int other : met) {
           join(other, carried);
           // The two are images of one another, also where the other's image has more vertices than this one.
-          const int arrival = domains.arrival(place, element);
           join(vertex, domains.carried_set(set_of(other), arrival, domains.inverse_element(place, element)));
         }
       }

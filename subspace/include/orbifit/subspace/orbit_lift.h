@@ -24,6 +24,11 @@ struct LiftAtom {
   int place = -1;
 };
 
+/// Whether an atom of the kind is a position, and not an offset from an axis.
+inline bool is_position(LiftAtom::Kind kind) {
+  return kind == LiftAtom::Kind::full || kind == LiftAtom::Kind::centre;
+}
+
 /// The lift from samples to vertices, averaged over orbits (method notes 2.1):
 ///     u(p) = 1/N sum over (p_k, O_k) in orbit(p) of O_k^T u_plain(p_k),
 /// so exact in every region, partial, nested and overlapping ones too. Baked for one vertex an orbit, as scalar weights
@@ -38,7 +43,6 @@ struct OrbitLift {
   std::vector<std::uint16_t> atom;  ///< of each entry
   std::vector<float> weight;  ///< kLanes of each entry: multiples of 2^-24, on full atoms and centres summing to 1
   std::int64_t used = 0;      ///< weights that are not zero
-  Points rest;                ///< #R by 3 when groups may be turned: position less the weighted atoms' positions
 
   std::size_t bytes() const { return weight.size() * sizeof(float) + atom.size() * sizeof(std::uint16_t); }
 
@@ -55,15 +59,10 @@ struct OrbitLift {
   }
 };
 
-struct OrbitLiftOptions {
-  bool averaged = true;  ///< false: the paper's plain lift
-  bool moving = false;   ///< keep what turned groups need (`rest`)
-};
-
-/// O(vertices * samples within reach).
+/// O(vertices * samples within reach). \param averaged  false: the paper's plain lift
 /// \throw InputError when more than 65 536 atoms are needed
 OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
-                     const SymmetricBasis& basis, const VertexOrbits& vertices, const OrbitLiftOptions& options,
+                     const SymmetricBasis& basis, const VertexOrbits& vertices, bool averaged,
                      const RunContext& context);
 
 /// An atom's displacement as a function of its orbit's seed and the carriers. `frame` need not be orthogonal.

@@ -56,6 +56,7 @@ struct CarriedBasis : SymmetricBasis {
   Eigen::SparseMatrix<double, Eigen::RowMajor> atoms;  ///< 3#A by DoF: the atoms' displacements
   Eigen::VectorXd atom_offset;                         ///< 3#A
   std::vector<Eigen::Matrix3d> atom_rotations;         ///< #A where turned: of the region around each atom
+  std::vector<Eigen::Vector3d> atom_positions;         ///< #A where turned: at rest; of some kinds about the axis
   std::vector<Binding> bindings;                       ///< of the vertex orbits
 };
 

@@ -29,9 +29,9 @@ struct VertexOrbits {
   };
   std::vector<Turn> turns;  ///< of vertices on circles or spheres, from their canonical places
 
-  Points positions;        ///< #R by 3, canonical places of the representatives
-  std::vector<int> bound;  ///< #R: number of the representative's binding, -1: free
-  std::vector<BoundPoint> bindings;
+  Points positions;                       ///< #R by 3, canonical places of the representatives
+  std::vector<int> bound;                 ///< #R: number of the representative's binding, -1: free
+  std::vector<BoundPoint> bindings;       ///< those in use, then the same words at further points
   std::vector<std::int64_t> first_point;  ///< of each orbit in the lists below, and their length at the end
   std::vector<int> point_words;           ///< from the canonical place; the first of each orbit is the identity
   std::vector<int> point_sets;            ///< places that hold the point
