@@ -36,10 +36,10 @@
 #include "orbifit/detection/symmetry_lines.h"
 #include "orbifit/detection/verification.h"
 #include "orbifit/detection/wider_subgroups.h"
-#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 
 #include "cut_discs.h"
+#include "kept_consistent.h"
 #include "looser_groups.h"
 #include "partial_rows.h"
 #include "region_patterns.h"
@@ -449,35 +449,6 @@ std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, double noise, c
   return coarse;
 }
 
-// What every subspace can keep, largest regions first.
-SymmetryAnnotation consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
-                              const RunContext& context) {
-  ConsistentAnnotation result = consistent_annotation(mesh, found, context);
-  if (explanation != nullptr) {
-    for (const LeftOut& left_out : result.left_out) {
-      explanation->notes.push_back({"consistency", left_out.group + " on " + left_out.name, false, left_out.reason});
-    }
-  }
-  if (!result.left_out.empty()) {
-    const std::size_t count = result.left_out.size();
-    context.message("left out " + std::to_string(count) +
-                    (count == 1 ? " region or pattern" : " regions and patterns") +
-                    " that cannot be kept exactly beside larger ones (--explain says which and why)");
-  }
-  SymmetryAnnotation& annotation = result.annotation;
-  const Eigen::VectorXd areas = face_areas(mesh);
-  const auto area = [&](const Region& region) {
-    double sum = 0;
-    for (const int face : region.faces) sum += areas[face];
-    return sum;
-  };
-  std::ranges::stable_sort(annotation.regions, std::greater<>(), area);
-  for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
-  for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
-  set_parents(annotation.regions);
-  return std::move(annotation);
-}
-
 }  // namespace
 
 void DetectOptions::validate() const {
@@ -532,7 +503,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
-  annotation = consistent(mesh, annotation, options.explanation, context);
+  annotation = kept_consistent(mesh, annotation, options.explanation, context);
   context.progress("regions", 1);
   return annotation;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -17,6 +16,8 @@
 #include "orbifit/detection/surface_patch.h"
 #include "orbifit/detection/verification.h"
 #include "orbifit/model/point_index.h"
+
+#include "kept_consistent.h"
 
 namespace orbifit {
 
@@ -95,9 +96,9 @@ class PointDetector {
       find_in(parts[c], parts.size() == 1 ? "whole" : "cluster " + std::to_string(c), kLeastShare, kMostRevolutions);
       context_.progress("clusters", static_cast<double>(c + 1) / static_cast<double>(parts.size()));
     }
-    std::ranges::stable_sort(annotation_.regions, std::greater<>(), [](const Region& r) { return r.faces.size(); });
-    for (std::size_t i = 0; i < annotation_.regions.size(); ++i) annotation_.regions[i].id = static_cast<int>(i);
-    set_parents(annotation_.regions);
+    annotation_ =
+        kept_consistent(surfels(surface_, kCovering * surface_.spacing), annotation_, options_.explanation, context_);
+    for (Region& region : annotation_.regions) region.faces = scan_points(surface_, region.faces);
     context_.progress("clusters", 1);
     return annotation_;
   }
@@ -138,8 +139,8 @@ class PointDetector {
 
   void add(const GroupPlacement& placement, const SurfacePatch& patch, const std::vector<int>& points,
            const std::string& name) {
-    Region region = make_region(placement.group, prepared_.input_of_normalised(placement.centre), placement.frame,
-                                scan_points(surface_, points), name);
+    Region region =
+        make_region(placement.group, prepared_.input_of_normalised(placement.centre), placement.frame, points, name);
     region.residual =
         measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context_);
     annotation_.regions.push_back(std::move(region));
@@ -169,7 +170,7 @@ class PointDetector {
                std::to_string(static_cast<int>(found.arc * 57.3)) + " degrees seen");
       const std::string title = name + ", turned part" + (k == 0 ? "" : " " + std::to_string(k + 1));
       Region region = make_region(*PointGroup::parse("Cinfv"), surface_.input_of_normalised(found.axis.point),
-                                  frame_about(found.axis.direction), scan_points(surface_, found.points), title);
+                                  frame_about(found.axis.direction), found.points, title);
       region.residual = {found.rms, tolerance_};
       annotation_.regions.push_back(std::move(region));
       std::vector<int> left;
@@ -190,7 +191,7 @@ class PointDetector {
   std::shared_ptr<const SurfaceIndex> covering_;  // of large ones, which leave no holes: what images are compared with
   std::vector<char> crease_;
   DirectionSet screen_;
-  SymmetryAnnotation annotation_;
+  SymmetryAnnotation annotation_;        // of kept points, each a surfel
   std::vector<std::vector<int>> found_;  // kept points of turned regions, ascending
 };
 
