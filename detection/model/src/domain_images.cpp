@@ -11,7 +11,38 @@ namespace orbifit {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kSamePiece = 0.0125;  // of the diagonal: 2.5 usual tolerances, as consistency's `reach`
 constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
+
+// Places that have no image yet, and those that are no image.
+struct Unpaired {
+  std::vector<int> from, to;
+};
+
+// One for each of those that are less than infinitely far apart, nearest pairs first.
+template <class Distance>
+void pair_nearest(Unpaired& open, std::vector<std::pair<int, int>>& pairs, const Distance& distance) {
+  struct Candidate {
+    double off;
+    int from, to;
+  };
+  std::vector<Candidate> candidates;
+  for (const int p : open.from) {
+    for (const int q : open.to) {
+      const double off = distance(p, q);
+      if (off < kFar) candidates.push_back({off, p, q});
+    }
+  }
+  std::ranges::stable_sort(candidates, {}, &Candidate::off);
+  for (const Candidate& pair : candidates) {
+    const auto from = std::ranges::find(open.from, pair.from);
+    const auto to = std::ranges::find(open.to, pair.to);
+    if (from == open.from.end() || to == open.to.end()) continue;
+    pairs.emplace_back(pair.from, pair.to);
+    open.from.erase(from);
+    open.to.erase(to);
+  }
+}
 
 bool is_identity(const Motion& motion) {
   return motion.linear.isIdentity(0) && motion.translation.isZero(0);
@@ -19,15 +50,30 @@ bool is_identity(const Motion& motion) {
 
 }  // namespace
 
-// Of the faces that both places hold; of all of the second where they merely touch.
-PieceMoments DomainMap::common_moments(int a, int b) const {
+PieceMoments DomainMap::common_faces(int a, int b) const {
   PieceMoments result;
   for (std::size_t set = 0; set < moments_.size(); ++set) {
     if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
   }
+  return result;
+}
+
+// Of the faces that both places hold; of all of the second where they merely touch.
+PieceMoments DomainMap::common_moments(int a, int b) const {
+  PieceMoments result = common_faces(a, b);
   if (result.area > 0) return result;
   for (std::size_t set = 0; set < moments_.size(); ++set) {
     if (holds(static_cast<int>(set), b)) result += moments_[set];
+  }
+  return result;
+}
+
+// Of the faces that both places hold; where they merely touch, of the vertices that both have.
+PieceMoments DomainMap::common_piece(int a, int b) const {
+  PieceMoments result = common_faces(a, b);
+  if (result.area > 0) return result;
+  for (const auto& [set, moments] : point_moments_) {
+    if (holds(set, a) && holds(set, b)) result += moments;
   }
   return result;
 }
@@ -64,63 +110,37 @@ bool DomainMap::group_goes_to(int from, const Motion& motion, int to) const {
   });
 }
 
+// Where a motion takes the places that meet its own: first to those of which it takes the group to the group, wherever
+// they are; then to those of which it takes the common piece to the common piece.
 DomainMap::Images DomainMap::find_images(int place, int element) const {
   Images result;
   const int arrival = this->arrival(place, element);
   const Motion& motion = at(place).motions[static_cast<std::size_t>(element)];
   const std::vector<int>& here = meeting_[static_cast<std::size_t>(place)];
-  const std::vector<int>& there = meeting_[static_cast<std::size_t>(arrival)];
   if (is_identity(motion)) {
     for (const int p : here) result.pairs.emplace_back(p, p);
     return result;
   }
   const Motion told = told_from_origin(motion);
-  std::vector<PieceMoments> common;
-  common.reserve(there.size());
-  std::vector<int> candidates;
-  for (const int q : there) common.push_back(common_moments(arrival, q));
+  Unpaired open{{}, meeting_[static_cast<std::size_t>(arrival)]};
   for (const int p : here) {
     // A place all around, or the place itself, stays.
-    if (p == place || (std::ranges::binary_search(there, p) && around(p, place) && around(p, arrival))) {
+    if (p == place || (std::ranges::binary_search(open.to, p) && around(p, place) && around(p, arrival))) {
       result.pairs.emplace_back(p, p == place ? arrival : p);
-      continue;
-    }
-    candidates.push_back(p);
-  }
-  // One for each of those whose group is the image of its group, nearest pairs first; instances of patterns have no
-  // group.
-  Eigen::MatrixXd off = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(candidates.size()),
-                                                  static_cast<Eigen::Index>(there.size()), kFar);
-  for (Eigen::Index i = 0; i < off.rows(); ++i) {
-    const int p = candidates[static_cast<std::size_t>(i)];
-    const PieceMoments piece = common_moments(place, p);
-    for (Eigen::Index k = 0; k < off.cols(); ++k) {
-      const int q = there[static_cast<std::size_t>(k)];
-      if ((p < count()) != (q < count()) || (p < count() && !group_goes_to(p, motion, q))) continue;
-      off(i, k) = separation(piece, told, common[static_cast<std::size_t>(k)], size_);
+    } else {
+      open.from.push_back(p);
     }
   }
-  struct Pair {
-    double off;
-    Eigen::Index from, to;
-  };
-  std::vector<Pair> pairs;
-  for (Eigen::Index i = 0; i < off.rows(); ++i) {
-    for (Eigen::Index k = 0; k < off.cols(); ++k) {
-      if (off(i, k) < kFar) pairs.push_back({off(i, k), i, k});
-    }
-  }
-  std::ranges::stable_sort(pairs, {}, &Pair::off);
-  std::vector<char> gone(candidates.size(), 0);
-  std::vector<char> come(there.size(), 0);
-  for (const Pair& pair : pairs) {
-    char& from = gone[static_cast<std::size_t>(pair.from)];
-    char& to = come[static_cast<std::size_t>(pair.to)];
-    if (from != 0 || to != 0) continue;
-    from = to = 1;
-    result.pairs.emplace_back(candidates[static_cast<std::size_t>(pair.from)],
-                              there[static_cast<std::size_t>(pair.to)]);
-  }
+  const auto same_kind = [&](int p, int q) { return (p < count()) == (q < count()); };
+  pair_nearest(open, result.pairs, [&](int p, int q) {  // instances of patterns have no group
+    if (!same_kind(p, q) || (p < count() && !group_goes_to(p, motion, q))) return kFar;
+    return separation(common_moments(place, p), told, common_moments(arrival, q), size_);
+  });
+  pair_nearest(open, result.pairs, [&](int p, int q) {
+    if (!same_kind(p, q)) return kFar;
+    const double off = separation(common_piece(place, p), told, common_piece(arrival, q), size_);
+    return off <= kSamePiece ? off : kFar;
+  });
   std::ranges::sort(result.pairs);
   return result;
 }

@@ -21,6 +21,7 @@ using Family = PointGroup::Family;
 constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
 constexpr double kOnAxis = 1e-12;   // of a point's offset
 constexpr int kMostFold = 120;
+constexpr double kPoint = 1e-4;  // of the diagonal: side of the square that a vertex counts as
 
 // One element of each component of a continuous group; mirrors contain the reference direction.
 std::vector<Motion> components(const PointGroup& group, const Continuum& continuum) {
@@ -108,6 +109,13 @@ void DomainMap::find_sets(const Mesh& mesh) {
 void DomainMap::find_meeting(const Mesh& mesh) {
   meeting_.resize(places_.size());
   std::vector<int> sets = sets_of_vertices(mesh, *this);
+  std::map<int, PieceMoments> points;
+  for (std::size_t v = 0; v < sets.size(); ++v) {
+    const Eigen::Vector3d place = mesh.vertices.row(static_cast<Eigen::Index>(v)).transpose() - origin_;
+    const double weight = kPoint * kPoint * size_ * size_;
+    points[sets[v]] += {weight, weight * place, weight * place * place.transpose()};
+  }
+  point_moments_.assign(points.begin(), points.end());
   sets.insert(sets.end(), set_of_face_.begin(), set_of_face_.end());
   std::ranges::sort(sets);
   sets.erase(std::unique(sets.begin(), sets.end()), sets.end());

@@ -132,6 +132,8 @@ class DomainMap {
   bool group_goes_to(int from, const Motion& motion, int to) const;
   int intern(const std::vector<int>& places) const;
   PieceMoments common_moments(int a, int b) const;
+  PieceMoments common_piece(int a, int b) const;
+  PieceMoments common_faces(int a, int b) const;
   bool around(int outer, int inner) const;  // whether outer holds all faces of inner
   Motion told_from_origin(const Motion& motion) const;
   Images find_images(int place, int element) const;
@@ -150,9 +152,10 @@ class DomainMap {
   mutable std::map<std::vector<int>, int> number_of_set_;
   mutable std::vector<const std::vector<int>*> sets_;
   mutable std::unordered_map<std::uint64_t, int> with_;
-  std::vector<std::vector<int>> meeting_;             // of each place, the places that share faces with it
-  std::vector<PieceMoments> moments_;                 // of the faces of each set
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // of the moments
+  std::vector<std::vector<int>> meeting_;                    // of each place, the places that share faces with it
+  std::vector<PieceMoments> moments_;                        // of the faces of each set
+  std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();         // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };
 

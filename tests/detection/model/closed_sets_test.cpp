@@ -1,0 +1,121 @@
+#include "closed_sets.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/model/point_group.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kCells = 8;  // along x and along y
+
+// A square plate from -1 to 1 of kCells by kCells squares, with a ridge along y so that no mirror is one of height.
+Mesh plate() {
+  Mesh mesh;
+  mesh.vertices.resize((kCells + 1) * (kCells + 1), 3);
+  for (int i = 0; i <= kCells; ++i) {
+    for (int j = 0; j <= kCells; ++j) {
+      const double x = 2.0 * i / kCells - 1;
+      const double y = 2.0 * j / kCells - 1;
+      mesh.vertices.row(i * (kCells + 1) + j) << x, y, 0.3 * x * x;
+    }
+  }
+  mesh.faces.resize(2 * kCells * kCells, 3);
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const int corner = i * (kCells + 1) + j;
+      const int face = 2 * (i * kCells + j);
+      mesh.faces.row(face) << corner, corner + kCells + 1, corner + 1;
+      mesh.faces.row(face + 1) << corner + 1, corner + kCells + 1, corner + kCells + 2;
+    }
+  }
+  return mesh;
+}
+
+// The squares from (i0, j0) up to but without (i1, j1), mirrored in their middle's y.
+Region patch(int id, int i0, int j0, int i1, int j1) {
+  std::vector<int> faces;
+  for (int i = i0; i < i1; ++i) {
+    for (int j = j0; j < j1; ++j) {
+      faces.push_back(2 * (i * kCells + j));
+      faces.push_back(2 * (i * kCells + j) + 1);
+    }
+  }
+  const double middle = (j0 + j1) / double{kCells} - 1;
+  Region region = make_region(*PointGroup::parse("Cs"), Vector3d(0, middle, 0), frame_about(Vector3d::UnitY()), faces,
+                              "patch " + std::to_string(id));
+  region.id = id;
+  return region;
+}
+
+Disagreements of(const std::vector<Region>& regions) {
+  SymmetryAnnotation annotation;
+  annotation.regions = regions;
+  return disagreements(plate(), annotation, RunContext{});
+}
+
+void expect_only(const Disagreements& found, std::size_t a, std::size_t b) {
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.begin()->first, (std::pair{Claim{false, a}, Claim{false, b}}));
+}
+
+TEST(Disagreements, AreNoneOfRegionsThatAreApart) {
+  EXPECT_TRUE(of({patch(0, 0, 0, 3, 8), patch(1, 5, 0, 8, 4)}).empty());
+}
+
+TEST(Disagreements, AreNoneOfNestedOnesOfOneMirror) {
+  EXPECT_TRUE(of({patch(0, 0, 0, 8, 8), patch(1, 2, 2, 4, 6)}).empty());
+}
+
+// The mirror of the first takes the border of both to where the first is alone.
+TEST(Disagreements, AreOfWhatTouchesWithoutAnImage) {
+  expect_only(of({patch(0, 0, 0, 4, 8), patch(1, 4, 0, 8, 4)}), 0, 1);
+}
+
+TEST(Disagreements, AreNoneOfWhatTouchesAndHasAnImage) {
+  EXPECT_TRUE(of({patch(0, 0, 0, 4, 8), patch(1, 4, 1, 8, 3), patch(2, 4, 5, 8, 7)}).empty());
+}
+
+TEST(Disagreements, AreOfAChildWithoutAnImage) {
+  expect_only(of({patch(0, 0, 0, 8, 8), patch(1, 2, 1, 4, 3)}), 0, 1);
+}
+
+TEST(Disagreements, AreNoneOfChildrenThatAreImages) {
+  EXPECT_TRUE(of({patch(0, 0, 0, 8, 8), patch(1, 2, 1, 4, 3), patch(2, 2, 5, 4, 7)}).empty());
+}
+
+// A step takes the border of two copies to the end of the row.
+TEST(Disagreements, AreOfCopiesThatTouch) {
+  SymmetryAnnotation annotation;
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::congruent;
+  pattern.instances = {{Motion{}, patch(0, 0, 0, 3, 4).faces},
+                       {Motion{Eigen::Matrix3d::Identity(), Vector3d(0, 1, 0)}, patch(0, 0, 4, 3, 8).faces}};
+  annotation.patterns = {pattern};
+  const Disagreements found = disagreements(plate(), annotation, RunContext{});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.begin()->first, (std::pair{Claim{true, 0}, Claim{true, 0}}));
+}
+
+// Two copies of which one has a region within.
+TEST(Disagreements, AreOfAPatternAndWhatOneInstanceHolds) {
+  SymmetryAnnotation annotation;
+  annotation.regions = {patch(0, 0, 1, 2, 3)};
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::congruent;
+  pattern.instances = {{Motion{}, patch(0, 0, 0, 3, 3).faces},
+                       {Motion{Eigen::Matrix3d::Identity(), Vector3d(0, 1, 0)}, patch(0, 0, 4, 3, 7).faces}};
+  annotation.patterns = {pattern};
+  const Disagreements found = disagreements(plate(), annotation, RunContext{});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.begin()->first, (std::pair{Claim{false, 0}, Claim{true, 0}}));
+  annotation.regions.push_back(patch(1, 0, 5, 2, 7));
+  EXPECT_TRUE(disagreements(plate(), annotation, RunContext{}).empty());
+}
+
+}  // namespace
+}  // namespace orbifit
