@@ -12,7 +12,7 @@ struct Kernels {
   /// weight[8 e + lane] * atoms[4 atom[e] ...], written to result[4 (8 block + lane) ...], the fourth left alone.
   /// \param first of each block's entries
   /// \param atoms four doubles each, the last unused
-  void (*blocked_sums)(const std::int64_t* first, const std::uint16_t* atom, const float* weight, const double* atoms,
+  void (*blocked_sums)(const std::int64_t* first, const std::int32_t* atom, const float* weight, const double* atoms,
                        std::size_t begin, std::size_t end, double* result);
 
   /// For i in begin ... end - 1: result[3 i ...] = M source + shift, where follower[3 i] is the source's number and

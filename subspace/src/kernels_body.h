@@ -6,14 +6,14 @@ namespace {
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using FourFloats = float __attribute__((vector_size(16), aligned(4), may_alias));
 
-void blocked_sums(const std::int64_t* first, const std::uint16_t* atom, const float* weight, const double* atoms,
+void blocked_sums(const std::int64_t* first, const std::int32_t* atom, const float* weight, const double* atoms,
                   std::size_t begin, std::size_t end, double* result) {
   for (std::size_t block = begin; block < end; ++block) {
     Four x[2] = {};
     Four y[2] = {};
     Four z[2] = {};
     for (std::int64_t e = first[block]; e < first[block + 1]; ++e) {
-      const double* at = atoms + std::size_t{4} * atom[e];
+      const double* at = atoms + std::ptrdiff_t{4} * atom[e];
       const Four low = __builtin_convertvector(*reinterpret_cast<const FourFloats*>(weight + 8 * e), Four);
       const Four high = __builtin_convertvector(*reinterpret_cast<const FourFloats*>(weight + 8 * e + 4), Four);
       x[0] += at[0] * low;

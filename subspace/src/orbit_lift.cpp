@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -23,6 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double kQuantum = 1.0 / (1 << 24);
 constexpr double kSameAtom = 1e-7;
+constexpr double kSamePosition = 1e-3;  // of the radius
 
 using Row = std::vector<std::pair<int, double>>;
 
@@ -103,30 +105,49 @@ class AtomTable {
 
   int find_or_add(const LiftAtom& atom) {
     const Look seen = look(atom);
-    const auto [begin, end] = by_orbit_.equal_range(seen.orbit);
-    for (auto entry = begin; entry != end; ++entry) {
-      const auto other = static_cast<std::size_t>(entry->second);
-      if (relative(atoms_[other].kind) != relative(atom.kind)) continue;
-      if ((positions_[other] - seen.position).norm() < 1e-3 * sampling_.radius &&
-          (displacements_[other] - seen.displacement).norm() < kSameAtom) {
-        return entry->second;
+    const double same = kSamePosition * sampling_.radius;
+    int found = -1;
+    const auto consider = [&](int number) {
+      const auto other = static_cast<std::size_t>(number);
+      if (found >= 0 && number > found) return;
+      if (is_position(atoms_[other].kind) != is_position(atom.kind)) return;
+      if ((positions_[other] - seen.position).norm() >= same) return;
+      if ((displacements_[other] - seen.displacement).norm() < kSameAtom) found = number;
+    };
+    const Vector3d low = cell_of(seen.position.array() - same);
+    const Vector3d high = cell_of(seen.position.array() + same);
+    for (double x = low[0]; x <= high[0]; ++x) {
+      for (double y = low[1]; y <= high[1]; ++y) {
+        for (double z = low[2]; z <= high[2]; ++z) {
+          const auto [begin, end] = by_cell_.equal_range(key_of(seen.orbit, {x, y, z}));
+          for (auto entry = begin; entry != end; ++entry) consider(entry->second);
+        }
       }
     }
-    return add(atom);
+    return found >= 0 ? found : add(atom);
   }
 
-  static bool relative(LiftAtom::Kind kind) { return kind == LiftAtom::Kind::axial || kind == LiftAtom::Kind::across; }
+  Vector3d cell_of(const Vector3d& position) const {
+    constexpr double kWidth = 0.1;  // of the radius: many times what makes atoms one, so that mostly one cell is asked
+    return (position / (kWidth * sampling_.radius)).array().floor();
+  }
+
+  static std::uint64_t key_of(int orbit, const Vector3d& cell) {
+    auto key = static_cast<std::uint64_t>(orbit);
+    for (int k = 0; k < 3; ++k) {
+      key = (key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[k]))) * 0x9e3779b97f4a7c15ULL;
+      key ^= key >> 31U;
+    }
+    return key;
+  }
 
   int add(const LiftAtom& atom) {
     const Look seen = look(atom);
     const int number = static_cast<int>(atoms_.size());
-    if (number > std::numeric_limits<std::uint16_t>::max()) {
-      throw InputError("", "lift", "more than 65536 parts are needed; take a larger radius");
-    }
     atoms_.push_back(atom);
     positions_.push_back(seen.position);
     displacements_.push_back(seen.displacement);
-    by_orbit_.emplace(seen.orbit, number);
+    by_cell_.emplace(key_of(seen.orbit, cell_of(seen.position)), number);
     return number;
   }
 
@@ -137,7 +158,7 @@ class AtomTable {
   CarriedTransports transports_;
   std::vector<LiftAtom> atoms_;
   std::vector<Vector3d> positions_, displacements_;
-  std::unordered_multimap<int, int> by_orbit_;
+  std::unordered_multimap<std::uint64_t, int> by_cell_;
   std::vector<std::vector<int>> pulled_;
   std::map<std::array<int, 4>, int> pulled_parts_;
 };
@@ -168,7 +189,7 @@ void append_block(Block& block, OrbitLift& lift) {
   std::ranges::sort(atoms);
   atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
   const std::size_t start = lift.atom.size();
-  for (const int atom : atoms) lift.atom.push_back(static_cast<std::uint16_t>(atom));
+  lift.atom.insert(lift.atom.end(), atoms.begin(), atoms.end());
   lift.weight.resize(OrbitLift::kLanes * lift.atom.size(), 0.0F);
   for (std::size_t lane = 0; lane < block.size(); ++lane) {
     std::size_t at = 0;

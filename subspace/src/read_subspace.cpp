@@ -211,9 +211,10 @@ void get_lift(SectionReader section, const Subspace& subspace, OrbitLift& lift) 
     }
     lift.atoms.push_back({sample[a], words[a], kind, places[a]});
   }
-  lift.atom = section.array<std::uint16_t>("atoms of entries");
-  for (const std::uint16_t atom : lift.atom) {
-    if (atom >= atoms) section.refuse("atoms of entries", "holds " + std::to_string(atom) + ", which is no atom");
+  lift.atom = section.array<std::int32_t>("atoms of entries");
+  for (const std::int32_t atom : lift.atom) {
+    if (atom < 0 || size_of(atom) >= atoms)
+      section.refuse("atoms of entries", "holds " + std::to_string(atom) + ", which is no atom");
   }
   const auto representatives = size_of(subspace.orbits.representatives());
   const std::size_t blocks = (representatives + OrbitLift::kLanes - 1) / OrbitLift::kLanes;

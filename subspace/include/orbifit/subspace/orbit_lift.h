@@ -40,11 +40,11 @@ struct OrbitLift {
   static constexpr int kLanes = 8;
   std::vector<LiftAtom> atoms;
   std::vector<std::int64_t> first;  ///< of each block's entries, and their number at the end
-  std::vector<std::uint16_t> atom;  ///< of each entry
+  std::vector<std::int32_t> atom;  ///< of each entry
   std::vector<float> weight;  ///< kLanes of each entry: multiples of 2^-24, on full atoms and centres summing to 1
   std::int64_t used = 0;      ///< weights that are not zero
 
-  std::size_t bytes() const { return weight.size() * sizeof(float) + atom.size() * sizeof(std::uint16_t); }
+  std::size_t bytes() const { return weight.size() * sizeof(float) + atom.size() * sizeof(std::int32_t); }
 
   /// Calls visit(atom, weight) for each part of a representative.
   template <class Visit>
@@ -60,7 +60,6 @@ struct OrbitLift {
 };
 
 /// O(vertices * samples within reach). \param averaged  false: the paper's plain lift
-/// \throw InputError when more than 65 536 atoms are needed
 OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
                      const SymmetricBasis& basis, const VertexOrbits& vertices, bool averaged,
                      const RunContext& context);
