@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "closed_sets.h"
 #include "consistency_closure.h"
 #include "consistency_search.h"
 
@@ -28,6 +29,10 @@ class Choice {
                 (1.0 + static_cast<double>(annotation.regions.size()) * static_cast<double>(mesh.faces.rows()))) {}
 
   ConsistentAnnotation run() {
+    if (ConsistencySearch(mesh_, annotation_, shapes_, {}, context_).agrees() &&
+        disagreements(mesh_, annotation_, context_).empty()) {
+      return {annotation_, {}, 0, 0};
+    }
     best_ = search(excluded_);
     while (improve()) {
     }

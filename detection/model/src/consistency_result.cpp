@@ -52,6 +52,36 @@ bool ConsistencySearch::drop_contradictions() {
   return false;
 }
 
+// Whether the groups around leave a pattern where it is.
+bool ConsistencySearch::stands(const KnownPattern& known) const {
+  KnownPattern fitted = known;
+  if (known.shapes.size() < 2 || fit_pattern(fitted)) return false;
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  for (std::size_t t = 0; t < known.shapes.size(); ++t) {
+    const Motion& before = known.pattern.instances[t].motion;
+    const Motion& now = fitted.pattern.instances[t].motion;
+    if (motion_distance(before, now, extent.centre, extent.reach) > rounding_) return false;
+  }
+  return true;
+}
+
+bool ConsistencySearch::agrees() {
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    KnownRegion& known = regions_[i];
+    if (!known.place || !stands_at(known.region, *known.place, extent(i), rounding_)) return false;
+    known.state = State::placed;
+    add_moves_of_region(i);
+  }
+  for (const KnownPattern& known : patterns_) {
+    if (!stands(known)) return false;
+  }
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    patterns_[i].state = State::placed;
+    add_moves_of_pattern(i);
+  }
+  return !drop_contradictions();
+}
+
 // Of two that overlap by a sliver the smaller loses it, and what it has outside of one that holds all but a sliver of
 // it: then each pair is disjoint, nested, or overlaps as the search has seen it.
 void ConsistencySearch::trim_slivers() {

@@ -17,17 +17,6 @@ bool is_identity(const Motion& motion, const Extent& extent, double tolerance) {
   return motion_distance(motion, Motion{}, extent.centre, extent.reach) <= tolerance;
 }
 
-// Whether the region's elements are, to `tolerance`, those of its group at `place`.
-bool stands_at(const Region& region, const GroupPlace& place, const Extent& extent, double tolerance) {
-  if (region.group.continuous()) return true;  // the place was made of its axis and centre
-  const std::vector<Motion> due = members(place);
-  return std::ranges::all_of(region.elements, [&](const Motion& element) {
-    return std::ranges::any_of(due, [&](const Motion& motion) {
-      return motion_distance(element, motion, extent.centre, extent.reach) <= tolerance;
-    });
-  });
-}
-
 // The region with its group at `place`, as it was but for that.
 Region at_place(const Region& region, const GroupPlace& place, double movement) {
   Region result = make_region(place.group, place.centre, place.frame, region.faces, region.name);
@@ -41,6 +30,16 @@ double bits(const Residual& residual) {
 }
 
 }  // namespace
+
+bool stands_at(const Region& region, const GroupPlace& place, const Extent& extent, double tolerance) {
+  if (region.group.continuous()) return true;  // the place was made of its axis and centre
+  const std::vector<Motion> due = members(place);
+  return std::ranges::all_of(region.elements, [&](const Motion& element) {
+    return std::ranges::any_of(due, [&](const Motion& motion) {
+      return motion_distance(element, motion, extent.centre, extent.reach) <= tolerance;
+    });
+  });
+}
 
 double saving_of(double area, const PointGroup& group, const Residual& residual) {
   const double saved = area * bits(residual);

@@ -39,7 +39,7 @@ struct ConsistencyPolicy {
   double exact = 1e-13;
   /// Searches at most for what to keep of claims that contradict one another, times regions, times faces: what takes
   /// about two seconds.
-  double work = 8e6;
+  double work = 4e6;
 };
 
 /// What need not be told once a region, or a pattern, is kept: the area that follows from the rest, of a region all but
@@ -69,6 +69,9 @@ struct ConsistencyOutcome {
   }
 };
 
+/// Whether the region's elements are, to `tolerance`, those of its group at `place`.
+bool stands_at(const Region& region, const GroupPlace& place, const Extent& extent, double tolerance);
+
 /// Regions and patterns on the way to a consistent annotation, largest first. See consistent_annotation().
 class ConsistencySearch {
  public:
@@ -81,6 +84,9 @@ class ConsistencySearch {
   ConsistencySearch& operator=(const ConsistencySearch&) = delete;
 
   static RegionShapes shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation);
+
+  /// Whether all regions and patterns agree as they are, to rounding: nothing is to be done then.
+  bool agrees();
 
   /// \param wanted  the search ends early, with an outcome that holds what was refused until then, when this is refused
   ConsistencyOutcome run(std::optional<Claim> wanted = {});
@@ -163,6 +169,7 @@ class ConsistencySearch {
   Motion with_told_directions(const KnownPattern& known, const Motion& motion) const;
   bool symmetry_of_instance(const KnownPattern& known, const Motion& motion) const;
   void leave_out_pattern(std::size_t number, const std::string& reason);
+  bool stands(const KnownPattern& known) const;
 
   void add_moves_of_region(std::size_t region);
   void add_moves_of_pattern(std::size_t pattern);

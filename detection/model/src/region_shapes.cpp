@@ -210,22 +210,23 @@ bool RegionShapes::within(int inner, int outer) const {
 
 RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& motion, int to, int arrival) const {
   const auto arriving = [&](int shape, int within, const Motion& way, int target) {
-    int taken = 0;
-    int arrived = 0;
     const Shape& source = at(shape);
     const std::vector<char>& holds = at(within).holds;
-    for (std::size_t k = 0; k < source.sample_faces.size(); ++k) {
+    const auto taken = std::ranges::count_if(source.sample_faces,
+                                             [&](int face) { return holds[static_cast<std::size_t>(face)] != 0; });
+    if (taken == 0) return 0.0;
+    std::ptrdiff_t missed = 0;
+    for (std::size_t k = 0; k < source.sample_faces.size() && 2 * missed <= taken; ++k) {
       if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
       const Vector3d image = way(source.samples.row(static_cast<Eigen::Index>(k)).transpose());
-      ++taken;
-      if (at(target).box.exteriorDistance(image) > near_) continue;
-      if (index(target).within(image, near_)) ++arrived;
+      const bool arrived = at(target).box.exteriorDistance(image) <= near_ && index(target).within(image, near_);
+      missed += arrived ? 0 : 1;
     }
-    return taken > 0 ? static_cast<double>(arrived) / taken : 0.0;
+    return 1 - static_cast<double>(missed) / static_cast<double>(taken);  // or hopeless
   };
   Match result;
   result.share = arriving(from, domain, motion, to);
-  if (result.share < 0.5) return result;  // hopeless
+  if (result.share < 0.5) return result;
   result.share = std::min(result.share, arriving(to, arrival, inverse(motion), from));
   const Motion told{Eigen::Matrix3d::Identity(), -origin_};
   result.distance =
