@@ -1,12 +1,13 @@
-#include "orbifit/detection/add_region.h"
+#include "add_region.h"
 
 #include <algorithm>
 #include <functional>
 #include <optional>
 #include <utility>
 
-#include "orbifit/detection/region_growth.h"
 #include "orbifit/model/errors.h"
+
+#include "support/region_growth.h"
 
 namespace orbifit {
 

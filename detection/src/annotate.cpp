@@ -1,13 +1,13 @@
-#include "orbifit/detection/annotate.h"
+#include "annotate.h"
 
 #include <algorithm>
 #include <functional>
 #include <string>
 #include <utility>
 
-#include "orbifit/detection/own_group.h"
-#include "orbifit/detection/surface_patch.h"
-#include "orbifit/detection/verification.h"
+#include "group/verification.h"
+#include "support/own_group.h"
+#include "surface/surface_patch.h"
 
 namespace orbifit {
 

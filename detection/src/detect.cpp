@@ -14,37 +14,37 @@
 #include <string_view>
 #include <utility>
 
-#include "orbifit/detection/annotate.h"
-#include "orbifit/detection/axis_regions.h"
-#include "orbifit/detection/candidates.h"
-#include "orbifit/detection/carry_back.h"
-#include "orbifit/detection/coarse_mesh.h"
-#include "orbifit/detection/completion.h"
-#include "orbifit/detection/components.h"
-#include "orbifit/detection/denoise.h"
-#include "orbifit/detection/found_region.h"
-#include "orbifit/detection/joined_groups.h"
-#include "orbifit/detection/noise_check.h"
-#include "orbifit/detection/own_group.h"
-#include "orbifit/detection/part_regions.h"
-#include "orbifit/detection/pattern_search.h"
-#include "orbifit/detection/plane_regions.h"
-#include "orbifit/detection/repeated_parts.h"
-#include "orbifit/detection/revolution_regions.h"
-#include "orbifit/detection/segments.h"
-#include "orbifit/detection/surface_patch.h"
-#include "orbifit/detection/symmetry_lines.h"
-#include "orbifit/detection/verification.h"
-#include "orbifit/detection/wider_subgroups.h"
 #include "orbifit/model/errors.h"
 
-#include "cut_discs.h"
+#include "annotate.h"
+#include "evidence/cut_discs.h"
+#include "evidence/noise_check.h"
+#include "group/candidates.h"
+#include "group/verification.h"
 #include "kept_consistent.h"
-#include "looser_groups.h"
-#include "partial_rows.h"
-#include "region_patterns.h"
-#include "row_growth.h"
-#include "thresholds.h"
+#include "patterns/partial_rows.h"
+#include "patterns/pattern_search.h"
+#include "patterns/region_patterns.h"
+#include "patterns/row_growth.h"
+#include "primitives/symmetry_lines.h"
+#include "resolution/carry_back.h"
+#include "resolution/coarse_mesh.h"
+#include "resolution/denoise.h"
+#include "search/axis_regions.h"
+#include "search/completion.h"
+#include "search/joined_groups.h"
+#include "search/looser_groups.h"
+#include "search/part_regions.h"
+#include "search/plane_regions.h"
+#include "search/revolution_regions.h"
+#include "search/wider_subgroups.h"
+#include "support/found_region.h"
+#include "support/own_group.h"
+#include "surface/components.h"
+#include "surface/repeated_parts.h"
+#include "surface/segments.h"
+#include "surface/surface_patch.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -57,10 +57,9 @@ constexpr std::size_t kMostRegions = 300;
 constexpr double kLeastNoise = 3e-4;     // of the diagonal
 constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
 constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
-constexpr int kScreenDirections = 2500;
-constexpr double kLongest = 1e8;      // seconds, which a clock can add
-constexpr double kLeastSeconds = 1;   // for the whole
-constexpr double kOfDetection = 0.6;  // of the time, where what is found is to be carried to a finer mesh
+constexpr double kLongest = 1e8;         // seconds, which a clock can add
+constexpr double kLeastSeconds = 1;      // for the whole
+constexpr double kOfDetection = 0.6;     // of the time, where what is found is to be carried to a finer mesh
 constexpr int kDetectSamples = 6000;
 constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise;
 constexpr std::size_t kMostOfComponent = 4;  // unless that many come of as many components

@@ -1,4 +1,4 @@
-#include "orbifit/detection/guided_region.h"
+#include "guided_region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,14 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/detection/axis_orders.h"
-#include "orbifit/detection/orbit_region.h"
-#include "orbifit/detection/own_group.h"
-#include "orbifit/detection/region_growth.h"
 #include "orbifit/model/errors.h"
 
-#include "surroundings.h"
+#include "group/axis_orders.h"
+#include "group/candidates.h"
+#include "group/surroundings.h"
+#include "support/orbit_region.h"
+#include "support/own_group.h"
+#include "support/region_growth.h"
 
 namespace orbifit {
 
@@ -26,7 +27,6 @@ using Family = PointGroup::Family;
 using About = RegionHint::About;
 
 constexpr double kGuideSlack = 2.5;  // tolerances, while the axis is not refined yet
-constexpr int kScreenDirections = 2500;
 
 bool polyhedral(const PointGroup& group) {
   return !group.has_axis() && group.order() >= 12;

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "orbifit/detection/candidates.h"
-#include "orbifit/detection/own_group.h"
-#include "orbifit/detection/partial_revolution.h"
-#include "orbifit/detection/point_surface.h"
-#include "orbifit/detection/surface_patch.h"
-#include "orbifit/detection/verification.h"
 #include "orbifit/model/point_index.h"
 
+#include "group/candidates.h"
+#include "group/verification.h"
 #include "kept_consistent.h"
+#include "scan/partial_revolution.h"
+#include "scan/point_surface.h"
+#include "support/own_group.h"
+#include "surface/surface_patch.h"
 
 namespace orbifit {
 
@@ -26,9 +26,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMostKept = 20000;
-constexpr double kSampled = 0.6;   // radius of the surfels that carry samples, spacings
-constexpr double kCovering = 2.0;  // and of those that cover the surface
-constexpr int kScreenDirections = 2500;
+constexpr double kSampled = 0.6;        // radius of the surfels that carry samples, spacings
+constexpr double kCovering = 2.0;       // and of those that cover the surface
 constexpr double kLeastCluster = 0.02;  // of the points: smaller clusters say little
 constexpr double kLeastShare = 0.15;    // of a cluster: smaller surfaces of revolution say little
 constexpr double kMostShare = 0.5;      // of several clusters together

@@ -1,6 +1,6 @@
 // From found regions to annotated ones.
 
-#include "orbifit/detection/annotate.h"
+#include "annotate.h"
 
 #include <numbers>
 

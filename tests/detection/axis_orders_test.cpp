@@ -1,4 +1,4 @@
-#include "orbifit/detection/axis_orders.h"
+#include "group/axis_orders.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Spheres among the pieces of a surface, and regions that are little else.
 
-#include "orbifit/detection/balls.h"
+#include "primitives/balls.h"
 
 #include <algorithm>
 #include <cmath>

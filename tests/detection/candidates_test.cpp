@@ -1,4 +1,4 @@
-#include "orbifit/detection/candidates.h"
+#include "group/candidates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "orbifit/detection/carry_back.h"
+#include "resolution/carry_back.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "chance_symmetry.h"
+#include "evidence/chance_symmetry.h"
 
 #include <cmath>
 #include <ostream>
@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/verification.h"
-
+#include "group/verification.h"
 #include "shapes.h"
 
 namespace orbifit {

@@ -1,4 +1,4 @@
-#include "orbifit/detection/coarse_mesh.h"
+#include "resolution/coarse_mesh.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/completion.h"
+#include "search/completion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/components.h"
+#include "surface/components.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cut_discs.h"
+#include "evidence/cut_discs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/denoise.h"
+#include "resolution/denoise.h"
 
 #include <functional>
 #include <ostream>

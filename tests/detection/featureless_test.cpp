@@ -1,4 +1,4 @@
-#include "orbifit/detection/featureless.h"
+#include "primitives/featureless.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "orbifit/detection/found_region.h"
+#include "support/found_region.h"
 
 #include <algorithm>
 #include <numbers>

@@ -1,6 +1,6 @@
 // What two groups generate together.
 
-#include "orbifit/detection/joined_groups.h"
+#include "search/joined_groups.h"
 
 #include <cmath>
 #include <numbers>
@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/verification.h"
 #include "orbifit/model/random.h"
 
+#include "group/verification.h"
 #include "placements.h"
 
 namespace orbifit {

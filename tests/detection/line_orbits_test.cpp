@@ -1,4 +1,4 @@
-#include "line_orbits.h"
+#include "primitives/line_orbits.h"
 
 #include <algorithm>
 #include <numbers>
@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/verification.h"
-
+#include "group/verification.h"
 #include "shapes.h"
 
 namespace orbifit {

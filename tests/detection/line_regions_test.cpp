@@ -9,17 +9,16 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/axis_regions.h"
-#include "orbifit/detection/joined_groups.h"
-#include "orbifit/detection/own_group.h"
-#include "orbifit/detection/plane_regions.h"
-#include "orbifit/detection/revolution_regions.h"
-#include "orbifit/detection/segments.h"
-#include "orbifit/detection/verification.h"
-#include "orbifit/detection/wider_subgroups.h"
-
-#include "axial_groups.h"
+#include "group/verification.h"
+#include "search/axis_regions.h"
+#include "search/joined_groups.h"
+#include "search/plane_regions.h"
+#include "search/revolution_regions.h"
+#include "search/wider_subgroups.h"
 #include "shapes.h"
+#include "support/axial_groups.h"
+#include "support/own_group.h"
+#include "surface/segments.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "looser_groups.h"
+#include "search/looser_groups.h"
 
 #include <ostream>
 #include <string>

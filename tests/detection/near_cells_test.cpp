@@ -1,6 +1,6 @@
 // What is near is always told; what is far, against exact distances.
 
-#include "near_cells.h"
+#include "surface/near_cells.h"
 
 #include <algorithm>
 #include <cmath>

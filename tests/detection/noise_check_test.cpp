@@ -1,4 +1,4 @@
-#include "orbifit/detection/noise_check.h"
+#include "evidence/noise_check.h"
 
 #include <cmath>
 #include <numeric>
@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/denoise.h"
 #include "orbifit/model/random.h"
 
+#include "resolution/denoise.h"
 #include "shapes.h"
 
 namespace orbifit {

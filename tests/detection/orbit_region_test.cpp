@@ -1,4 +1,4 @@
-#include "orbifit/detection/orbit_region.h"
+#include "support/orbit_region.h"
 
 #include <algorithm>
 #include <numbers>
@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/verification.h"
-
+#include "group/verification.h"
 #include "shapes.h"
 
 namespace orbifit {

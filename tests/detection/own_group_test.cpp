@@ -1,4 +1,4 @@
-#include "orbifit/detection/own_group.h"
+#include "support/own_group.h"
 
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/part_regions.h"
+#include "search/part_regions.h"
 
 #include <algorithm>
 #include <numbers>
@@ -8,15 +8,15 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/detection/axis_orders.h"
-#include "orbifit/detection/region_growth.h"
-#include "orbifit/detection/segments.h"
-#include "orbifit/detection/verification.h"
 #include "orbifit/model/dense.h"
 #include "orbifit/model/random.h"
 
+#include "group/axis_orders.h"
+#include "group/verification.h"
 #include "placements.h"
 #include "shapes.h"
+#include "support/region_growth.h"
+#include "surface/segments.h"
 
 namespace orbifit {
 namespace {

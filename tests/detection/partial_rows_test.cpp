@@ -1,6 +1,6 @@
 // Some of a row, of an arc and of a chain, beside what only looks like it.
 
-#include "partial_rows.h"
+#include "patterns/partial_rows.h"
 
 #include <algorithm>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/patterns.h"
+#include "group/patterns.h"
 
 #include <algorithm>
 #include <ostream>
@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/pattern_search.h"
-#include "orbifit/detection/verification.h"
-
+#include "group/verification.h"
+#include "patterns/pattern_search.h"
 #include "shapes.h"
 
 namespace orbifit {

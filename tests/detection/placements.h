@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "orbifit/detection/refinement.h"
-#include "orbifit/detection/surface_patch.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
+
+#include "group/refinement.h"
+#include "surface/surface_patch.h"
 
 namespace orbifit::test {
 

@@ -1,4 +1,4 @@
-#include "orbifit/detection/refinement.h"
+#include "group/refinement.h"
 
 #include <cmath>
 #include <string>
@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/detection/verification.h"
 #include "orbifit/model/random.h"
 
+#include "group/verification.h"
 #include "shapes.h"
 
 namespace orbifit {

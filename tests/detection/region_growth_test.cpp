@@ -1,4 +1,4 @@
-#include "orbifit/detection/region_growth.h"
+#include "support/region_growth.h"
 
 #include <numbers>
 #include <ostream>

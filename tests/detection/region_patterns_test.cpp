@@ -1,4 +1,4 @@
-#include "region_patterns.h"
+#include "patterns/region_patterns.h"
 
 #include <numbers>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/repeated_parts.h"
+#include "surface/repeated_parts.h"
 
 #include <array>
 #include <map>
@@ -6,10 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/detection/pattern_search.h"
-#include "orbifit/detection/segments.h"
-
+#include "patterns/pattern_search.h"
 #include "shapes.h"
+#include "surface/segments.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbifit/detection/revolution.h"
+#include "primitives/revolution.h"
 
 #include <algorithm>
 #include <cmath>

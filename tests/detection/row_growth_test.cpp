@@ -1,6 +1,6 @@
 // Rows on one surface: of faces that repeat, the part that they belong to.
 
-#include "row_growth.h"
+#include "patterns/row_growth.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/segments.h"
+#include "surface/segments.h"
 
 #include <algorithm>
 #include <cmath>

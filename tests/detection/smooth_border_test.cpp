@@ -1,6 +1,6 @@
 // Where regions end: at creases and joints, or anywhere.
 
-#include "smooth_border.h"
+#include "surface/smooth_border.h"
 
 #include <functional>
 #include <ostream>

@@ -1,4 +1,4 @@
-#include "subgroups_within.h"
+#include "group/subgroups_within.h"
 
 #include <algorithm>
 #include <string>

@@ -1,6 +1,6 @@
 // What the grid holds and what it cannot hold, against exact distances.
 
-#include "orbifit/detection/surface_grid.h"
+#include "surface/surface_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/surface_patch.h"
+#include "surface/surface_patch.h"
 
 #include <gtest/gtest.h>
 

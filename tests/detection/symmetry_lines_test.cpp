@@ -1,4 +1,4 @@
-#include "orbifit/detection/symmetry_lines.h"
+#include "primitives/symmetry_lines.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "orbifit/detection/verification.h"
+#include "group/verification.h"
 
 #include <gtest/gtest.h>
 

@@ -7,16 +7,16 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/detection/add_region.h"
 #include "orbifit/detection/detect.h"
-#include "orbifit/detection/guided_region.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
+#include "add_region.h"
 #include "annotation_edits.h"
+#include "guided_region.h"
 
 namespace orbifit::commands {
 

@@ -1,0 +1,340 @@
+#include "resolution/coarse_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/model/surface_index.h"
+
+#include "surface/face_points.h"
+#include "surface/vertex_clusters.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Corners = std::array<int, 3>;
+
+constexpr double kWeldTolerance = 1e-7;  // of the diagonal, as when preparing
+constexpr double kTurned = 0.5;          // cosine: more than that a face must not turn
+constexpr int kRounds = 4;               // of splitting clusters at turned faces, and at tears
+
+struct CornersHash {
+  std::size_t operator()(const Corners& corners) const {
+    std::size_t hash = 0;
+    for (const int corner : corners) hash = (hash ^ static_cast<std::size_t>(corner)) * 0x9e3779b97f4a7c15ULL;
+    return hash ^ (hash >> 29U);
+  }
+};
+
+class Coarsening {
+ public:
+  Coarsening(const PreparedMesh& prepared, const CoarseMeshOptions& options, const RunContext& context)
+      : prepared_(prepared),
+        context_(context),
+        sites_(prepared),
+        clustering_(prepared, sites_, options.tolerance, options.noise),
+        most_(options.most_faces * static_cast<double>(prepared.mesh.faces.rows())),
+        clusters_(clustering_.clusters(context)),
+        as_it_is_(prepared.components.faces.size(), 0) {}
+
+  std::optional<CoarseMesh> run() {
+    for (int round = 0;; ++round) {
+      context_.check();
+      join_faces();
+      if (static_cast<double>(mesh_.faces.rows()) > most_ || round > 2 * kRounds) return std::nullopt;
+      std::vector<char> spoilt(clusters_.size(), 0);
+      if (round < kRounds && mark_turned(spoilt)) {
+        split(spoilt);
+        continue;
+      }
+      const Components coarse = connected_components(mesh_, weld_vertices(mesh_.vertices, kWeldTolerance));
+      if (round < 2 * kRounds && mark_torn(coarse, spoilt)) {
+        split(spoilt);
+        continue;
+      }
+      if (!leave_broken_components(coarse)) break;
+    }
+    find_stand_ins();
+    std::vector<int> all(first_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return CoarseMesh{submesh(mesh_, all), std::move(stand_in_)};
+  }
+
+ private:
+  static std::size_t number(int i) { return static_cast<std::size_t>(i); }
+
+  Corners corners_of(int face) const {
+    Corners corners{};
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = cluster_of_site_[number(sites_.of_face[number(face)][k])];
+    return corners;
+  }
+
+  // The faces whose corners are in three clusters, those that have the same ones once, component by component. Faces of
+  // opposite sense with the same corners are a fold pressed flat: none of them stays.
+  void join_faces() {
+    cluster_of_site_.assign(sites_.group.size(), -1);
+    mesh_.vertices.resize(static_cast<Eigen::Index>(clusters_.size()), 3);
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+      mesh_.vertices.row(static_cast<Eigen::Index>(c)) = clusters_[c].place;
+      for (const int site : clusters_[c].sites) cluster_of_site_[number(site)] = static_cast<int>(c);
+    }
+    stand_in_.assign(sites_.of_face.size(), -1);
+    first_.clear();
+    const std::vector<char> folds = find_folds();
+    for (std::size_t component = 0; component < as_it_is_.size(); ++component) {
+      for (const int face : prepared_.components.faces[component]) {
+        int& stand_in = stand_in_[number(face)];
+        if (as_it_is_[component] != 0) {
+          stand_in = static_cast<int>(first_.size());
+        } else if (like_[number(face)] >= 0 && folds[number(like_[number(face)])] == 0) {
+          const int like = like_[number(face)];
+          stand_in = like == face ? static_cast<int>(first_.size()) : stand_in_[number(like)];
+        }
+        if (stand_in == static_cast<int>(first_.size())) first_.push_back(face);
+      }
+    }
+    mesh_.faces.resize(static_cast<Eigen::Index>(first_.size()), 3);
+    for (std::size_t f = 0; f < first_.size(); ++f) {
+      const Corners corners = corners_of(first_[f]);
+      for (int k = 0; k < 3; ++k) mesh_.faces(static_cast<Eigen::Index>(f), k) = corners[number(k)];
+    }
+  }
+
+  // Sets like_. By face: whether it is the first of those with the same three clusters, and there are both senses.
+  std::vector<char> find_folds() {
+    like_.assign(sites_.of_face.size(), -1);
+    std::vector<char> senses(like_.size(), 0);  // bit 0: as the first, bit 1: the other
+    std::unordered_map<Corners, int, CornersHash> known;
+    for (std::size_t f = 0; f < like_.size(); ++f) {
+      Corners key = corners_of(static_cast<int>(f));
+      std::ranges::sort(key);
+      if (key[0] == key[1] || key[1] == key[2]) continue;
+      like_[f] = known.try_emplace(key, static_cast<int>(f)).first->second;
+      // A sheet of two sides has area on one of them only.
+      if (prepared_.areas[static_cast<Eigen::Index>(f)] <= 0) continue;
+      senses[number(like_[f])] |= same_sense(static_cast<int>(f), like_[f]) ? 1 : 2;
+    }
+    for (char& sense : senses) sense = sense == 3 ? 1 : 0;
+    return senses;
+  }
+
+  bool same_sense(int face, int other) const {
+    const Corners a = corners_of(face);
+    const Corners b = corners_of(other);
+    const auto at = static_cast<std::size_t>(std::ranges::find(b, a[0]) - b.begin());
+    return a[1] == b[(at + 1) % 3];
+  }
+
+  // Marks the clusters at faces that no longer look to where they did. Whether there are any.
+  bool mark_turned(std::vector<char>& spoilt) const {
+    bool any = false;
+    for (std::size_t f = 0; f < first_.size(); ++f) {
+      const auto row = static_cast<Eigen::Index>(f);
+      const Vector3d before = prepared_.normals.row(first_[f]);
+      if (prepared_.areas[first_[f]] <= 0 || face_normal(mesh_, row).dot(before) >= kTurned) continue;
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t cluster = number(mesh_.faces(row, k));
+        if (clusters_[cluster].sites.size() == 1) continue;
+        spoilt[cluster] = 1;
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  // Marks the clusters that alone hold together what is one component of the fine mesh. Whether there are any.
+  bool mark_torn(const Components& coarse, std::vector<char>& spoilt) const {
+    bool any = false;
+    std::vector<int> component(clusters_.size(), -1);
+    for (std::size_t f = 0; f < first_.size(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t cluster = number(mesh_.faces(static_cast<Eigen::Index>(f), k));
+        const int here = coarse.component_of_face[f];
+        if (component[cluster] < 0) component[cluster] = here;
+        if (component[cluster] == here || clusters_[cluster].sites.size() == 1) continue;
+        spoilt[cluster] = 1;
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  void split(const std::vector<char>& spoilt) {
+    std::vector<VertexCluster> result;
+    result.reserve(clusters_.size());
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+      if (spoilt[c] == 0) {
+        result.push_back(std::move(clusters_[c]));
+      } else {
+        std::ranges::move(clustering_.split(clusters_[c]), std::back_inserter(result));
+      }
+    }
+    clusters_ = std::move(result);
+  }
+
+  // Leaves as they are the components that are not one component of the coarse mesh each. Whether there are any.
+  bool leave_broken_components(const Components& coarse) {
+    const std::size_t count = as_it_is_.size();
+    std::vector<int> found(count, -1);
+    std::vector<int> holder(coarse.faces.size(), -1);
+    std::vector<char> broken(count, 0);
+    for (std::size_t f = 0; f < first_.size(); ++f) {
+      const std::size_t mine = number(prepared_.components.component_of_face[number(first_[f])]);
+      const int now = coarse.component_of_face[f];
+      if (found[mine] < 0) found[mine] = now;
+      if (holder[number(now)] < 0) holder[number(now)] = static_cast<int>(mine);
+      const std::size_t other = number(holder[number(now)]);
+      if (found[mine] != now) broken[mine] = 1;
+      if (other != mine) broken[mine] = broken[other] = 1;
+    }
+    bool any = false;
+    for (std::size_t c = 0; c < count; ++c) {
+      broken[c] = (broken[c] != 0 || found[c] < 0) && as_it_is_[c] == 0 ? 1 : 0;
+      if (broken[c] == 0) continue;
+      as_it_is_[c] = 1;
+      any = true;
+    }
+    if (any) take_apart(broken);
+    return any;
+  }
+
+  void take_apart(const std::vector<char>& broken) {
+    std::vector<VertexCluster> result;
+    for (VertexCluster& cluster : clusters_) {
+      if (broken[number(sites_.component[number(cluster.sites.front())])] == 0) {
+        result.push_back(std::move(cluster));
+      } else {
+        std::ranges::move(clustering_.singles(cluster.sites), std::back_inserter(result));
+      }
+    }
+    clusters_ = std::move(result);
+  }
+
+  // Faces whose corners came together: the nearest of the coarse faces at those corners, with regard to the normal.
+  void find_stand_ins() {
+    std::vector<std::vector<int>> around(clusters_.size());
+    for (Eigen::Index f = 0; f < mesh_.faces.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) around[number(mesh_.faces(f, k))].push_back(static_cast<int>(f));
+    }
+    const Points normals = face_normals(mesh_);
+    parallel_for(context_, stand_in_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        if (f % 4096 == 0) context_.check();
+        if (stand_in_[f] < 0) stand_in_[f] = nearest_of(static_cast<int>(f), around, normals);
+      }
+    });
+    // What dangles has no coarse face at its corners: as its neighbours do.
+    std::vector<int> open;
+    for (std::size_t f = 0; f < stand_in_.size(); ++f) {
+      if (stand_in_[f] < 0) open.push_back(static_cast<int>(f));
+    }
+    std::vector<int> of_site(sites_.group.size(), -1);
+    for (std::size_t before = open.size() + 1; !open.empty() && open.size() < before;) {
+      before = open.size();
+      for (std::size_t f = 0; f < stand_in_.size(); ++f) {
+        for (const int site : sites_.of_face[f]) {
+          if (of_site[number(site)] < 0) of_site[number(site)] = stand_in_[f];
+        }
+      }
+      std::erase_if(open, [&](int f) {
+        for (const int site : sites_.of_face[number(f)]) {
+          stand_in_[number(f)] = std::max(stand_in_[number(f)], of_site[number(site)]);
+        }
+        return stand_in_[number(f)] >= 0;
+      });
+    }
+  }
+
+  int nearest_of(int face, const std::vector<std::vector<int>>& around, const Points& normals) const {
+    const Vector3d centroid = face_centroid(prepared_, face);
+    const Vector3d normal = prepared_.normals.row(face);
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (const int cluster : corners_of(face)) {
+      for (const int other : around[number(cluster)]) {
+        const Vector3d a = mesh_.vertices.row(mesh_.faces(other, 0));
+        const Vector3d b = mesh_.vertices.row(mesh_.faces(other, 1));
+        const Vector3d c = mesh_.vertices.row(mesh_.faces(other, 2));
+        const Vector3d weights = nearest_on_triangle(centroid, a, b, c);
+        // A face that looks elsewhere counts as if it were its own size away.
+        const double away = (weights[0] * a + weights[1] * b + weights[2] * c - centroid).norm();
+        const double cost = away + (1 - normal.dot(normals.row(other))) * (b - a).norm();
+        if (cost < least || (cost == least && other < best)) {
+          least = cost;
+          best = other;
+        }
+      }
+    }
+    return best;
+  }
+
+  const PreparedMesh& prepared_;
+  const RunContext& context_;
+  Sites sites_;
+  VertexClustering clustering_;
+  double most_;
+  std::vector<VertexCluster> clusters_;
+  std::vector<char> as_it_is_;  // by component: not coarsened
+  std::vector<int> cluster_of_site_;
+  std::vector<int> like_;  // by fine face: the first with its corners' clusters; -1 where two are the same
+  Mesh mesh_;
+  std::vector<int> first_;     // by coarse face: the fine face from which it comes
+  std::vector<int> stand_in_;  // by fine face; -1 as long as there is none
+};
+
+}  // namespace
+
+std::optional<CoarseMesh> coarse_mesh(const PreparedMesh& prepared, const CoarseMeshOptions& options,
+                                      const RunContext& context) {
+  return Coarsening(prepared, options, context).run();
+}
+
+Components carried_pieces(const Components& pieces, const PreparedMesh& fine, const CoarseMesh& coarse) {
+  struct Share {
+    int face, piece;
+    double area;
+  };
+  std::vector<Share> shares;
+  shares.reserve(coarse.stand_in.size());
+  for (std::size_t f = 0; f < coarse.stand_in.size(); ++f) {
+    shares.push_back({coarse.stand_in[f], pieces.component_of_face[f], fine.areas[static_cast<Eigen::Index>(f)]});
+  }
+  std::ranges::stable_sort(shares, {}, [](const Share& s) { return std::pair(s.face, s.piece); });
+  const auto count = static_cast<std::size_t>(coarse.mesh.faces.rows());
+  std::vector<int> piece_of(count, 0);
+  std::vector<double> most(count, -1);
+  for (std::size_t i = 0; i < shares.size();) {
+    const Share& first = shares[i];
+    double area = 0;
+    for (; i < shares.size() && shares[i].face == first.face && shares[i].piece == first.piece; ++i) {
+      area += shares[i].area;
+    }
+    const auto face = static_cast<std::size_t>(first.face);
+    if (area <= most[face]) continue;
+    most[face] = area;
+    piece_of[face] = first.piece;
+  }
+  Components result;
+  std::vector<std::vector<int>> faces(pieces.faces.size());
+  for (std::size_t f = 0; f < count; ++f) faces[static_cast<std::size_t>(piece_of[f])].push_back(static_cast<int>(f));
+  result.component_of_face.resize(count);
+  for (std::vector<int>& piece : faces) {
+    if (piece.empty()) continue;
+    for (const int f : piece)
+      result.component_of_face[static_cast<std::size_t>(f)] = static_cast<int>(result.faces.size());
+    result.faces.push_back(std::move(piece));
+  }
+  return result;
+}
+
+}  // namespace orbifit
