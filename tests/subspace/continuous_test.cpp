@@ -66,6 +66,23 @@ class ContinuousGroup : public testing::TestWithParam<ContinuousCase> {
   SubspaceState state_;
 };
 
+// Also to points that lie nearly opposite.
+TEST(Continuum, TurnsToPointsOfASphereToRounding) {
+  Continuum continuum;
+  continuum.spherical = true;
+  continuum.centre = {0.3, -0.2, 0.5};
+  for (const double off : {0.0, 1e-9, 1e-7, 1e-4, 0.1, 1.0}) {
+    for (const double height : {-1.0, 1.0}) {
+      const Eigen::Vector3d point = continuum.centre + Eigen::Vector3d(off, 0.5 * off, height);
+      const double radius = (point - continuum.centre).norm();
+      const Motion turn = continuum.turn_to(point);
+      EXPECT_LT((turn(continuum.centre + radius * continuum.axis) - point).norm(), 1e-15) << off << " " << height;
+      EXPECT_LT((turn.linear.transpose() * turn.linear - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+      EXPECT_NEAR(turn.linear.determinant(), 1, 1e-15);
+    }
+  }
+}
+
 TEST_P(ContinuousGroup, FieldIsExactAtAnyAngle) {
   Random random(8, "elements");
   const Motion carried = carried_motion(subspace_, state_, 0);

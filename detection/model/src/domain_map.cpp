@@ -64,7 +64,11 @@ Motion Continuum::turn_to(const Vector3d& point) const {
   const double scale = (point - centre).norm();
   if (offset.norm() <= kOnAxis * scale || scale == 0) return {};
   if (spherical) {
-    const Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(axis, offset).toRotationMatrix();
+    // Of the far half by a half-turn first: the shortest turn to nearly the opposite loses digits.
+    const bool far = axis.dot(offset) < 0;
+    const Vector3d from = far ? Vector3d(-axis) : axis;
+    Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(from, offset).toRotationMatrix();
+    if (far) turn = turn * axis_rotation(reference, std::numbers::pi);
     return Motion::about(turn, centre);
   }
   const double angle = std::atan2(axis.dot(reference.cross(offset)), reference.dot(offset));
