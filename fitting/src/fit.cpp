@@ -10,11 +10,11 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "fit_starts.h"
-#include "fit_system.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
 #include "other_scale.h"
 #include "relaxation.h"
+#include "solver/fit_system.h"
 #include "stage_clock.h"
 
 namespace orbifit {

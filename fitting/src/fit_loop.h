@@ -11,8 +11,8 @@
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/moving_surface.h"
 
-#include "deformation_system.h"
-#include "scan_views.h"
+#include "solver/deformation_system.h"
+#include "solver/scan_views.h"
 
 namespace orbifit {
 

@@ -11,7 +11,7 @@
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/subspace.h"
 
-#include "fit_system.h"
+#include "solver/fit_system.h"
 
 namespace orbifit {
 

@@ -4,8 +4,8 @@
 
 #include "orbifit/fitting/alignment.h"
 
-#include "fit_assessment.h"
-#include "moving_system.h"
+#include "assessment/fit_assessment.h"
+#include "solver/moving_system.h"
 
 namespace orbifit {
 

@@ -10,7 +10,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 
-#include "scan_views.h"
+#include "solver/scan_views.h"
 
 namespace orbifit {
 

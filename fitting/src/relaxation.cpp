@@ -8,9 +8,9 @@
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/subspace.h"
 
-#include "fit_system.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
+#include "solver/fit_system.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "condition.h"
+#include "solver/condition.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>

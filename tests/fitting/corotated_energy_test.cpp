@@ -1,4 +1,4 @@
-#include "corotated_energy.h"
+#include "solver/corotated_energy.h"
 
 #include <cmath>
 

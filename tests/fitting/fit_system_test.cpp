@@ -1,4 +1,4 @@
-#include "fit_system.h"
+#include "solver/fit_system.h"
 
 #include <cmath>
 #include <ostream>

@@ -1,4 +1,4 @@
-#include "moving_system.h"
+#include "solver/moving_system.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "pose_hypotheses.h"
+#include "placement/pose_hypotheses.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rigid_modes.h"
+#include "solver/rigid_modes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scan_symmetry.h"
+#include "placement/scan_symmetry.h"
 
 #include <algorithm>
 #include <cmath>

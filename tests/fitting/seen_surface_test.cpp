@@ -1,4 +1,4 @@
-#include "seen_surface.h"
+#include "scan/seen_surface.h"
 
 #include <algorithm>
 #include <vector>

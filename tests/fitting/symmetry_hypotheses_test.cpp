@@ -1,4 +1,4 @@
-#include "symmetry_hypotheses.h"
+#include "placement/symmetry_hypotheses.h"
 
 #include <algorithm>
 #include <cmath>

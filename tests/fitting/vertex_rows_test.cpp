@@ -1,4 +1,4 @@
-#include "vertex_rows.h"
+#include "solver/vertex_rows.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "bessel.h"
+#include "basis/bessel.h"
 
 #include <cmath>
 

@@ -13,9 +13,9 @@
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "deformation/touching_points.h"
 #include "parts.h"
 #include "subspaces.h"
-#include "touching_points.h"
 
 namespace orbifit {
 namespace {

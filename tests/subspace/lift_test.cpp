@@ -8,8 +8,8 @@
 
 #include "orbifit/model/random.h"
 
-#include "alike_points.h"
-#include "plain_lift.h"
+#include "basis/alike_points.h"
+#include "basis/plain_lift.h"
 #include "subspaces.h"
 
 namespace orbifit {

@@ -1,4 +1,4 @@
-#include "quotient.h"
+#include "deformation/quotient.h"
 
 #include <cmath>
 #include <string>
@@ -12,7 +12,7 @@
 #include "orbifit/model/random.h"
 #include "orbifit/subspace/deformer.h"
 
-#include "handle_rows.h"
+#include "deformation/handle_rows.h"
 #include "subspaces.h"
 
 namespace orbifit {

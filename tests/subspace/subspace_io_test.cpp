@@ -21,7 +21,7 @@
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
-#include "section_file.h"
+#include "io/section_file.h"
 #include "temporary_folder.h"
 
 namespace orbifit {

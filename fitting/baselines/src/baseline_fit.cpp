@@ -10,7 +10,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/deformer.h"
 
-#include "fit_assessment.h"
+#include "assessment/fit_assessment.h"
 #include "fit_starts.h"
 
 namespace orbifit {

@@ -4,7 +4,7 @@
 
 #include <Eigen/CholmodSupport>
 
-#include "condition.h"
+#include "solver/condition.h"
 
 namespace orbifit {
 

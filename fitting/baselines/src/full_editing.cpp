@@ -6,8 +6,8 @@
 #include "orbifit/baselines/symmetry_constraints.h"
 #include "orbifit/subspace/corotation.h"
 
+#include "deformation/handle_rows.h"
 #include "for_each_coordinate.h"
-#include "handle_rows.h"
 #include "plain_weights.h"
 #include "saddle_system.h"
 

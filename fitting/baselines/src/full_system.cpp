@@ -11,7 +11,7 @@
 
 #include "for_each_coordinate.h"
 #include "plain_weights.h"
-#include "rigid_modes.h"
+#include "solver/rigid_modes.h"
 
 namespace orbifit {
 

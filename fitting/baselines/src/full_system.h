@@ -9,8 +9,8 @@
 #include "orbifit/subspace/lift.h"
 #include "orbifit/subspace/subspace.h"
 
-#include "deformation_system.h"
 #include "saddle_system.h"
+#include "solver/deformation_system.h"
 
 namespace orbifit {
 

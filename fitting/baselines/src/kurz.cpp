@@ -7,7 +7,7 @@
 
 #include "orbifit/model/errors.h"
 
-#include "fit_assessment.h"
+#include "assessment/fit_assessment.h"
 #include "kurz_fit.h"
 #include "unit_input.h"
 

@@ -8,9 +8,9 @@
 #include "orbifit/fitting/alignment.h"
 
 #include "kurz_ceres.h"
-#include "lattice.h"
-#include "outward_faces.h"
-#include "pulls.h"
+#include "solver/outward_faces.h"
+#include "solver/pulls.h"
+#include "symmetry/lattice.h"
 #include "thin_plate.h"
 
 namespace orbifit {

@@ -9,7 +9,7 @@
 
 #include "orbifit/model/errors.h"
 
-#include "condition.h"
+#include "solver/condition.h"
 
 namespace orbifit {
 

@@ -6,8 +6,8 @@
 #include "orbifit/model/dense.h"
 
 #include "baseline_fit.h"
-#include "fit_system.h"
 #include "fit_trial.h"
+#include "solver/fit_system.h"
 
 namespace orbifit {
 

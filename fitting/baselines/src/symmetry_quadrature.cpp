@@ -6,7 +6,7 @@
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
 
-#include "lattice.h"
+#include "symmetry/lattice.h"
 
 namespace orbifit {
 

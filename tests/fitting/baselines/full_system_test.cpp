@@ -8,8 +8,8 @@
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/subspace/deformer.h"
 
-#include "fit_system.h"
 #include "random_pulls.h"
+#include "solver/fit_system.h"
 
 namespace orbifit {
 namespace {

@@ -9,7 +9,7 @@
 #include "orbifit/model/sampling.h"
 #include "orbifit/subspace/subspace.h"
 
-#include "pulls.h"
+#include "solver/pulls.h"
 
 namespace orbifit {
 

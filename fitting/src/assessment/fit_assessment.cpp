@@ -1,0 +1,69 @@
+#include "assessment/fit_assessment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orbifit/model/random.h"
+#include "orbifit/model/sampling.h"
+#include "orbifit/subspace/moving_surface.h"
+
+#include "solver/pulls.h"
+
+namespace orbifit {
+
+double pulls_rms(const FitInput& input, const FitResult& result) {
+  const auto pulls = pulls_towards(input, result.pose, 1);
+  if (pulls.empty()) return 0;
+  double squares = 0;
+  for (const Pull& pull : pulls) {
+    squares += (result.fitted.vertices.row(pull.vertex).transpose() - result.pose(pull.target)).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(pulls.size())) / diagonal(result.fitted.vertices);
+}
+
+void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
+                const RunContext& context, FitResult& result) {
+  const double size = diagonal(result.fitted.vertices);
+  const MovingSurface surface(result.fitted);
+  double squares = 0;
+  int inliers = 0;
+  for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
+    const double distance = surface.nearest(scan.points.row(i).transpose()).distance / size;
+    if (distance > options.inlier_distance) continue;
+    ++inliers;
+    squares += distance * distance;
+  }
+  result.inlier_fraction = double(inliers) / static_cast<double>(scan.points.rows());
+  result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
+
+  if (seen.knows_viewpoints()) {
+    constexpr int kSamples = 1500;
+    Random random(context.seed, "coverage of a fit");
+    const double reach = std::max(2 * options.inlier_distance * size, 2 * scan.spacing);
+    const SeenSurface::Coverage coverage =
+        seen.coverage(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
+    result.cut_off = coverage.cut_off();
+    result.covered = coverage.without_cut_off().share();
+  }
+  const double whole = result.used_fraction / (result.used_fraction + result.torn_off);
+  result.confidence = result.inlier_fraction * result.covered * whole;
+
+  const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
+  result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));
+  for (std::size_t v = 0; v < result.seen.size(); ++v) {
+    const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
+    result.seen[v] = seen.points().nearest(vertex, 1).front().distance <= near ? 1 : 0;
+  }
+  const Eigen::VectorXd areas = face_areas(result.fitted);
+  double hidden = 0;
+  for (Eigen::Index f = 0; f < areas.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (result.seen[static_cast<std::size_t>(result.fitted.faces(f, k))] == 0) hidden += areas[f] / 3;
+    }
+  }
+  result.hidden_fraction = hidden / areas.sum();
+
+  result.landmark_rms = pulls_rms(input, result);
+}
+
+}  // namespace orbifit

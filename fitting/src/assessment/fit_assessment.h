@@ -1,0 +1,20 @@
+#pragma once
+
+#include "orbifit/fitting/fit.h"
+#include "orbifit/fitting/scan_preparation.h"
+
+#include "scan/seen_surface.h"
+
+namespace orbifit {
+
+/// Root mean square distance of landmarks' and handles' vertices from where they belong, of the fitted mesh's diagonal;
+/// 0 without any. Reads `fitted` and `pose`.
+double pulls_rms(const FitInput& input, const FitResult& result);
+
+/// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
+/// `inlier_fraction`, `rms`, `covered`, `cut_off`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms` from
+/// `fitted` and `pose`, `used_fraction` and `torn_off`. \param seen  of the input's scan and the points of this one
+void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
+                const RunContext& context, FitResult& result);
+
+}  // namespace orbifit

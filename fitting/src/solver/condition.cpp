@@ -1,0 +1,30 @@
+#include "solver/condition.h"
+
+#include <cmath>
+
+#include "orbifit/model/random.h"
+
+namespace orbifit {
+
+double norm_estimate(Eigen::VectorXd start, const LinearMap& map) {
+  constexpr int kMostSteps = 200;
+  constexpr int kFewestSteps = 8;
+  constexpr double kSettled = 1e-4;
+  double norm = 0;
+  for (int step = 0; step < kMostSteps && start.norm() > 0; ++step) {
+    start = map(start.normalized());
+    const double before = norm;
+    norm = start.norm();
+    if (step >= kFewestSteps && std::abs(norm - before) < kSettled * norm) break;
+  }
+  return norm;
+}
+
+double condition_estimate(Eigen::Index size, const LinearMap& multiply, const LinearMap& solve) {
+  Random random(1, "condition estimate");
+  Eigen::VectorXd vector(size);
+  for (double& entry : vector) entry = random.normal();
+  return norm_estimate(vector, multiply) * norm_estimate(multiply(vector), solve);
+}
+
+}  // namespace orbifit

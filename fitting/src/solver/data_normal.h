@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "orbifit/fitting/correspondences.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+
+#include "solver/pulls.h"
+#include "solver/vertex_rows.h"
+
+namespace orbifit {
+
+/// The sum of w (row x - right)^2 as x^T matrix x - 2 side^T x and a constant.
+struct DataNormal {
+  Eigen::MatrixXd matrix;  ///< lower half
+  Eigen::VectorXd side;
+};
+
+/// How a small change of the pose is written: the template's growth times a length, where it may grow; then a motion of
+/// the scan, a rotation vector times the length and a translation. Growth and rotation are about a pivot.
+struct ScanStep {
+  Eigen::Vector3d pivot;
+  double length;       ///< > 0
+  bool grows = false;  ///< whether the growth is an unknown
+
+  int unknowns() const { return grows ? 7 : 6; }
+
+  Motion motion(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& solved) const;
+};
+
+/// The vertices that pairs and pulls are about, ascending.
+std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspondence>& pairs,
+                                  const std::vector<Pull>& pulls);
+
+/// What a fit's data ask for: share w <n, x + gamma (x - pivot) + u - (s + omega x (s - pivot) + tau)>^2 for each pair,
+/// and each pull's vertex at its target. The last unknowns are those of the pose. Summed in an order that does not
+/// depend on the number of threads. \param rows  u of the vertices in the other unknowns, prepared for those that are
+/// touched \param columns  number of the other unknowns \param mesh  where u = 0
+DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh& mesh, const ScanStep& step,
+                       const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
+                       const std::vector<Pull>& pulls, const RunContext& context);
+
+}  // namespace orbifit

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "orbifit/fitting/correspondences.h"
+#include "orbifit/model/run_context.h"
+#include "orbifit/subspace/contact_energy.h"
+#include "orbifit/subspace/subspace.h"
+
+#include "solver/data_normal.h"
+#include "solver/deformation_system.h"
+#include "solver/vertex_rows.h"
+
+namespace orbifit {
+
+/// The linear system of one iteration of the fit in the unknowns (q, omega, tau): coordinates in the subspace, and a
+/// small rotation (times the template's diagonal) and translation that move the scan in the template's frame.
+class FitSystem final : public DeformationSystem {
+ public:
+  /// References are kept. One system may serve one fit after another: what it knows of vertices stays.
+  /// \param contacts  to be kept, each with the weight of kContactWeight samples
+  FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {});
+
+  Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
+                 const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context) override;
+  Points samples_at(const Eigen::VectorXd& q) const override;
+  Points vertices_at(const Eigen::VectorXd& q, const RunContext& context) const override;
+  Eigen::Index unknowns() const override { return subspace_.degrees_of_freedom(); }
+  double condition() const override;
+  double contact_energy(const Eigen::VectorXd& q) const override;
+
+  const std::vector<Contact>& contacts() const { return contacts_.contacts(); }
+  const Subspace& subspace() const { return subspace_; }
+
+ private:
+  const Subspace& subspace_;
+  VertexRows rows_;
+  const Mesh& mesh_;
+  ScanStep step_;
+  ContactEnergy contacts_;
+  Eigen::MatrixXd stiffness_matrix_;
+  Eigen::MatrixXd hold_matrix_;  // what prefers the pose, and the contacts'
+  Eigen::MatrixXd matrix_;       // of the last system, lower half
+  Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
+};
+
+}  // namespace orbifit

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "orbifit/subspace/carried_regions.h"
+#include "orbifit/subspace/contact_energy.h"
+#include "orbifit/subspace/lift.h"
+#include "orbifit/subspace/subspace.h"
+
+#include "solver/data_normal.h"
+#include "solver/deformation_system.h"
+
+namespace orbifit {
+
+/// The linear system of one iteration of a fit whose regions' groups turn (mode moving; method notes 2.2): legs that
+/// splay. To first order in the turns; then these are applied exactly, the basis is built anew, and its coordinates are
+/// those nearest to what was solved for, so that every state keeps every carried symmetry to rounding.
+///
+/// q is the coordinates followed by the turns, the nine entries of one matrix a family (CarriedRegions::Turns).
+class MovingSystem final : public DeformationSystem {
+ public:
+  /// References are kept. \param subspace  of mode moving \param contacts  as of FitSystem
+  MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {},
+               const RunContext& context = RunContext{});
+
+  /// Groups as at rest, at these coordinates of the subspace's own basis.
+  Eigen::VectorXd at_rest(const Eigen::VectorXd& coordinates) const;
+
+  SubspaceState state_of(const Eigen::VectorXd& q) const;
+
+  /// Whether any group may turn.
+  bool turns() const { return regions_.freedom() > 0; }
+
+  /// \pre hold.around is where the fit is: the system is linearised there
+  Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
+                 const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context) override;
+  Points samples_at(const Eigen::VectorXd& q) const override;
+  Points vertices_at(const Eigen::VectorXd& q, const RunContext& context) const override;
+  Eigen::Index unknowns() const override { return subspace_.degrees_of_freedom() + regions_.freedom(); }
+  double condition() const override;
+  double contact_energy(const Eigen::VectorXd& q) const override;
+
+ private:
+  CarriedRegions::Turns turns_of(const Eigen::VectorXd& q) const;
+  std::shared_ptr<const CarriedBasis> basis_at(const CarriedRegions::Turns& turns) const;
+  // Turned by the angles, at the coordinates there that bring the samples nearest to these displacements; none where
+  // groups turned so no longer agree.
+  Eigen::VectorXd turned(const Eigen::VectorXd& q, const Eigen::VectorXd& angles, const Points& displacements) const;
+
+  const Subspace& subspace_;
+  const Mesh& mesh_;
+  std::vector<Contact> contacts_;
+  CarriedRegions regions_;
+  Eigen::SparseMatrix<double> stiffness_;  // K, of the samples
+  Eigen::MatrixXd rigid_;                  // rigid_modes() of the samples
+  LiftWeights spread_;                     // samples -> vertices
+  ScanStep step_;
+  struct KnownBasis {
+    CarriedRegions::Turns turns;
+    std::shared_ptr<const CarriedBasis> basis;
+  };
+  mutable std::vector<KnownBasis> known_;  // of those that were asked for last, the last one last
+  Eigen::MatrixXd matrix_;                 // of the last system, lower half
+  Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
+};
+
+}  // namespace orbifit

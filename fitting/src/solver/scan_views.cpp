@@ -1,0 +1,10 @@
+#include "solver/scan_views.h"
+
+#include "solver/outward_faces.h"
+
+namespace orbifit {
+
+ScanViews::ScanViews(const Mesh& mesh, const PointCloud& cloud, const PreparedScan& scan, const RunContext& context)
+    : signed_normals(scan.normals_oriented && faces_outwards(mesh, context)), silhouette(mesh, cloud, scan, context) {}
+
+}  // namespace orbifit

@@ -1,0 +1,12 @@
+#include "orbifit/subspace/gram.h"
+
+#include "kernels/kernels.h"
+
+namespace orbifit {
+
+void lower_gram(const RowMajorMatrix& rows, Eigen::MatrixXd& result) {
+  result.resize(rows.cols(), rows.cols());
+  kernels().gram(rows.data(), static_cast<int>(rows.rows()), rows.cols(), result.data());
+}
+
+}  // namespace orbifit

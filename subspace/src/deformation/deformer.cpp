@@ -1,0 +1,153 @@
+#include "orbifit/subspace/deformer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "orbifit/model/errors.h"
+#include "orbifit/subspace/contact_energy.h"
+#include "orbifit/subspace/mesh_laplacian.h"
+#include "orbifit/subspace/point_laplacian.h"
+
+#include "deformation/handle_rows.h"
+#include "deformation/moving_solve.h"
+#include "deformation/quotient.h"
+#include "kernels/kernels.h"
+
+namespace orbifit {
+
+namespace {
+
+// Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal without the contacts.
+constexpr double kHold = 1e-12;
+
+Corotation energy_of(const Subspace& subspace, const Mesh& mesh, LaplacianKind kind, const RunContext& context) {
+  const Points& samples = subspace.sampling.points;
+  const SampleEdges edges = neighbour_graph(samples, subspace.sampling.radii);
+  switch (kind) {
+    case LaplacianKind::cotangent:
+      return corotation(samples, edges,
+                        cotangent_sample_laplacian(mesh, samples, subspace.sampling.radius, edges, context));
+    case LaplacianKind::point:
+      return corotation(samples, edges, point_laplacian(samples, edges));
+    default:
+      return corotation(samples, edges, graph_laplacian(edges, samples.rows()));
+  }
+}
+
+// What a contact weighs against equation (3): see kContactWeight.
+double contact_weight(const Corotation& corotation) {
+  return kContactWeight * corotation.laplacian.squaredNorm() / static_cast<double>(corotation.laplacian.cols());
+}
+
+}  // namespace
+
+struct Deformer::Implementation {
+  const Subspace& subspace;
+  const Mesh& mesh;
+  Corotation corotation;
+  Quotient quotient;
+  ContactEnergy contacts;
+  Eigen::MatrixXd stiffness;  // U^T L^T L U, and the contacts'
+  double of_contacts = 0;     // mean of the diagonal that is the contacts'
+  HandleRows handles;
+  double alpha = 0;
+  Eigen::MatrixXd factor;  // lower
+  std::optional<MovingSolve> moving;
+
+  Implementation(const Subspace& the_subspace, const Mesh& the_mesh, const DeformerOptions& options,
+                 const RunContext& context)
+      : subspace(the_subspace),
+        mesh(the_mesh),
+        corotation(energy_of(subspace, mesh, options.laplacian, context)),
+        quotient(subspace, corotation),
+        stiffness(quotient.stiffness()) {
+    const double weight = contact_weight(corotation);
+    std::vector<Contact> found;
+    // Fixed groups lock parts in place: what touches them could not follow a handle.
+    if (options.contacts && subspace.mode != GroupMode::fixed) found = find_contacts(subspace, mesh, {}, context);
+    if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
+    contacts = ContactEnergy(std::move(found), subspace, weight);
+    if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
+    contacts.add_gram(stiffness);
+    if (stiffness.size() > 0) of_contacts += stiffness.diagonal().mean();
+  }
+
+  Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const;
+};
+
+Deformer::Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options,
+                   const RunContext& context)
+    : implementation_(std::make_unique<Implementation>(subspace, mesh, options, context)) {}
+
+Deformer::~Deformer() = default;
+Deformer::Deformer(Deformer&&) noexcept = default;
+
+const Corotation& Deformer::energy() const {
+  return implementation_->corotation;
+}
+
+const std::vector<Contact>& Deformer::contacts() const {
+  return implementation_->contacts.contacts();
+}
+
+void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
+  Implementation& own = *implementation_;
+  own.handles = HandleRows(handles, own.subspace, own.mesh);
+  own.alpha = alpha;
+  // Equation (4), left.
+  Eigen::MatrixXd system = own.stiffness;
+  own.handles.add_gram(alpha, system);
+  if (system.size() > 0) system.diagonal().array() += kHold * (system.diagonal().mean() - own.of_contacts);
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorisation(system);
+  if (factorisation.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");
+  own.factor = std::move(system);
+}
+
+Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const {
+  if (motions.size() != implementation_->handles.handles()) {
+    throw UsageError("there are " + std::to_string(implementation_->handles.handles()) + " handles but " +
+                     std::to_string(motions.size()) + " motions");
+  }
+  if (implementation_->moving) {
+    return implementation_->moving->solve(implementation_->handles, implementation_->alpha, motions, iterations, start);
+  }
+  return implementation_->solve(motions, iterations, start);
+}
+
+Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, int iterations,
+                                            const SubspaceState& start) const {
+  const Eigen::Index freedom = subspace.degrees_of_freedom();
+  const Eigen::VectorXd targets = handles.targets(motions);
+  const Eigen::VectorXd handle_pull = alpha * handles.pull(targets, freedom);
+  std::vector<Eigen::Matrix3d> rotations(static_cast<std::size_t>(quotient.classes()), Eigen::Matrix3d::Identity());
+  Deformation result;
+  Eigen::VectorXd& q = result.state.q;
+  q = start.q.size() == freedom ? start.q : Eigen::VectorXd::Zero(freedom);
+  if (start.q.size() == freedom) quotient.rotate(q, rotations);
+  Eigen::VectorXd previous = q;
+  Eigen::VectorXd side(freedom);
+  const auto turned = [&](int sample) { return quotient.rotation_of(sample, rotations); };
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    // Equation (4), right, with the Laplace coordinates turned.
+    quotient.pull(rotations, side);
+    side += handle_pull;
+    contacts.add_pull(turned, side);
+    kernels().cholesky_solve(factor.data(), freedom, side.data());
+    previous.swap(q);
+    q.swap(side);
+    if (iteration + 1 < iterations) quotient.rotate(q, rotations);
+  }
+  if (iterations > 0 && freedom > 0) {
+    result.last_change = sample_displacements(subspace, Eigen::VectorXd(q - previous)).rowwise().norm().maxCoeff();
+  }
+  const double squares = handles.squared_error(q, targets);
+  result.handle_error = std::sqrt(squares / handles.total_weight());
+  result.energy = quotient.energy(q, rotations) + alpha * squares + contacts.value(q, turned);
+  return result;
+}
+
+}  // namespace orbifit

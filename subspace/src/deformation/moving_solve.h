@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "orbifit/subspace/carried_regions.h"
+#include "orbifit/subspace/contact_energy.h"
+#include "orbifit/subspace/corotation.h"
+#include "orbifit/subspace/deformer.h"
+#include "orbifit/subspace/lift.h"
+
+#include "deformation/handle_rows.h"
+
+namespace orbifit {
+
+/// Co-rotated Laplace editing while the regions' groups turn (method notes 2.2, moving). An iteration solves for the
+/// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and
+/// the basis is built anew, so that every state keeps every carried symmetry to rounding.
+class MovingSolve {
+ public:
+  /// \param contact_weight  see ContactEnergy
+  MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
+              double contact_weight);
+
+  Deformation solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions, int iterations,
+                    const SubspaceState& start) const;
+
+ private:
+  CarriedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
+
+  const Subspace& subspace_;
+  const Corotation& corotation_;
+  CarriedRegions regions_;
+  std::vector<Contact> contacts_;
+  double contact_weight_;
+};
+
+}  // namespace orbifit

@@ -1,9 +1,0 @@
-#include "kernels.h"
-#include "kernels_body.h"
-
-namespace orbifit {
-
-const Kernels kPlainKernels{blocked_sums, carried_copies, gather_blocks,     edge_products, turned_edges,
-                            edge_misfits, gram,           nearest_rotations, cholesky_solve};
-
-}  // namespace orbifit
