@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "command.h"
 
 /// One function a subcommand: adds its options to `app` and returns what runs once they are parsed. Each stands in
@@ -8,6 +10,7 @@
 namespace orbifit::commands {
 
 CommandBody annotate(CLI::App& app);
+CommandBody batch(CLI::App& app);
 CommandBody check(CLI::App& app);
 CommandBody compare(CLI::App& app);
 CommandBody convert(CLI::App& app);
@@ -21,6 +24,9 @@ CommandBody report(CLI::App& app);
 CommandBody scan(CLI::App& app);
 CommandBody subspace(CLI::App& app);
 CommandBody symmetrize(CLI::App& app);
+
+/// The program's table of commands, for those that call others.
+std::span<const Command> all();
 
 /// orbifit starts it; the function above stands in that program alone, which links what is under the GPL.
 inline constexpr Command kCompare{

@@ -75,11 +75,25 @@ constexpr std::array kCommands{
             "orbifit render chair.obj --annotation chair.json -o regions.png\n"
             "orbifit render chair.obj --points scan.ply --up 0 1 0 -o fit.png",
             commands::render},
+    Command{"batch", "Do a whole collection, each item in a process of its own; look at and export the results.",
+            "orbifit batch models --task detect --out results\n"
+            "orbifit batch manifest.jsonl --task fit --out results --jobs 8 --item-timeout 300 --item-memory 4G\n"
+            "orbifit batch manifest.jsonl --task detect --out results --shard 3/64\n"
+            "orbifit batch manifest.jsonl --task detect --out results --retry timeout,crash\n"
+            "orbifit batch status results\n"
+            "orbifit batch report results\n"
+            "orbifit batch export results --sqlite orbifit.db --csv tables\n"
+            "orbifit batch manifest shapenet ShapeNetCore.v2 -o manifest.jsonl",
+            commands::batch},
     Command{"report", "Bind texts, tables and pictures into one self-contained HTML page.",
             "orbifit report steps.json -o index.html", commands::report},
 };
 
 }  // namespace
+
+std::span<const Command> orbifit::commands::all() {
+  return kCommands;
+}
 
 int main(int argc, char** argv) {
   try {
