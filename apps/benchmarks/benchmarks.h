@@ -11,5 +11,6 @@ CommandBody baselines(CLI::App& app);
 CommandBody detection(CLI::App& app);
 CommandBody fitting(CLI::App& app);
 CommandBody real(CLI::App& app);
+CommandBody batch(CLI::App& app);
 
 }  // namespace orbifit::benchmarks

@@ -106,7 +106,7 @@ wait $first || code=$?
 ! pgrep -f "^$orbifit batch models --task detect --out both" || fail "a process is left"
 
 echo "== disks and folders that refuse"
-(ulimit -f 60 && expect 3 batch limited) || fail "limit on files"
+(ulimit -f 6 && expect 3 batch limited) || fail "limit on files"
 grep -q "cannot be written" said || fail "$(cat said)"
 expect 0 batch limited
 diff <(records whole) <(records limited) || fail "other records after a full disk"
