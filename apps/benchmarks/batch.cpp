@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +19,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
+#include "orbifit/model/random.h"
 
 #include "benchmarks.h"
 
@@ -57,15 +57,11 @@ void write_models(const fs::path& folder, int count, const RunContext& run) {
     run.check();
     const Generator& generator = generators()[static_cast<std::size_t>(i) % generators().size()];
     std::map<std::string, double> parameters;
-    // A sequence that fills [0, 1] evenly (Weyl), another for each parameter.
-    double root = 2;
+    Random random(1, generator.name + std::to_string(i));
     for (const GeneratorParameter& parameter : generator.parameters) {
-      const double share = std::fmod(i * std::sqrt(root), 1.0);
-      do ++root;
-      while (std::fmod(std::sqrt(root), 1.0) == 0);
       if (parameter.integer) continue;
       parameters[parameter.name] =
-          std::clamp(parameter.value * (1 + kSpread * (2 * share - 1)), parameter.minimum, parameter.maximum);
+          std::clamp(parameter.value * random.uniform(1 - kSpread, 1 + kSpread), parameter.minimum, parameter.maximum);
     }
     try {
       const Mesh mesh = generate(generator.name, parameters).mesh;
