@@ -292,11 +292,11 @@ CommandBody annotate(CLI::App& app) {
       nlohmann::ordered_json result = to_json(region, addition, found, prepared, count);
       if (!changes.empty()) result["changes"] = changes;
       if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
-      print(result.dump(2) + "\n");
+      print(context, result.dump(2) + "\n");
       return kDone;
     }
-    print(lines(changes) + to_text(region, addition, found, prepared, count) +
-          (arguments->list ? annotation_table(annotation, mesh) : ""));
+    print(context, lines(changes) + to_text(region, addition, found, prepared, count) +
+                       (arguments->list ? annotation_table(annotation, mesh) : ""));
     return kDone;
   };
 }
