@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstring>
 
 #include "lettering.h"
+#include "paste.h"
 #include "sight.h"
 
 namespace orbifit {
@@ -51,15 +51,6 @@ void draw_frame(Image& image, const Eigen::Vector2d& low, const Eigen::Vector2d&
   for (std::size_t k = 0; k < 4; ++k) draw_line(image, corners[k], corners[(k + 1) % 4], kPen, kFrame);
 }
 
-void paste(Image& image, const Image& part, int left, int top) {
-  for (int y = 0; y < part.height; ++y) {
-    const std::size_t to =
-        static_cast<std::size_t>(top + y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(left);
-    const std::size_t row = 3 * static_cast<std::size_t>(part.width);
-    std::memcpy(&image.rgb[3 * to], &part.rgb[static_cast<std::size_t>(y) * row], row);
-  }
-}
-
 // Draws what is in the box once more, enlarged, in the corner that is farthest from it, and a line from one to the
 // other.
 void add_close_up(Image& image, const Scene& scene, const Eigen::Vector4d& box, ViewOptions view,
@@ -86,10 +77,8 @@ void add_close_up(Image& image, const Scene& scene, const Eigen::Vector4d& box, 
 }
 
 Image picture_of(const Scene& scene, const Sight& sight, const ViewOptions& view, const RunContext& context) {
-  constexpr double kSmall = 0.2;  // of the picture: smaller parts are enlarged
   Image image = render(scene, view, context);
-  const bool somewhere = sight.box[2] > 0 && sight.box[3] > 0;
-  if (somewhere && std::max(sight.box[2], sight.box[3]) < kSmall) add_close_up(image, scene, sight.box, view, context);
+  if (is_small(sight)) add_close_up(image, scene, sight.box, view, context);
   return image;
 }
 

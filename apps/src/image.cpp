@@ -9,6 +9,7 @@
 #include "orbifit/model/file.h"
 
 #include "lettering.h"
+#include "paste.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wold-style-cast"
@@ -51,13 +52,6 @@ void draw_caption(Image& sheet, int left, int top, int width, const std::vector<
   }
 }
 
-void paste(Image& sheet, const Image& image, int left, int top) {
-  for (int y = 0; y < image.height; ++y) {
-    const std::size_t row = 3 * static_cast<std::size_t>(image.width);
-    std::memcpy(pixel(sheet, left, top + y), &image.rgb[static_cast<std::size_t>(y) * row], row);
-  }
-}
-
 void append(void* context, void* data, int size) {
   static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
@@ -71,6 +65,13 @@ void require_pixels(const Image& image) {
 }
 
 }  // namespace
+
+void paste(Image& sheet, const Image& image, int left, int top) {
+  for (int y = 0; y < image.height; ++y) {
+    const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+    std::memcpy(pixel(sheet, left, top + y), &image.rgb[static_cast<std::size_t>(y) * row], row);
+  }
+}
 
 Image contact_sheet(const std::vector<Image>& images, const std::vector<std::string>& captions, int columns) {
   if (captions.size() != images.size()) {

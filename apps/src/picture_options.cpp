@@ -19,8 +19,8 @@ void add_up_option(CLI::App& app, std::vector<double>& values, const std::string
 }
 
 Eigen::Vector3d picture_up(const std::vector<double>& option, const Mesh& mesh, const std::string& file,
-                           const std::optional<Eigen::Vector3d>& annotated) {
-  return option.empty() ? up_of(mesh, file, annotated) : to_direction("--up", option);
+                           const SymmetryAnnotation* annotation) {
+  return option.empty() ? up_of(mesh, file, annotation) : to_direction("--up", option);
 }
 
 std::vector<std::string> with_up_in_numbers(const std::vector<std::string>& words) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 
 namespace CLI {
@@ -20,7 +20,7 @@ void add_up_option(CLI::App& app, std::vector<double>& values, const std::string
 /// What --up says, or else the annotation, or else the format of the mesh's file, or else a guess (upright.h).
 /// \throw UsageError as to_direction
 Eigen::Vector3d picture_up(const std::vector<double>& option, const Mesh& mesh, const std::string& file,
-                           const std::optional<Eigen::Vector3d>& annotated = std::nullopt);
+                           const SymmetryAnnotation* annotation = nullptr);
 
 /// The words of a command line with "--up y" as "--up 0 1 0", which the parser can read.
 std::vector<std::string> with_up_in_numbers(const std::vector<std::string>& words);

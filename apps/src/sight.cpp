@@ -6,8 +6,8 @@ namespace orbifit {
 
 namespace {
 
-const Colour kRed(0.9F, 0.1F, 0.1F);
-const Colour kGrey(0.8F, 0.8F, 0.8F);
+const Colour kPartColour(0.9F, 0.1F, 0.1F);
+const Colour kRestColour(0.8F, 0.8F, 0.8F);
 
 std::vector<int> other_faces(const Mesh& mesh, const std::vector<int>& faces) {
   std::vector<char> in(static_cast<std::size_t>(mesh.faces.rows()), 0);
@@ -42,9 +42,9 @@ bool drawn(const Image& image, std::size_t pixel) {
 
 Sight sight_of(const Mesh& mesh, const std::vector<int>& faces, const ViewOptions& view, const RunContext& context) {
   Scene alone;
-  alone.surfaces.push_back({submesh(mesh, faces), {kRed}, {}});
+  alone.surfaces.push_back({submesh(mesh, faces), {kPartColour}, {}});
   Scene all = alone;
-  all.surfaces.push_back({submesh(mesh, other_faces(mesh, faces)), {kGrey}, {}});
+  all.surfaces.push_back({submesh(mesh, other_faces(mesh, faces)), {kRestColour}, {}});
   const Image image_alone = sketch(alone, mesh, view, context);
   const Image image_all = sketch(all, mesh, view, context);
 
@@ -73,10 +73,15 @@ Sight sight_of(const Mesh& mesh, const std::vector<int>& faces, const ViewOption
   return sight;
 }
 
+bool is_small(const Sight& sight) {
+  constexpr double kSmall = 0.2;  // of the picture's width or height
+  return sight.box[2] > 0 && sight.box[3] > 0 && std::max(sight.box[2], sight.box[3]) < kSmall;
+}
+
 bool mostly_hidden(const Sight& sight) {
   constexpr double kSeen = 0.35;      // as much of a part in the open shows its shape
-  constexpr double kScarcely = 0.02;  // of the shape's pixels: specks are found only where nothing else has a colour
-  return sight.seen < kSeen || sight.of_shape < kScarcely;
+  constexpr double kScarcely = 0.02;  // of the shape's pixels: specks all over are found only in glass
+  return sight.seen < kSeen || (sight.of_shape < kScarcely && !is_small(sight));
 }
 
 std::vector<int> faces_of(const Pattern& pattern) {

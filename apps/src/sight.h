@@ -16,6 +16,9 @@ struct Sight {
 /// Measured in a small picture. \param faces  numbers of the mesh's faces
 Sight sight_of(const Mesh& mesh, const std::vector<int>& faces, const ViewOptions& view, const RunContext& context);
 
+/// Whether all of it lies in so small a part of the picture that a close-up helps.
+bool is_small(const Sight& sight);
+
 /// Whether so little is seen that all the rest should be glass.
 bool mostly_hidden(const Sight& sight);
 

@@ -134,6 +134,18 @@ class StandingShape {
   double ground_ = 0;
 };
 
+// The axis of a group of all faces, where it is far from the coordinate axes.
+std::optional<Eigen::Vector3d> oblique_axis(const Mesh& mesh, const SymmetryAnnotation& annotation) {
+  constexpr double kAside = 0.996;  // cosine of 5 degrees: less is a scan's misalignment
+  for (const Region& region : annotation.regions) {
+    if (static_cast<Eigen::Index>(region.faces.size()) != mesh.faces.rows()) continue;
+    if (!region.group.has_axis() || region.group.family == PointGroup::Family::Cs) continue;
+    const Eigen::Vector3d axis = region.axis.normalized();
+    if (axis.cwiseAbs().maxCoeff() < kAside) return axis;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector3d> format_up(const std::filesystem::path& file) {
@@ -151,11 +163,13 @@ Eigen::Vector3d guess_up(const Mesh& mesh) {
   return shape.stance(1).score() > z.score() + kMargin ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
 }
 
-Eigen::Vector3d up_of(const Mesh& mesh, const std::filesystem::path& file,
-                      const std::optional<Eigen::Vector3d>& annotated) {
-  if (annotated) return annotated->normalized();
+Eigen::Vector3d up_of(const Mesh& mesh, const std::filesystem::path& file, const SymmetryAnnotation* annotation) {
+  if (annotation != nullptr && annotation->up) return annotation->up->normalized();
   const std::optional<Eigen::Vector3d> prescribed = format_up(file);
-  return prescribed ? *prescribed : guess_up(mesh);
+  const Eigen::Vector3d up = prescribed ? *prescribed : guess_up(mesh);
+  const std::optional<Eigen::Vector3d> axis = annotation == nullptr ? std::nullopt : oblique_axis(mesh, *annotation);
+  if (!axis) return up;
+  return axis->dot(up) < 0 ? -*axis : *axis;
 }
 
 }  // namespace orbifit

@@ -92,7 +92,7 @@ CommandBody compare(CLI::App& app) {
       truth->mesh = read_mesh(arguments->truth);
       truth->visible = visible_vertices(truth->mesh, scan.points);
     }
-    const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, annotation.up);
+    const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
     const fs::path folder = arguments->folder;
     make_folder(folder);
     Similarity pose;

@@ -109,7 +109,7 @@ void write_preview(const DetectArguments& arguments, const Mesh& mesh, const Sym
   ViewOptions view;
   view.width = 480;
   view.height = 360;
-  view.up = picture_up(arguments.up, mesh, arguments.mesh);
+  view.up = picture_up(arguments.up, mesh, arguments.mesh, &found);
   const std::vector<AnnotationPicture> pictures = annotation_pictures(mesh, found, view, run);
   if (lower_extension(arguments.preview) == ".png") {
     write_png(arguments.preview, contact_sheet(pictures, kColumns));

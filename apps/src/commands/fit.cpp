@@ -148,7 +148,7 @@ CommandBody fit(CLI::App& app) {
     // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
     if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");
     if (!arguments->html.empty()) {
-      const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, annotation.up);
+      const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
       write_file(arguments->html, fit_to_html(mesh, scan, result, symmetry, up, context.run));
     }
     if (!result.converged) {

@@ -76,7 +76,7 @@ CommandBody render(CLI::App& app) {
     if (!arguments->annotation.empty()) annotation = asked_annotation(*arguments, mesh, one_region);
     const std::size_t annotated = annotation.regions.size() + annotation.patterns.size();
     ViewOptions& chosen = arguments->view;
-    chosen.up = picture_up(arguments->up, mesh, arguments->mesh, annotation.up);
+    chosen.up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
     if (annotated + (arguments->compare.empty() ? 0 : 1) > 1) {
       if (app.count("--width") == 0) chosen.width = 480;
       if (app.count("--height") == 0) chosen.height = 360;

@@ -120,7 +120,7 @@ class StepsReader {
     ViewOptions view;
     view.width = 400;
     view.height = 320;
-    view.up = up_of(mesh, mesh_file, annotation.up);
+    view.up = up_of(mesh, mesh_file, &annotation);
     for (const AnnotationPicture& each : annotation_pictures(mesh, annotation, view, run_)) {
       pictures.push_back({encode_png(each.image), each.title + "\n" + each.detail});
     }

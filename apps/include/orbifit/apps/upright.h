@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 
 namespace orbifit {
@@ -19,8 +20,10 @@ std::optional<Eigen::Vector3d> format_up(const std::filesystem::path& file);
 /// among their features).
 Eigen::Vector3d guess_up(const Mesh& mesh);
 
-/// What the annotation says, or else what the format prescribes, or else the guess.
+/// What the annotation says, or else what the format prescribes, or else the guess. Where the annotation has an axis of
+/// the whole shape that is no coordinate axis, the shape lies in no frame that means anything: the axis is up.
+/// \param annotation  of the mesh, or null
 Eigen::Vector3d up_of(const Mesh& mesh, const std::filesystem::path& file,
-                      const std::optional<Eigen::Vector3d>& annotated = std::nullopt);
+                      const SymmetryAnnotation* annotation = nullptr);
 
 }  // namespace orbifit
