@@ -50,6 +50,8 @@ pre.command { padding: .6rem .9rem; border-radius: .4rem; background: #1d2330; c
   overflow-wrap: anywhere; }
 pre.command::before { content: "$ "; color: #8fa1bd; }
 pre.output { overflow-x: auto; }
+pre.prose { white-space: pre-wrap; overflow-wrap: anywhere; }
+.printed td, .printed th { white-space: nowrap; }
 .files { font-size: .88rem; }
 .files a { margin-right: .9rem; }
 a { color: var(--accent); }
@@ -61,7 +63,8 @@ th { color: var(--soft); font-weight: 600; white-space: nowrap; }
 .note { font-size: .88rem; color: var(--soft); margin: 0 0 .8rem; padding-left: .9rem; border-left: 3px solid var(--line);
   max-width: 46rem; }
 footer { padding-top: 1.4rem; padding-bottom: 2.5rem; color: var(--soft); font-size: .85rem; }
-@media (max-width: 40rem) { body { font-size: 16px; } h1 { font-size: 1.55rem; } header { padding-top: 1.6rem; } }
+@media (max-width: 40rem) { table { font-size: .84rem; } th, td { padding-right: .6rem; } .number { padding-left: .4rem; }
+  body { font-size: 16px; } h1 { font-size: 1.55rem; } header { padding-top: 1.6rem; } }
 @media print {
   body { font-size: 10.5pt; } header { background: none; padding-top: 0; } nav { display: none; }
   main, header > div, footer { max-width: none; padding: 0; } section { border: 0; padding-top: 1.2rem; }
@@ -113,7 +116,7 @@ bool looks_like_number(const std::string& cell) {
          (std::isdigit(static_cast<unsigned char>(cell[first])) != 0 || cell[first] == '.');
 }
 
-std::string html(const ReportTable& table) {
+std::string html(const ReportTable& table, const std::string& kind = "table") {
   const std::size_t columns = table.headers.size();
   std::vector<bool> numeric(columns, !table.rows.empty());
   for (const std::vector<std::string>& row : table.rows) {
@@ -133,7 +136,8 @@ std::string html(const ReportTable& table) {
     }
     return result + "</tr>\n";
   };
-  std::string result = "<div class=\"table\"><table>\n<thead>" + cells(table.headers, "th") + "</thead>\n<tbody>\n";
+  std::string result =
+      "<div class=\"" + kind + "\"><table>\n<thead>" + cells(table.headers, "th") + "</thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) result += cells(row, "td");
   return result + "</tbody></table></div>\n";
 }
@@ -173,7 +177,7 @@ ReportTable table_of(const std::vector<std::string>& lines) {
   return table;
 }
 
-// What the program printed: runs of indented lines are tables, their first line the headers.
+// What the program printed: runs of indented lines under headers are tables.
 std::string printed(const std::string& output) {
   std::vector<std::string> lines;
   std::istringstream stream(output);
@@ -185,14 +189,14 @@ std::string printed(const std::string& output) {
     const std::vector<std::string> block(lines.begin() + static_cast<std::ptrdiff_t>(begin),
                                          lines.begin() + static_cast<std::ptrdiff_t>(end));
     const ReportTable table = rows && block.size() > 1 ? table_of(block) : ReportTable{};
-    if (table.headers.size() > 1) {
-      result += html(table);
+    if (table.headers.size() > 1 && std::ranges::none_of(table.headers, looks_like_number)) {
+      result += html(table, "table printed");
       continue;
     }
     std::string text;
     for (const std::string& line : block) text += line + "\n";
     if (text.find_first_not_of(" \n") != std::string::npos) {
-      result += "<pre class=\"output\">" + escaped(text) + "</pre>\n";
+      result += (rows ? "<pre class=\"output\">" : "<pre class=\"output prose\">") + escaped(text) + "</pre>\n";
     }
   }
   return result;

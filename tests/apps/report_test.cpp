@@ -107,7 +107,10 @@ TEST(ToHtml, ShowsTheCommandWhatItPrintedAndItsFiles) {
       "       0  C4v            12  seat and legs\n"
       "      11  Cs          1e-13\n"
       "Distances are in percent.\n"
-      "   x <y>\n";
+      "   x <y>\n"
+      "Sizes:\n"
+      "  vertices    246\n"
+      "  triangles  1384\n";
   section.files = {{"out/a b#1.json", "a b#1.json"}};
   const std::string page = to_html(report);
   expect_nested(page);
@@ -116,8 +119,9 @@ TEST(ToHtml, ShowsTheCommandWhatItPrintedAndItsFiles) {
   EXPECT_EQ(count(page, "<td>seat and legs</td>"), 1U);
   EXPECT_EQ(count(page, "<td class=\"number\">1e-13</td>"), 1U);
   EXPECT_EQ(count(page, "<tr>"), 3U);
-  EXPECT_EQ(count(page, "<pre class=\"output\">Distances are in percent.\n</pre>"), 1U);
-  EXPECT_EQ(count(page, "   x &lt;y&gt;"), 1U);  // one line is no table; its blanks stay
+  EXPECT_EQ(count(page, "<pre class=\"output prose\">Distances are in percent.\n</pre>"), 1U);
+  EXPECT_EQ(count(page, "   x &lt;y&gt;"), 1U);       // one line is no table; its blanks stay
+  EXPECT_EQ(count(page, "  vertices    246\n"), 1U);  // nor are lines without headers
   EXPECT_EQ(count(page, "<a href=\"out/a%20b%231.json\">a b#1.json</a>"), 1U);
 }
 

@@ -265,8 +265,8 @@ CommandBody annotate(CLI::App& app) {
     if (!adds) {
       if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
       if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-      print(context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
-                         : edits_text(changes, annotation, mesh, arguments->list));
+      print(context, context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
+                                  : edits_text(changes, annotation, mesh, arguments->list));
       return kDone;
     }
     const PreparedMesh prepared = prepare(mesh);

@@ -151,7 +151,7 @@ CommandBody check(CLI::App& app) {
     const SymmetryReport report = symmetry_residual(mesh, annotation, has_deformed ? &deformed : nullptr,
                                                     parse_mode(arguments->mode), context.run);
     const double worst = worst_residual(report, has_deformed);
-    print(context.json ? to_json(report, has_deformed, worst).dump(2) + "\n" : to_text(report, has_deformed));
+    print(context, context.json ? to_json(report, has_deformed, worst).dump(2) + "\n" : to_text(report, has_deformed));
     if (!limited || worst <= arguments->max_residual) return kDone;
     context.run.message("the residual " + short_number(worst) + " (" + percent(worst) +
                         " of the diagonal) is above the limit " + short_number(arguments->max_residual) + " (" +

@@ -112,7 +112,7 @@ CommandBody compare(CLI::App& app) {
     for (const MethodRun& run : comparison.runs) {
       if (run.failure.empty()) write_mesh(folder / (run.method + ".ply"), run.result.fitted);
     }
-    print(context.json ? comparison_json(comparison) : comparison_text(comparison));
+    print(context, context.json ? comparison_json(comparison) : comparison_text(comparison));
     return kDone;
   };
 }

@@ -213,7 +213,7 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
   const SymmetryAnnotation found = detect_points(scan, chosen, context.run);
   if (!arguments.explain.empty()) write_explanation(arguments.explain, explanation);
   if (!arguments.output.empty()) write_annotation(arguments.output, found);
-  print(context.json ? points_json(found).dump(2) + "\n" : points_text(found));
+  print(context, context.json ? points_json(found).dump(2) + "\n" : points_text(found));
   return kDone;
 }
 
@@ -270,7 +270,7 @@ CommandBody detect(CLI::App& app) {
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
     if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
-    print(context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
+    print(context, context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
     return kDone;
   };
 }

@@ -164,7 +164,7 @@ CommandBody fit(CLI::App& app) {
     }
     write_mesh(arguments->output, result.fitted);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
-    print(context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
+    print(context, context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
     return kDone;
   };
 }

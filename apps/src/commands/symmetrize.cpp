@@ -102,7 +102,7 @@ CommandBody symmetrize(CLI::App& app) {
       }
       write_annotation(arguments->annotation_output, annotation);
     }
-    print(context.json ? to_json(report, after).dump(2) + "\n" : to_text(arguments->output, report, after));
+    print(context, context.json ? to_json(report, after).dump(2) + "\n" : to_text(arguments->output, report, after));
     return kDone;
   };
 }
