@@ -227,7 +227,7 @@ std::string links(const std::vector<ReportLink>& files) {
 }
 
 std::string gallery(const std::vector<ReportPicture>& pictures) {
-  constexpr std::size_t kMany = 5;
+  constexpr std::size_t kMany = 9;  // more than a page shows large
   if (pictures.empty()) return "";
   std::string result = pictures.size() == 1       ? "<div class=\"pictures one\">\n"
                        : pictures.size() >= kMany ? "<div class=\"pictures many\">\n"
