@@ -169,10 +169,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// ": did you mean '--seed'?" for what looks like an option, or a list of all of them.
-std::string suggestion(const std::string& word, CLI::App& command) {
-  if (!word.starts_with("--")) return "";
-  const std::string name = word.substr(2, word.find('=') - 2);
+// "; did you mean --seed?" for the first of the words that looks like an option, or a list of all options.
+std::string suggestion(const std::string& words, CLI::App& command) {
+  const std::size_t option_at = words.find("--");
+  if (option_at == std::string::npos) return "";
+  const std::string name = words.substr(option_at + 2, words.find_first_of("= ", option_at) - option_at - 2);
   std::string best;
   std::string all;
   std::size_t least = 1 + name.size() / 3;  // of more letters apart no mistake is likely
@@ -210,7 +211,7 @@ int refuse_call(const CLI::ParseError& error, const std::string& command, CLI::A
   if (reason.starts_with("The following argument")) {
     const std::size_t colon = reason.find(": ");
     const std::string words = colon == std::string::npos ? "" : reason.substr(colon + 2);
-    reason = "unexpected argument " + words + suggestion(words.substr(0, words.find(' ')), app);
+    reason = "unexpected argument " + words + suggestion(words, app);
   } else if (reason.starts_with("A subcommand")) {
     reason = "a command is needed";
   } else if (const std::size_t counts = reason.find(" required but received"); counts != std::string::npos) {

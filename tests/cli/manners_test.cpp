@@ -75,6 +75,7 @@ TEST_F(Manners, AWrongNameListsTheRightOnes) {
   const std::vector<std::pair<std::string, std::string>> calls{
       {"polish cube.ply", "there are info, detect, "},
       {"info cube.ply --jsn", "did you mean --json?"},
+      {"detect cube.ply --tolerence 0.1", "did you mean --tolerance?"},
       {"info cube.ply --magic-wand", "there are --"},
       {"generate teapot -o out", "armchair, bar, "},
       {"generate bar --param wheels=2 -o out", "there are length, "},
