@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/file.h"
+#include "files/file.h"
 
 namespace orbifit {
 namespace {
