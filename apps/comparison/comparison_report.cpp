@@ -42,7 +42,7 @@ constexpr std::array kFigures{
     Figure{"hidden_correspondence", "hidden correspondence error %", 100,
            [](const MethodRun& run) { return run.score ? run.score->correspondence : std::nullopt; }},
     Figure{"inlier_fraction", "inlier ratio %", 100,
-           [](const MethodRun& run) { return run.scanned ? std::optional(run.result.inlier_fraction) : std::nullopt; }},
+           [](const MethodRun& run) { return run.scanned ? std::optional(run.result.inlier_ratio) : std::nullopt; }},
     Figure{"handle_error", "handle error %", 100,
            [](const MethodRun& run) { return std::optional(run.result.landmark_rms); }},
     Figure{"bending", "bending, degrees", kDegrees,

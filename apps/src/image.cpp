@@ -6,7 +6,8 @@
 
 #include "orbifit/apps/render.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 #include "lettering.h"
 #include "paste.h"

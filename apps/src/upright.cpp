@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "orbifit/model/file.h"
+#include "files/file.h"
 
 namespace orbifit {
 

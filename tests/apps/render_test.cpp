@@ -12,7 +12,8 @@
 
 #include "orbifit/apps/annotation_pictures.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION

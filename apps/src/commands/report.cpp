@@ -11,10 +11,10 @@
 #include "orbifit/apps/upright.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 
