@@ -96,8 +96,8 @@ CommandBody fit(CLI::App& app) {
                  "Write no mesh and exit with 1 where the fit is less symmetric than this fraction of the diagonal")
       ->type_name("R");
   add_without_option(app, arguments->without);
-  app.add_flag("--auto-relax", options.drop_unsupported,
-               "Do not keep the groups that the scan has not, as a fit without shows");
+  app.add_flag("--drop-unsupported", options.drop_unsupported, "Drop groups that an unconstrained fit contradicts");
+  app.add_flag("--auto-relax", options.drop_unsupported)->group("");  // its former name
   app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
