@@ -10,9 +10,13 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/orbifitConfig.cmake ${CMAKE_CURRENT_BI
         DESTINATION ${config_dir} COMPONENT development)
 install(EXPORT orbifit_development NAMESPACE orbifit:: FILE orbifitTargets.cmake DESTINATION ${config_dir}
         COMPONENT development)
+foreach(library pcl openmesh) # the adapters, each of which is loaded where it is asked for
+  install(EXPORT orbifit_interop_${library} NAMESPACE orbifit:: FILE orbifit_${library}.cmake DESTINATION ${config_dir}
+          COMPONENT development)
+endforeach()
 set(components program development)
 if(ORBIFIT_BUILD_BASELINES)
-  install(EXPORT orbifit_baselines NAMESPACE orbifit:: FILE orbifitBaselines.cmake DESTINATION ${config_dir}
+  install(EXPORT orbifit_baselines NAMESPACE orbifit:: FILE orbifit_baselines.cmake DESTINATION ${config_dir}
           COMPONENT baselines)
   list(APPEND components baselines)
 endif()
