@@ -11,7 +11,6 @@
 #include "orbifit/model/random.h"
 #include "orbifit/model/sampling.h"
 #include "orbifit/model/surface_index.h"
-#include "orbifit/model/topology.h"
 
 #include "benchmarks.h"
 #include "models.h"
@@ -66,14 +65,6 @@ void compare(const Mesh& proxy, const Mesh& fine, const RunContext& context, Pro
   row.to_fine = distance(proxy, fine, size, context);
 }
 
-// One vertex at each place, where half-edges can hold the mesh like that.
-Mesh for_half_edges(const Mesh& mesh) {
-  const Weld weld = weld_vertices(mesh.vertices);
-  Mesh result{mesh.vertices(weld.representative, Eigen::all), mesh.faces, {}};
-  for (int& vertex : result.faces.reshaped()) vertex = weld.group_of_vertex[static_cast<std::size_t>(vertex)];
-  return result;
-}
-
 std::vector<ProxyRow> measure(const std::string& name, const Mesh& mesh, const ProxiesOptions& options,
                               const RunContext& context) {
   const PreparedMesh fine = prepare(mesh);
@@ -89,9 +80,8 @@ std::vector<ProxyRow> measure(const std::string& name, const Mesh& mesh, const P
   if (!options.peers) return {ours};
   ProxyRow theirs{name, "OpenMesh", 0, {}, {}, 0, ""};
   try {
-    const Mesh welded = for_half_edges(fine.mesh);
     start = seconds_now();
-    const Mesh proxy = decimated(welded, static_cast<int>(ours.faces));
+    const Mesh proxy = decimated(fine.mesh, static_cast<int>(ours.faces));
     theirs.seconds = seconds_now() - start;
     compare(proxy, fine.mesh, context, theirs);
   } catch (const InputError& error) {
