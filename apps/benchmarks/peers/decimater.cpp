@@ -12,8 +12,8 @@ namespace orbifit::benchmarks {
 
 namespace {
 
-// With one vertex at each place where half-edges can hold the mesh like that, otherwise with its own vertices: parts that
-// touch are apart then, and so are the triangles of a soup.
+// With one vertex at each place where half-edges can hold the mesh like that, otherwise with its own vertices: parts
+// that touch are apart then, and so are the triangles of a soup.
 Mesh for_half_edges(const Mesh& mesh) {
   const Weld weld = weld_vertices(mesh.vertices);
   Mesh welded{mesh.vertices(weld.representative, Eigen::all), mesh.faces, {}};
