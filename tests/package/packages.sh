@@ -14,8 +14,8 @@ pipeline() {
   local out=$1
   shift
   "$@" generate chair -o "$out" --quiet >/dev/null
-  "$@" detect "$out/chair.ply" -o "$out/chair.json" --quiet
-  "$@" check "$out/chair.ply" "$out/chair.json" --max-residual 1e-9 --quiet
+  "$@" detect "$out/chair.ply" -o "$out/chair.json" --quiet >/dev/null
+  "$@" check "$out/chair.ply" "$out/chair.json" --max-residual 1e-9 --quiet >/dev/null
 }
 
 (cd "$build" && cpack -B "$work/packages" >"$work/log" 2>&1) || { cat "$work/log" && exit 1; }
