@@ -5,15 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <embree3/rtcore.h>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
-#include "orbifit/subspace/moving_surface.h"
-
+#include "base/random.h"
 #include "benchmarks.h"
+#include "geometry/sampling.h"
+#include "geometry/surface_index.h"
 #include "models.h"
 #include "stage_run.h"
 #include "stopwatch.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit::benchmarks {
 

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
 
+#include "base/random.h"
 #include "benchmarks.h"
+#include "files/file.h"
+#include "geometry/sampling.h"
+#include "geometry/surface_index.h"
 #include "models.h"
 #include "peers/decimater.h"
 #include "resolution/coarse_mesh.h"

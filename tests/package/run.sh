@@ -28,7 +28,7 @@ refuses() {
 
 # Detection alone asks for nothing that other components need.
 configure build detection Ceres PCL OpenMesh >/dev/null
-cmake --build "$work/build"
+cmake --build "$work/build" --parallel 2
 "$work/build/consumer"
 
 refuses "the component pcl needs PCL" no_pcl detection\;pcl PCL

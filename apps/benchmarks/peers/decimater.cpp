@@ -6,7 +6,8 @@
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
 #include "orbifit/interop/openmesh.h"
-#include "orbifit/model/topology.h"
+
+#include "geometry/topology.h"
 
 namespace orbifit::benchmarks {
 

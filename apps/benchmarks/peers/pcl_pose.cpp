@@ -10,7 +10,8 @@
 #include <pcl/registration/sample_consensus_prerejective.h>
 
 #include "orbifit/interop/pcl.h"
-#include "orbifit/model/sampling.h"
+
+#include "geometry/sampling.h"
 
 namespace orbifit::benchmarks {
 

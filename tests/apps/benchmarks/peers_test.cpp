@@ -6,9 +6,9 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
 
+#include "base/random.h"
+#include "geometry/surface_index.h"
 #include "peers/decimater.h"
 #include "peers/pcl_pose.h"
 

@@ -11,6 +11,8 @@
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/interop/openmesh.h"
 
+#include "geometry/topology.h"
+
 namespace orbifit {
 namespace {
 

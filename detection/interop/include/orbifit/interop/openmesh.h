@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
 #include <string>
@@ -13,7 +14,6 @@
 
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh.h"
-#include "orbifit/model/topology.h"
 
 namespace orbifit {
 
@@ -31,20 +31,36 @@ inline constexpr const char* kPolygonProperty = "orbifit:polygon_of_face";
 template <typename TriMesh>
 using ScalarOf = std::remove_cvref_t<decltype(std::declval<typename TriMesh::Point>()[0])>;
 
+// An edge and the faces at it, ascending.
+struct HalfEdgePair {
+  std::array<int, 2> vertices;  // ascending
+  std::vector<int> faces;
+};
+
 // Where faces run along an edge: from its lower vertex to its higher one, or back.
-inline bool runs_upwards(const Mesh& mesh, int face, const Edge& edge) {
+inline bool runs_upwards(const Mesh& mesh, int face, const HalfEdgePair& edge) {
   for (int k = 0; k < 3; ++k) {
     if (mesh.faces(face, k) == edge.vertices[0]) return mesh.faces(face, (k + 1) % 3) == edge.vertices[1];
   }
   return false;
 }
 
-inline std::vector<Edge> edges_of(const Mesh& mesh) {
-  Weld apart;  // connectivity is by vertex numbers, as in OpenMesh
-  apart.group_of_vertex.resize(static_cast<std::size_t>(mesh.vertices.rows()));
-  std::iota(apart.group_of_vertex.begin(), apart.group_of_vertex.end(), 0);
-  apart.representative = apart.group_of_vertex;
-  return welded_edges(mesh, apart);
+// All edges in ascending order of their vertices; connectivity is by vertex numbers, as in OpenMesh.
+inline std::vector<HalfEdgePair> edges_of(const Mesh& mesh) {
+  std::vector<std::array<int, 3>> uses;  // lower vertex, higher vertex, face
+  for (int f = 0; f < mesh.faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax({mesh.faces(f, k), mesh.faces(f, (k + 1) % 3)});
+      if (low != high) uses.push_back({low, high, f});
+    }
+  }
+  std::ranges::sort(uses);
+  std::vector<HalfEdgePair> edges;
+  for (const auto& [low, high, face] : uses) {
+    if (edges.empty() || edges.back().vertices != std::array{low, high}) edges.push_back({{low, high}, {}});
+    edges.back().faces.push_back(face);
+  }
+  return edges;
 }
 
 // The fans of faces around the vertices, as sets of corners: corner k of face f has number 3 f + k.
@@ -56,7 +72,7 @@ class Fans {
   }
 
   // The faces lie side by side at this edge.
-  void join(const Edge& edge) {
+  void join(const HalfEdgePair& edge) {
     for (const int vertex : edge.vertices) {
       const int a = fan(corner(edge.faces[0], vertex));
       const int b = fan(corner(edge.faces[1], vertex));
@@ -144,7 +160,7 @@ inline std::vector<OpenMeshObstacle> openmesh_obstacles(const Mesh& mesh) {
     }
   }
   interop_detail::Fans fans(mesh);
-  for (const Edge& edge : interop_detail::edges_of(mesh)) {
+  for (const HalfEdgePair& edge : interop_detail::edges_of(mesh)) {
     const std::string where =
         " at the edge of vertices " + std::to_string(edge.vertices[0]) + " and " + std::to_string(edge.vertices[1]);
     if (edge.faces.size() > 2) {
