@@ -160,7 +160,7 @@ inline std::vector<OpenMeshObstacle> openmesh_obstacles(const Mesh& mesh) {
     }
   }
   interop_detail::Fans fans(mesh);
-  for (const HalfEdgePair& edge : interop_detail::edges_of(mesh)) {
+  for (const interop_detail::HalfEdgePair& edge : interop_detail::edges_of(mesh)) {
     const std::string where =
         " at the edge of vertices " + std::to_string(edge.vertices[0]) + " and " + std::to_string(edge.vertices[1]);
     if (edge.faces.size() > 2) {
