@@ -62,8 +62,9 @@ std::string to_text(const std::string& output, const SymmetrizeReport& report, c
   return output + ": vertices moved by " + short_number(report.largest_movement, 3) + " at most, " +
          short_number(report.rms_movement, 3) + " rms; " + std::to_string(report.mapped) + " of " +
          count_of(report.in_regions, "vertex", "vertices") + " in regions exactly symmetric" +
-         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, lest a region get worse" : "") +
-         (report.unclosed > 0 ? ", groups disagree about " + std::to_string(report.unclosed) : "") + "\n" +
+         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, since a region would get worse"
+                          : "") +
+         (report.unclosed > 0 ? ", groups contradict one another at " + std::to_string(report.unclosed) : "") + "\n" +
          (report.regions.empty() ? "" : table.text()) + "Lengths are fractions of the diagonal.\n";
 }
 
@@ -84,8 +85,8 @@ CommandBody symmetrize(CLI::App& app) {
       check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->output});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = made_consistent(
-        mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
+    SymmetryAnnotation annotation =
+        made_consistent(mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
     SymmetrizeReport report;
     const Mesh result = symmetrized(mesh, annotation, context.run, &report);
     const SymmetryReport after = symmetry_residual(result, annotation, nullptr, CarriedMotions::fixed, context.run);
