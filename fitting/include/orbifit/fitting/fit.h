@@ -106,7 +106,7 @@ struct FitInput {
   FitInput with(const SymmetryAnnotation& other) const { return {mesh, other, scan, pose, landmarks, handles}; }
 };
 
-/// Deforms a template to a scan within its symmetric subspace (method notes, section 5): alternates correspondences and
+/// Deforms a template to a scan within its symmetric subspace (docs/method.md 7): alternates correspondences and
 /// a co-rotated solve in which the pose takes part, from stiff to soft.
 /// The result's `converged` says whether it explains the scan; a fit that does not is still returned.
 /// \throw InputError for a scan of fewer than 10 points, UsageError for options

@@ -149,7 +149,8 @@ inline void refuse(const std::vector<OpenMeshObstacle>& obstacles) {
 
 /// What stands against holding the mesh as half-edges: faces with a vertex twice, edges of more than two faces or of
 /// two that run along it in the same direction, and vertices that faces surround while others touch them. Connectivity
-/// is by vertex numbers: vertices at the same place are apart. Costs O(F log F). \return nothing if to_openmesh() can
+/// is by vertex numbers: vertices at the same place are apart. Costs O(F log F).
+/// \return nothing if to_openmesh() can
 /// do it
 inline std::vector<OpenMeshObstacle> openmesh_obstacles(const Mesh& mesh) {
   std::vector<OpenMeshObstacle> obstacles;
