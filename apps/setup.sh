@@ -14,7 +14,7 @@ program_packages=( # to build orbifit and its libraries
 )
 test_packages=( # for the baselines, the adapters, the tests and cpack besides
   libceres-dev libpcl-dev libopenmesh-dev libgtest-dev
-  dpkg-dev file
+  doxygen dpkg-dev file
   parallel slurmctld slurmd slurm-client munge snakemake python3-numpy sqlite3 procps
 )
 

@@ -17,11 +17,11 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
 #include "benchmarks.h"
+#include "files/file.h"
 
 namespace orbifit::benchmarks {
 

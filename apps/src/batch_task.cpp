@@ -13,11 +13,11 @@
 
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "batch/shape_invariants.h"
 #include "commands.h"
+#include "files/file.h"
 #include "program.h"
 #include "thumbnail.h"
 

@@ -1,19 +1,20 @@
 // Parts that touch at rest touch afterwards.
 
-#include "orbifit/subspace/contacts.h"
+#include "deformation/contacts.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/topology.h"
-#include "orbifit/subspace/contact_energy.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "deformation/contact_energy.h"
 #include "deformation/touching_points.h"
+#include "geometry/topology.h"
 #include "parts.h"
 #include "subspaces.h"
 
@@ -70,7 +71,7 @@ double opened(const std::vector<Contact>& contacts, const Subspace& subspace, co
     for (const auto& [vertex, weight] : contact.sides[1].vertices) difference -= weight * moved.row(vertex).transpose();
     worst = std::max(worst, difference.norm());
   }
-  return worst / subspace.diagonal;
+  return worst / subspace->diagonal;
 }
 
 struct Stool {

@@ -7,16 +7,16 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "orbifit/detection/add_region.h"
 #include "orbifit/detection/detect.h"
+#include "orbifit/detection/guided_region.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
-#include "add_region.h"
 #include "annotation_edits.h"
-#include "guided_region.h"
 
 namespace orbifit::commands {
 
@@ -88,58 +88,26 @@ RegionHint to_hint(const AnnotateArguments& arguments) {
   return hint;
 }
 
-double area_fraction(const PreparedMesh& prepared, const std::vector<int>& faces) {
+double area_fraction(const Mesh& mesh, const std::vector<int>& faces) {
+  const Eigen::VectorXd areas = face_areas(mesh);
   double area = 0;
-  for (const int face : faces) area += prepared.areas[face];
-  return area / prepared.area;
-}
-
-// What of the verification falls short, and of how much.
-std::string shortfall(const GuidedRegion& found) {
-  const Verification& got = found.verification;
-  const VerificationLimits asked;
-  const std::string faces = count_of(static_cast<long long>(found.region.faces.size()), "face");
-  if (passes(got)) return "it holds on " + faces + " elsewhere, but not where the seed faces are";
-  if (!got.complete || got.joint < asked.joint) {
-    return percent(got.joint) + " of the area of " + faces + " fits, at least " + percent(asked.joint) + " must";
-  }
-  if (got.worst < asked.worst) {
-    return "one of its motions fits " + percent(got.worst) + " of the area of " + faces + ", each must fit " +
-           percent(asked.worst);
-  }
-  if (got.cluster > asked.cluster) {
-    return "a piece of " + percent(got.cluster) + " of the area of " + faces + " has no image, at most " +
-           percent(asked.cluster) + " may be without";
-  }
-  return "of one part " + percent(got.part) + " of the area fits, at least " + percent(asked.part) + " must";
-}
-
-// The least tolerance tried at which the region stands; none up to the largest that detection takes.
-std::optional<double> larger_tolerance(const PreparedMesh& prepared, const std::shared_ptr<const SurfaceIndex>& whole,
-                                       const RegionHint& hint, GuidedRegionOptions options, const RunContext& context) {
-  constexpr double kStep = 1.5;
-  constexpr double kLargest = 0.1;  // DetectOptions::tolerance
-  while (options.tolerance * kStep <= kLargest) {
-    // As it will be printed.
-    options.tolerance = std::stod(short_number(options.tolerance * kStep, 2));
-    if (guided_region(prepared, whole, hint, options, context).stands) return options.tolerance;
-  }
-  return std::nullopt;
+  for (const int face : faces) area += areas[face];
+  return area / areas.sum();
 }
 
 std::string reason_against(const GuidedRegion& found, const Mesh& mesh, const std::optional<double>& passing) {
-  const std::string group = found.region.placement.group.symbol();
+  const std::string group = found.region.group.symbol();
   const std::string advice = passing ? "it would pass with --tolerance " + short_number(*passing, 2)
                                      : "no tolerance up to 0.1 of the diagonal would help";
   const std::string end = "; " + advice + "; nothing was written";
-  if (found.region.faces.empty()) return group + " does not hold: the surface around the seed faces is empty" + end;
-  return group + " does not hold around the seed faces: " + shortfall(found) + "; the residual is " +
-         percent(found.residual.rms) + " rms and " + percent(found.residual.max) + " at most of the diagonal, " +
-         short_number(diagonal(mesh.vertices), 6) + end;
+  if (found.region.faces.empty()) return group + " does not hold: " + found.shortfall + end;
+  return group + " does not hold around the seed faces: " + found.shortfall + "; the residual is " +
+         percent(found.region.residual.rms) + " rms and " + percent(found.region.residual.max) +
+         " at most of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + end;
 }
 
 nlohmann::ordered_json to_json(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
-                               const PreparedMesh& prepared, std::size_t regions) {
+                               const Mesh& mesh, std::size_t regions) {
   nlohmann::ordered_json result = {
       {"id", region.id},
       {"name", region.name},
@@ -148,9 +116,9 @@ nlohmann::ordered_json to_json(const Region& region, const RegionAddition& addit
   };
   if (region.group.has_axis()) result["axis"] = {region.axis.x(), region.axis.y(), region.axis.z()};
   result["faces"] = region.faces.size();
-  result["area_fraction"] = area_fraction(prepared, region.faces);
+  result["area_fraction"] = area_fraction(mesh, region.faces);
   result["parent"] = region.parent ? nlohmann::ordered_json(*region.parent) : nullptr;
-  result["share_kept"] = found.verification.joint;
+  result["share_kept"] = found.kept;
   result["residual"] = {{"rms", region.residual.rms}, {"max", region.residual.max}};
   result["replaced"] = addition.replaced;
   result["regions"] = regions;
@@ -161,17 +129,17 @@ std::string triple(const Eigen::Vector3d& v) {
   return short_number(v.x(), 6) + " " + short_number(v.y(), 6) + " " + short_number(v.z(), 6);
 }
 
-std::string to_text(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
-                    const PreparedMesh& prepared, std::size_t regions) {
+std::string to_text(const Region& region, const RegionAddition& addition, const GuidedRegion& found, const Mesh& mesh,
+                    std::size_t regions) {
   std::string text = "region " + std::to_string(region.id) + " of " + std::to_string(regions) + ": " +
                      region.group.symbol() + " on " + count_of(static_cast<long long>(region.faces.size()), "face") +
-                     ", " + percent(area_fraction(prepared, region.faces)) + " of the area, parent " +
+                     ", " + percent(area_fraction(mesh, region.faces)) + " of the area, parent " +
                      (region.parent ? std::to_string(*region.parent) : "none") + "\n";
   text += "  centre " + triple(region.centre) +
           (region.group.has_axis() ? ", axis " + triple(region.axis) : std::string()) + "\n";
-  text += "  " + percent(found.verification.joint) + " of it fits; residual " + percent(region.residual.rms) +
-          " rms, " + percent(region.residual.max) + " at most of the diagonal\n";
-  for (const std::string& old : addition.replaced) text += "  in place of " + old + ", which says nothing more\n";
+  text += "  " + percent(found.kept) + " of it fits; residual " + percent(region.residual.rms) + " rms, " +
+          percent(region.residual.max) + " at most of the diagonal\n";
+  for (const std::string& old : addition.replaced) text += "  in place of " + old + ", which it subsumes\n";
   return text;
 }
 
@@ -206,48 +174,54 @@ void add_place(CLI::App& app, const std::string& option, std::vector<double>& va
 CommandBody annotate(CLI::App& app) {
   const auto arguments = std::make_shared<AnnotateArguments>();
   app.add_option("MESH", arguments->mesh, "Mesh to annotate")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output,
-                 "Annotation to write (.json); without it what would become of it is only shown")
+  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it the result is only shown")
       ->type_name("FILE");
-  auto* given =
-      app.add_option("--annotation", arguments->annotation, "Annotation to change, or to which the region is added")
-          ->type_name("FILE");
-  app.add_flag("--list", arguments->list, "Show the annotation's regions and patterns, with their ids")->needs(given);
-  app.add_option("--remove", arguments->edits.remove, "Remove these regions (their ids); the others keep theirs")
+  auto* given = app.add_option("--annotation", arguments->annotation, "Annotation to change or to add a region to")
+                    ->type_name("FILE");
+  app.add_flag("--list", arguments->list, "List the regions and patterns of the annotation with their ids")
+      ->needs(given);
+  app.add_option("--remove", arguments->edits.remove, "Ids of regions to remove; the others keep their ids")
       ->delimiter(',')
       ->needs(given)
       ->type_name("ID,...");
-  app.add_option("--rename", arguments->edits.rename, "Give a region another name; may be given again")
+  app.add_option("--rename", arguments->edits.rename, "Rename a region; may be repeated")
       ->needs(given)
       ->type_name("ID NAME");
-  add_place(app, "--plane", arguments->plane, 6, "Mirror plane, roughly: a point and the normal", "PX PY PZ NX NY NZ");
-  add_place(app, "--axis", arguments->axis, 6, "Axis, roughly: a point and the direction", "PX PY PZ DX DY DZ");
-  add_place(app, "--centre,--center", arguments->centre, 3, "Centre, roughly", "X Y Z");
-  app.add_option("--order", arguments->order,
-                 "Order of the rotation about the axis, or inf for all; the region's largest group with it is taken")
+  add_place(app, "--plane", arguments->plane, 6, "Approximate mirror plane: a point and the normal",
+            "PX PY PZ NX NY NZ");
+  add_place(app, "--axis", arguments->axis, 6, "Approximate axis: a point and the direction", "PX PY PZ DX DY DZ");
+  add_place(app, "--centre,--center", arguments->centre, 3, "Approximate centre", "X Y Z");
+  app.add_option(
+         "--order", arguments->order,
+         "Order of rotation about the axis, or inf for a surface of revolution; the largest group of the region that "
+         "contains these rotations is taken")
       ->type_name("N");
-  app.add_option("--group", arguments->group, "The group itself, such as C4v (default: Cs, Ci, or the largest found)")
+  app.add_option("--group", arguments->group,
+                 "Schoenflies symbol of the group, such as C4v (default: Cs for a plane, Ci for a centre, the largest "
+                 "found for "
+                 "an axis)")
       ->type_name("SYMBOL");
-  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be given again")
+  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("F");
   add_place(app, "--near", arguments->near, 3,
-            "A point at the region: the face nearest to it is taken as one of the region's", "X Y Z");
+            "A point near the region: the face nearest to it is taken as a face of the region", "X Y Z");
   app.add_option("--name", arguments->name, "Name of the region")->type_name("TEXT");
-  app.add_option("--tolerance", arguments->tolerance,
-                 "Largest distance that counts as symmetric, as a fraction of the diagonal "
-                 "(default: that of --annotation, or 0.005)");
-  app.add_flag("--consistent", arguments->consistent,
-               "Make all regions agree exactly, as deform and fit do before they start: what cannot is left out, and "
-               "images that are missing are added");
-  app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as it is given");
+  app.add_option(
+      "--tolerance", arguments->tolerance,
+      "Largest distance between the surface and its image that still counts as symmetric, as a fraction of the "
+      "diagonal (default: that of --annotation, or 0.005)");
+  app.add_flag(
+      "--consistent", arguments->consistent,
+      "Make all regions consistent with one another, exactly, as deform and fit do first: regions that cannot be are "
+      "left out, missing images of regions are added");
+  app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as given");
   return [arguments, &app](CommandContext& context) {
     const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
     RegionHint hint;
     if (adds) hint = to_hint(*arguments);
-    const Eigen::Vector3d near =
-        arguments->near.empty() ? Eigen::Vector3d::Zero() : to_point("--near", arguments->near);
+    if (adds && !arguments->near.empty()) hint.near = to_point("--near", arguments->near);
     if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
     DetectOptions limits;
     limits.tolerance = arguments->tolerance;
@@ -265,20 +239,16 @@ CommandBody annotate(CLI::App& app) {
     if (!adds) {
       if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
       if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-      print(context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
-                         : edits_text(changes, annotation, mesh, arguments->list));
+      print(context, context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
+                                  : edits_text(changes, annotation, mesh, arguments->list));
       return kDone;
     }
-    const PreparedMesh prepared = prepare(mesh);
-    const auto whole = std::make_shared<const SurfaceIndex>(prepared.mesh);
-    if (!arguments->near.empty()) hint.seeds.push_back(whole->nearest(near).face);
-    hint.validate(static_cast<int>(mesh.faces.rows()));
-    GuidedRegion found = guided_region(prepared, whole, hint, options, context.run);
-    if (!found.stands) {
-      throw NoResultError(reason_against(found, mesh, larger_tolerance(prepared, whole, hint, options, context.run)));
+    GuidedRegion found = guided_region(mesh, hint, options, context.run);
+    if (!found.holds) {
+      throw NoResultError(reason_against(found, mesh, passing_tolerance(mesh, hint, options, context.run)));
     }
     found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
-    const RegionAddition addition = add_region(prepared, found.region, found.residual, options.tolerance, annotation);
+    const RegionAddition addition = add_region(mesh, found.region, options.tolerance, annotation);
     if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
     if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
     const auto added = std::ranges::find(annotation.regions, addition.id, &Region::id);
@@ -289,14 +259,14 @@ CommandBody annotate(CLI::App& app) {
     const Region& region = *added;
     const std::size_t count = annotation.regions.size();
     if (context.json) {
-      nlohmann::ordered_json result = to_json(region, addition, found, prepared, count);
+      nlohmann::ordered_json result = to_json(region, addition, found, mesh, count);
       if (!changes.empty()) result["changes"] = changes;
       if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
-      print(result.dump(2) + "\n");
+      print(context, result.dump(2) + "\n");
       return kDone;
     }
-    print(lines(changes) + to_text(region, addition, found, prepared, count) +
-          (arguments->list ? annotation_table(annotation, mesh) : ""));
+    print(context, lines(changes) + to_text(region, addition, found, mesh, count) +
+                       (arguments->list ? annotation_table(annotation, mesh) : ""));
     return kDone;
   };
 }

@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "batch/bop.h"
 #include "batch/collection.h"
 #include "batch/export.h"
 #include "batch/item_names.h"
 #include "batch/layouts.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 
 #include "../commands.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 
@@ -61,7 +61,7 @@ CommandBody convert(CLI::App& app) {
       summary["faces"] = mesh.faces.rows();
       text += count_of(mesh.vertices.rows(), "vertex", "vertices") + ", " + count_of(mesh.faces.rows(), "triangle");
     }
-    print((context.json ? summary.dump(2) : text) + "\n");
+    print(context, (context.json ? summary.dump(2) : text) + "\n");
     return kDone;
   };
 }

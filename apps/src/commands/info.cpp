@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/topology.h"
 
 #include "../commands.h"
+#include "geometry/topology.h"
 
 namespace orbifit::commands {
 
@@ -77,7 +77,7 @@ CommandBody info(CLI::App& app) {
     const Mesh mesh = read_mesh(*file);
     context.run.check();
     const MeshReport report = inspect(mesh);
-    print(context.json ? to_json(*file, mesh, report).dump(2) + "\n" : to_text(*file, mesh, report));
+    print(context, context.json ? to_json(*file, mesh, report).dump(2) + "\n" : to_text(*file, mesh, report));
     return kDone;
   };
 }

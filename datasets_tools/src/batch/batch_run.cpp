@@ -12,10 +12,10 @@
 #include <unistd.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "batch/item_names.h"
 #include "batch/results_file.h"
+#include "files/file.h"
 
 namespace orbifit::batch {
 

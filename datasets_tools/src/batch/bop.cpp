@@ -9,10 +9,10 @@
 
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "batch/item_names.h"
+#include "files/file.h"
 
 namespace orbifit::batch {
 

@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "batch/item_names.h"
+#include "files/file.h"
 
 namespace orbifit::batch {
 

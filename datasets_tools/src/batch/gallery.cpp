@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "batch/export.h"
 #include "batch/gallery_page.h"
 #include "batch/item_names.h"
+#include "files/file.h"
 
 namespace orbifit::batch {
 

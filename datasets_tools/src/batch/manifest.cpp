@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "batch/content_hash.h"
 #include "batch/item_names.h"
 #include "batch/unforked.h"
+#include "files/file.h"
 
 namespace orbifit::batch {
 

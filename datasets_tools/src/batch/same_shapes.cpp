@@ -12,9 +12,9 @@
 
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/surface_index.h"
 
 #include "batch/shape_invariants.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit::batch {
 

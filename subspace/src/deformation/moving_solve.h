@@ -2,17 +2,17 @@
 
 #include <vector>
 
-#include "orbifit/subspace/carried_regions.h"
-#include "orbifit/subspace/contact_energy.h"
-#include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/deformer.h"
-#include "orbifit/subspace/lift.h"
 
+#include "basis/carried_regions.h"
+#include "basis/lift.h"
+#include "deformation/contact_energy.h"
+#include "deformation/corotation.h"
 #include "deformation/handle_rows.h"
 
 namespace orbifit {
 
-/// Co-rotated Laplace editing while the regions' groups turn (method notes 2.2, moving). An iteration solves for the
+/// Co-rotated Laplace editing while the regions' groups turn (docs/method.md 2.2, moving). An iteration solves for the
 /// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and
 /// the basis is built anew, so that every state keeps every carried symmetry to rounding.
 class MovingSolve {

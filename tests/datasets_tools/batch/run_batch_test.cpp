@@ -10,10 +10,10 @@
 #include <unistd.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "batch/batch_run.h"
 #include "batch/results_file.h"
+#include "files/file.h"
 #include "temporary_folder.h"
 
 namespace orbifit::batch {

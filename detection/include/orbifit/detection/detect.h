@@ -14,9 +14,9 @@ struct DetectOptions {
   int samples = 4000;  // >= 100
   /// Meshes of at least as many faces are looked at by a coarser stand-in, where the tolerance allows one of at most
   /// half the faces, and what is found there is carried back, refined and verified on the mesh itself; 0: none are.
-  int stand_in_from = 60000;  // >= 0
+  int simplify_above_faces = 60000;  // >= 0
   /// Stop after this many seconds and return what is verified by then.
-  double max_seconds = 0;  // >= 0; 0: no limit
+  double time_budget = 0;  // >= 0; 0: no limit
   /// Where to note what each stage kept and dropped; null: nowhere.
   Explanation* explanation = nullptr;
 
@@ -28,7 +28,8 @@ struct DetectOptions {
 /// its connected components and sets of congruent components, and the congruences among components as patterns. Every
 /// element of a returned group was verified against the surface. Sorted by area, largest first; parents set. The result
 /// is the same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance
-/// asks for; the search itself depends on how much shape there is at the size of the tolerance. \throw InputError when
+/// asks for; the search itself depends on how much shape there is at the size of the tolerance.
+/// \throw InputError when
 /// the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 

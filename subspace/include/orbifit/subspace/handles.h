@@ -17,7 +17,7 @@ struct Handle {
   Motion motion;              ///< where it shall go; the identity holds it in place
 };
 
-/// What a file of handles asks for (design: `handles.json`).
+/// What a file of handles asks for (docs/formats.md).
 struct HandleSet {
   double alpha = 100;   ///< weight of the handles against the Laplace energy (paper, equation 3), > 0
   int iterations = 10;  ///< of the co-rotated solve, >= 1
