@@ -99,7 +99,10 @@ void define_contents(Class& annotation) {
       .def_property_readonly(
           "patterns", [](const AnnotationPointer& a) { return items_of(a, a->value.patterns); }, "Repeated parts.")
       .def_property_readonly(
-          "mesh", [](const Annotation& a) { return std::const_pointer_cast<Mesh>(a.mesh); },
+          "mesh",
+          [](const Annotation& a) {
+            return a.mesh ? std::optional(std::const_pointer_cast<Mesh>(a.mesh)) : std::nullopt;
+          },
           "The mesh that it is of; None where that is not known, as after unpickling.")
       .def_property_readonly(
           "tolerance", [](const Annotation& a) { return a.value.tolerance; },
