@@ -62,6 +62,7 @@ def arguments_of(text: str) -> str:
 
 def signature_of(function: Any) -> "tuple[str, str]":
     """Arguments and result."""
+    function = getattr(function, "__wrapped__", function)
     if isinstance(function, types.FunctionType):
         text = str(inspect.signature(function))
         found = re.match(r"^\((.*)\) -> (.+)$", text)

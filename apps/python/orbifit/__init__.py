@@ -1,5 +1,7 @@
 """Finds the symmetries of a 3D shape, and edits it or fits it to a scan without breaking them."""
 
+import functools
+import types
 from typing import Any, Callable, Union
 
 from . import _core
@@ -26,6 +28,21 @@ __all__ = sorted(name for name in vars(_core) if not name.startswith("_"))
 # What is written in Python of the classes that the library has, and what they are called.
 _formats.add_to(_core)
 _html.add_to(_core)
+
+
+def _picklable(function: Any) -> Any:
+    """A function of the compiled module as one of Python, which processes can send to one another by its name."""
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **options: Any) -> Any:
+        return function(*arguments, **options)
+
+    call.__qualname__ = function.__name__
+    return call
+
+
 for _name in __all__:
-    getattr(_core, _name).__module__ = "orbifit"
+    if isinstance(getattr(_core, _name), types.BuiltinFunctionType):
+        globals()[_name] = _picklable(getattr(_core, _name))
+    globals()[_name].__module__ = "orbifit"
 del _name

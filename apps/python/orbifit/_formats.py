@@ -31,7 +31,7 @@ def mesh_to_open3d(self: "Mesh") -> Any:
     import open3d
 
     mesh = open3d.geometry.TriangleMesh(
-        open3d.utility.Vector3dVector(self.vertices), open3d.utility.Vector3iVector(self.faces)
+        open3d.utility.Vector3dVector(np.array(self.vertices)), open3d.utility.Vector3iVector(np.array(self.faces))
     )
     mesh.compute_vertex_normals()
     return mesh
@@ -63,9 +63,9 @@ def scan_to_open3d(self: "PointCloud") -> Any:
     """An ``open3d.geometry.PointCloud``."""
     import open3d
 
-    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(self.points))
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(np.array(self.points)))
     if self.normals is not None:
-        cloud.normals = open3d.utility.Vector3dVector(self.normals)
+        cloud.normals = open3d.utility.Vector3dVector(np.array(self.normals))
     return cloud
 
 

@@ -131,11 +131,11 @@ void define_pictures(py::module_& module) {
   define_render(module);
   module.def(
       "encode_png", [](const PixelArray& pixels) { return py::bytes(encode_png(image_from(pixels))); },
-      py::arg("pixels"), "A picture as the bytes of a PNG file.");
+      py::arg("pixels").noconvert(), "A picture as the bytes of a PNG file.");
   module.def(
       "write_png",
       [](const PathLike& file, const PixelArray& pixels) { write_png(path_from(file), image_from(pixels)); },
-      py::arg("file"), py::arg("pixels"), "Writes a picture as PNG, whole or not at all.");
+      py::arg("file"), py::arg("pixels").noconvert(), "Writes a picture as PNG, whole or not at all.");
   module.def(
       "contact_sheet",
       [](const std::vector<PixelArray>& pictures, const std::vector<std::string>& captions, int columns) {
@@ -143,7 +143,7 @@ void define_pictures(py::module_& module) {
         for (const PixelArray& picture : pictures) images.push_back(image_from(picture));
         return pixels_of(contact_sheet(images, captions, columns));
       },
-      py::arg("pictures"), py::arg("captions"), py::arg("columns") = 4,
+      py::arg("pictures").noconvert(), py::arg("captions"), py::arg("columns") = 4,
       "(height, width, 3) uint8: small pictures side by side, with a caption each.");
   module.def(
       "region_colour",
