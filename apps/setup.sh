@@ -12,8 +12,10 @@ program_packages=( # to build orbifit and its libraries
   libeigen3-dev libflann-dev liblz4-dev libembree-dev libtbb-dev
   libcli11-dev nlohmann-json3-dev libstb-dev
 )
-test_packages=( # for the baselines, the adapters, the tests and cpack besides
+test_packages=( # for the baselines, the adapters, the Python package, the tests and cpack besides
   libceres-dev libpcl-dev libopenmesh-dev libgtest-dev
+  python3-dev pybind11-dev python3-numpy python3-pip
+  python3-pytest python3-hypothesis python3-distributed mypy python3-sphinx furo
   dpkg-dev file
 )
 

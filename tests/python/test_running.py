@@ -132,12 +132,12 @@ def test_threads_share_a_deformer(subspace, lift):
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
-def test_processes(mesh, annotation, method):
-    orbifit.render(mesh, width=32, height=24)  # so that a fork finds threads that are not there any more
+def test_processes(box, method):
+    orbifit.render(box, width=32, height=24)  # so that a fork finds threads that are not there any more
     context = multiprocessing.get_context(method)
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as pool:
-        found = list(pool.map(orbifit.detect, [mesh, mesh.with_vertices(2 * mesh.vertices)], timeout=200))
-    assert found[0] == orbifit.detect(mesh) and len(found[1].regions) == len(found[0].regions)
+        found = list(pool.map(orbifit.detect, [box, box.with_vertices(2 * box.vertices)], timeout=200))
+    assert found[0] == orbifit.detect(box) and [annotation.regions[0].group for annotation in found] == ["D2h"] * 2
 
 
 ROUNDS = """
@@ -219,11 +219,13 @@ CLUSTER = """
     import orbifit
     from distributed import Client, LocalCluster
 
+    FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6],
+             [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+
     def annotate(seed):
-        time.sleep(0.02)
-        rng = np.random.default_rng(seed)
-        mesh, _ = orbifit.generate("bar", length=4 + rng.random())
-        return orbifit.detect(mesh, threads=1, time_budget=5)
+        x, y, z = np.random.default_rng(seed).uniform(1, 3, 3)
+        corners = [[i, j, k] for i in (0, x) for j in (0, y) for k in (0, z)]
+        return orbifit.detect(corners, FACES, threads=1, samples=100)
 
     if __name__ == "__main__":
         with LocalCluster(n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:

@@ -18,7 +18,7 @@ namespace {
 class KeptDeformer {
  public:
   KeptDeformer(SubspacePointer of, const DeformerOptions& options, RunContext& context)
-      : of_(std::move(of)), deformer_(*of_->subspace, *of_->mesh, options, context) {}
+      : of_(std::move(of)), deformer_(of_->subspace, *of_->mesh, options, context) {}
 
   void set_handles(const std::vector<Handle>& handles, double alpha) {
     if (handles.empty()) throw UsageError("handles is empty");
@@ -46,7 +46,7 @@ class KeptDeformer {
   }
 
   const SubspacePointer& of() const { return of_; }
-  std::size_t contacts() const { return deformer_.contacts().size(); }
+  std::size_t contacts() const { return deformer_.contacts(); }
 
  private:
   SubspacePointer of_;
@@ -169,10 +169,10 @@ std::vector<Handle> handles_from(const py::handle& handles, const Mesh& mesh) {
 
 SubspaceState state_from(const KeptSubspace& kept, const py::handle& state) {
   if (!py::isinstance<KeptDeformation>(state)) {
-    return {numbers_from(state, "q", kept.subspace->degrees_of_freedom()), nullptr};
+    return {numbers_from(state, "q", kept.subspace.degrees_of_freedom()), nullptr};
   }
   const auto& deformation = state.cast<const KeptDeformation&>();
-  if (deformation.of->subspace != kept.subspace) throw UsageError("the deformation is of another subspace");
+  if (&*deformation.of->subspace != &*kept.subspace) throw UsageError("the deformation is of another subspace");
   return deformation.deformation.state;
 }
 
@@ -232,7 +232,7 @@ void define_deformer(py::module_& module) {
           "subspace", [](const KeptDeformer& deformer) { return deformer.of(); }, "In which it edits.")
       .def_property_readonly("contacts", &KeptDeformer::contacts, "Number of places where parts are kept touching.")
       .def("__repr__", [](const KeptDeformer& deformer) {
-        return "<orbifit.Deformer: " + to_string(deformer.of()->subspace->mode) + ">";
+        return "<orbifit.Deformer: " + to_string(deformer.of()->subspace.mode()) + ">";
       });
 }
 

@@ -3,7 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "orbifit/detection/detect.h"
-#include "orbifit/detection/points.h"
+#include "orbifit/detection/detect_points.h"
 #include "orbifit/model/errors.h"
 
 #include "annotations.h"
@@ -18,12 +18,12 @@ DetectOptions options_from(double tolerance, std::optional<double> time_budget, 
   DetectOptions options;
   options.tolerance = tolerance;
   options.samples = samples;
-  options.stand_in_from = simplify_above_faces;
+  options.simplify_above_faces = simplify_above_faces;
   if (time_budget) {
     if (!(*time_budget > 0 && std::isfinite(*time_budget))) {
       throw UsageError("time_budget is " + std::to_string(*time_budget) + "; it must be above 0 seconds");
     }
-    options.max_seconds = *time_budget;
+    options.time_budget = *time_budget;
   }
   options.validate();
   return options;
@@ -46,7 +46,7 @@ void define_detection(py::module_& module) {
       },
       py::arg("vertices"), py::arg("faces") = py::none(), py::kw_only(), py::arg("tolerance") = 0.005,
       py::arg("time_budget") = py::none(), py::arg("samples") = DetectOptions{}.samples,
-      py::arg("simplify_above_faces") = DetectOptions{}.stand_in_from, seed_argument(), threads_argument(),
+      py::arg("simplify_above_faces") = DetectOptions{}.simplify_above_faces, seed_argument(), threads_argument(),
       timeout_argument(), progress_argument(),
       "Finds the symmetric regions of a mesh and its repeated parts.\n\n"
       "Args:\n"
@@ -63,7 +63,8 @@ void define_detection(py::module_& module) {
       "detect_points",
       [](const ScanLike& scan_like, double tolerance, std::optional<double> time_budget, int samples,
          std::uint64_t seed, std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
-        const DetectOptions options = options_from(tolerance, time_budget, samples, DetectOptions{}.stand_in_from);
+        const DetectOptions options =
+            options_from(tolerance, time_budget, samples, DetectOptions{}.simplify_above_faces);
         const ScanPointer scan = scan_from(scan_like);
         return std::make_shared<Annotation>(
             Annotation{run({seed, threads, timeout, progress},

@@ -12,11 +12,11 @@ py::dict figures_of(const FitResult& result) {
   figures["samples"] = result.samples;
   figures["degrees_of_freedom"] = result.degrees_of_freedom;
   figures["iterations"] = result.iterations.size();
-  figures["overlap"] = result.used_fraction;
+  figures["overlap"] = result.overlap;
   figures["torn_off"] = result.torn_off;
-  figures["inlier_ratio"] = result.inlier_fraction;
+  figures["inlier_ratio"] = result.inlier_ratio;
   figures["rms"] = result.rms;
-  figures["visible_coverage"] = result.covered;
+  figures["visible_coverage"] = result.visible_coverage;
   figures["cut_off"] = result.cut_off;
   figures["confidence"] = result.confidence;
   figures["landmark_rms"] = result.landmark_rms;
@@ -123,7 +123,7 @@ void define_fit_result(py::module_& module) {
           "rms", [](const KeptFit& kept) { return kept.result.rms; },
           "Of the explained points' distances, fraction of the fitted mesh's diagonal.")
       .def_property_readonly(
-          "inlier_ratio", [](const KeptFit& kept) { return kept.result.inlier_fraction; },
+          "inlier_ratio", [](const KeptFit& kept) { return kept.result.inlier_ratio; },
           "Share of the scan's used points within `inlier_distance` of the fitted surface.")
       .def_property_readonly(
           "symmetry_residual", [](const KeptFit& kept) { return kept.result.field_residual; },
@@ -137,7 +137,7 @@ void define_fit_result(py::module_& module) {
           "groups", [](const KeptFit& kept) { return groups_of(kept.result); },
           "What the scan says of each region's group, where `judge_groups` asked for it.")
       .def_property_readonly(
-          "dropped", [](const KeptFit& kept) { return kept.result.relaxed; },
+          "dropped", [](const KeptFit& kept) { return kept.result.dropped; },
           "Ids of regions left out since the scan has not their symmetry (`drop_unsupported`).")
       .def("__repr__", [](const KeptFit& kept) {
         return "<orbifit.FitResult: " + std::string(kept.result.converged ? "converged" : "not converged") +

@@ -49,7 +49,7 @@ std::shared_ptr<KeptFit> fitted(const Given& given, const FitOptions& options, R
     annotation = made_consistent(*given.mesh, annotation, context);
   }
   FitInput input{*given.mesh, annotation, *given.scan, given.pose, given.landmarks, given.handles};
-  if (given.subspace) input.subspace = given.subspace->subspace;
+  if (given.subspace) input.subspace = std::make_shared<const Subspace>(given.subspace->subspace);
   auto kept = std::make_shared<KeptFit>();
   kept->mesh = given.mesh;
   kept->scan = given.scan;
@@ -81,7 +81,7 @@ void define_fit(py::module_& module) {
         options.inlier_distance = inlier_distance;
         options.contacts = contacts;
         options.judge_groups = judge_groups;
-        options.relax = drop_unsupported;
+        options.drop_unsupported = drop_unsupported;
         options.validate();
         return run({seed, threads, timeout, progress},
                    [&](RunContext& context) { return fitted(given, options, context); });

@@ -1,7 +1,8 @@
 #include "subspaces.h"
 
-#include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include <pybind11/stl.h>
@@ -9,7 +10,6 @@
 
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/radius_field.h"
 #include "orbifit/subspace/subspace_io.h"
@@ -48,7 +48,7 @@ SubspacePointer built(const MeshPointer& mesh, const SymmetryAnnotation& annotat
     auto kept = std::make_shared<KeptSubspace>();
     kept->mesh = mesh;
     kept->annotation = std::make_shared<Annotation>(Annotation{made_consistent(*mesh, annotation, context), mesh});
-    kept->subspace = std::make_shared<const Subspace>(build_subspace(*mesh, kept->annotation->value, options, context));
+    kept->subspace = build_subspace(*mesh, kept->annotation->value, options, context);
     return kept;
   });
 }
@@ -60,15 +60,17 @@ SubspacePointer loaded(const std::filesystem::path& file, const MeshPointer& mes
     kept->mesh = mesh;
     kept->annotation =
         std::make_shared<Annotation>(Annotation{made_consistent(*mesh, annotation->value, context), mesh});
-    kept->subspace = std::make_shared<const Subspace>(read_subspace(file, *mesh, kept->annotation->value, context));
+    kept->subspace = read_subspace(file, *mesh, kept->annotation->value, context);
     return kept;
   });
 }
 
 py::tuple state_of(const KeptSubspace& kept) {
   const ScratchFile file;
-  write_subspace(file.name(), *kept.subspace, *kept.mesh, kept.annotation->value);
-  return py::make_tuple(std::const_pointer_cast<Mesh>(kept.mesh), kept.annotation, py::bytes(read_file(file.name())));
+  write_subspace(file.name(), kept.subspace, *kept.mesh, kept.annotation->value);
+  std::ifstream stream(file.name(), std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  return py::make_tuple(std::const_pointer_cast<Mesh>(kept.mesh), kept.annotation, py::bytes(bytes));
 }
 
 SubspacePointer subspace_from_state(const py::tuple& state) {
@@ -76,9 +78,8 @@ SubspacePointer subspace_from_state(const py::tuple& state) {
   kept->mesh = state[0].cast<std::shared_ptr<Mesh>>();
   kept->annotation = std::make_shared<Annotation>(Annotation{state[1].cast<AnnotationPointer>()->value, kept->mesh});
   const ScratchFile file;
-  write_file(file.name(), state[2].cast<std::string>());
-  kept->subspace =
-      std::make_shared<const Subspace>(read_subspace(file.name(), *kept->mesh, kept->annotation->value, RunContext{}));
+  std::ofstream(file.name(), std::ios::binary) << state[2].cast<std::string>();
+  kept->subspace = read_subspace(file.name(), *kept->mesh, kept->annotation->value, RunContext{});
   return kept;
 }
 
@@ -87,13 +88,18 @@ Points lifted(const KeptSubspace& kept, const py::handle& q, std::optional<int> 
   RunContext context;
   context.threads = threads.value_or(1);
   const py::gil_scoped_release release;
-  return vertex_displacements(*kept.subspace, state, context);
+  return vertex_displacements(kept.subspace, state, context);
 }
 
-// U as the samples' displacements for each coordinate alone.
+// U, column by column: the samples' displacements for each coordinate alone.
 DoubleArray basis_of(const KeptSubspace& kept) {
   using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return owning(Dense(kept.subspace->basis.columns));
+  Dense basis(3 * kept.subspace.samples().rows(), kept.subspace.degrees_of_freedom());
+  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
+    const Points column = sample_displacements(kept.subspace, Eigen::VectorXd::Unit(basis.cols(), j));
+    basis.col(j) = column.reshaped<Eigen::RowMajor>();
+  }
+  return owning(std::move(basis));
 }
 
 using Class = py::class_<KeptSubspace, SubspacePointer>;
@@ -141,7 +147,7 @@ void define_building(Class& subspace) {
       .def(
           "save",
           [](const KeptSubspace& kept, const PathLike& file) {
-            write_subspace(path_from(file), *kept.subspace, *kept.mesh, kept.annotation->value);
+            write_subspace(path_from(file), kept.subspace, *kept.mesh, kept.annotation->value);
           },
           py::arg("file"), "Writes the subspace for the mesh and annotation that it was built from.")
       .def(py::pickle(&state_of, &subspace_from_state));
@@ -154,19 +160,16 @@ void define_parts(Class& subspace) {
       .def_property_readonly(
           "annotation", [](const KeptSubspace& kept) { return kept.annotation; }, "Of the groups that it keeps.")
       .def_property_readonly(
-          "mode", [](const KeptSubspace& kept) { return to_string(kept.subspace->mode); },
+          "mode", [](const KeptSubspace& kept) { return to_string(kept.subspace.mode()); },
           "'fixed', 'floating' or 'moving'.")
       .def_property_readonly(
-          "degrees_of_freedom", [](const KeptSubspace& kept) { return kept.subspace->degrees_of_freedom(); },
+          "degrees_of_freedom", [](const KeptSubspace& kept) { return kept.subspace.degrees_of_freedom(); },
           "Number of coordinates.")
       .def_property_readonly(
-          "radius", [](const KeptSubspace& kept) { return kept.subspace->sampling.radius; },
-          "Of sampling, in the mesh's unit.")
+          "radius", [](const KeptSubspace& kept) { return kept.subspace.radius(); }, "Of sampling, in the mesh's unit.")
       .def_property_readonly(
           "samples",
-          [](const py::object& self) {
-            return view_of(self.cast<const KeptSubspace&>().subspace->sampling.points, self);
-          },
+          [](const py::object& self) { return view_of(self.cast<const KeptSubspace&>().subspace.samples(), self); },
           "(s, 3): the samples at rest, orbit by orbit.")
       .def_property_readonly("basis", &basis_of,
                              "(3 s, degrees_of_freedom): what a coordinate makes of the samples' displacements, x0 y0 "
@@ -200,7 +203,7 @@ void define_displacements(Class& subspace) {
             auto mesh = std::make_shared<Mesh>(*kept.mesh);
             mesh->vertices += lifted(kept, q, 1);
             return std::make_shared<Annotation>(
-                Annotation{carried_annotation(kept.annotation->value, *kept.subspace, state, *mesh), mesh});
+                Annotation{deformed_annotation(kept.annotation->value, kept.subspace, state, *mesh), mesh});
           },
           py::arg("q"), "The annotation of the mesh so moved: its regions' groups go along.")
       .def(
@@ -209,7 +212,7 @@ void define_displacements(Class& subspace) {
              std::optional<double> timeout, const Progress& progress) {
             const SubspaceState state = state_from(kept, q);
             const std::vector<Residual> residuals = run({seed, threads, timeout, progress}, [&](RunContext& context) {
-              return field_residuals(*kept.subspace, *kept.mesh, kept.annotation->value, state, context);
+              return field_residuals(kept.subspace, *kept.mesh, kept.annotation->value, state, context);
             });
             Eigen::VectorXd largest(static_cast<Eigen::Index>(residuals.size()));
             for (Eigen::Index r = 0; r < largest.size(); ++r) largest[r] = residuals[static_cast<std::size_t>(r)].max;
@@ -219,9 +222,9 @@ void define_displacements(Class& subspace) {
           "(regions,): how far each region's displacement is from symmetric, fraction of the diagonal: rounding.")
       .def("__repr__", [](const KeptSubspace& kept) {
         return "<orbifit.Subspace: " +
-               count_text(static_cast<std::size_t>(kept.subspace->degrees_of_freedom()), "degree") + " of freedom, " +
-               count_text(static_cast<std::size_t>(kept.subspace->sampling.points.rows()), "sample") + ", " +
-               to_string(kept.subspace->mode) + ">";
+               count_text(static_cast<std::size_t>(kept.subspace.degrees_of_freedom()), "degree") + " of freedom, " +
+               count_text(static_cast<std::size_t>(kept.subspace.samples().rows()), "sample") + ", " +
+               to_string(kept.subspace.mode()) + ">";
       });
 }
 

@@ -13,7 +13,7 @@ namespace orbifit::python {
 struct KeptSubspace {
   MeshPointer mesh;
   AnnotationPointer annotation;  ///< consistent: of the groups that the subspace keeps
-  std::shared_ptr<const Subspace> subspace;
+  Subspace subspace;
 };
 using SubspacePointer = std::shared_ptr<KeptSubspace>;
 
