@@ -61,6 +61,17 @@ inline to_chars_result to_chars(char* first, char* last, double value) {
   return {first + length, errc{}};
 }
 
+// Its power series (Abramowitz and Stegun 9.6.10), whose terms are all positive. \pre 0 <= x < 700
+inline double cyl_bessel_i(double order, double x) {
+  double term = std::pow(x / 2, order) / std::tgamma(order + 1);
+  double sum = term;
+  for (int k = 1; term > 1e-17 * sum; ++k) {
+    term *= x * x / (4 * k * (k + order));
+    sum += term;
+  }
+  return sum;
+}
+
 namespace ranges {
 
 namespace orbifit_detail {
