@@ -146,8 +146,8 @@ const char* editor_info(EditorSession* session) {
                                 {"centre", {centre.x(), centre.y(), centre.z()}},
                                 {"regions", session->annotation().regions.size()}};
     if (session->has_basis()) {
-      info["mode"] = orbifit::to_string(session->subspace().mode);
-      info["samples"] = session->subspace().sampling.points.rows();
+      info["mode"] = orbifit::to_string(session->subspace().mode());
+      info["samples"] = session->subspace().samples().rows();
       info["degrees_of_freedom"] = session->subspace().degrees_of_freedom();
     }
     session->text = info.dump();

@@ -1,7 +1,7 @@
 #include "picker.h"
 
-#include "orbifit/model/surface_index.h"
-#include "orbifit/subspace/moving_surface.h"
+#include "geometry/surface_index.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit::editor {
 

@@ -91,8 +91,8 @@ void Session::compare(bool on) {
   if (!symmetric_side_.subspace) throw UsageError("there is no basis to compare with");
   Edited other;
   SubspaceOptions options;
-  options.mode = subspace().mode;
-  options.samples = std::max(4, static_cast<int>(subspace().sampling.points.rows()));
+  options.mode = subspace().mode();
+  options.samples = std::max(4, static_cast<int>(subspace().samples().rows()));
   const SymmetryAnnotation nothing = empty_annotation(mesh_, annotation_.tolerance);
   other.subspace = std::make_unique<Subspace>(build_subspace(mesh_, nothing, options, context));
   other.vertices = mesh_.vertices;
@@ -176,7 +176,7 @@ ResidualPairs& Session::pairs() {
 Motion Session::carried(int region) const {
   const Edited& edited = need(kSymmetric);
   if (!edited.subspace || edited.state.q.size() == 0) return {};
-  return carried_motion(*edited.subspace, edited.state, region);
+  return region_motion(*edited.subspace, edited.state, region);
 }
 
 std::vector<ResidualPairs::Answer> Session::residuals(Side side) {

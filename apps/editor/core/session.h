@@ -10,7 +10,7 @@
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
-#include "orbifit/model/point_index.h"
+#include "geometry/point_index.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/handles.h"
