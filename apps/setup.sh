@@ -16,6 +16,9 @@ test_packages=( # for the baselines, the adapters, the tests and cpack besides
   libceres-dev libpcl-dev libopenmesh-dev libgtest-dev
   dpkg-dev file
 )
+editor_packages=( # to build the editor's page anew, and to try it in a browser
+  emscripten libnanoflann-dev nodejs chromium
+)
 
 as_root=()
 ((EUID == 0)) || as_root=(sudo)

@@ -1,4 +1,4 @@
-// Bundles the page: node build.mjs WASM-FOLDER OUT. WASM-FOLDER has editor_core.js and editor_core.wasm; OUT becomes the
+// Bundles the page: node build.mjs WASM-FOLDER OUT. WASM-FOLDER has editor_core.mjs and editor_core.wasm; OUT becomes the
 // page without a mesh. The same sources give the same bytes.
 import { readFileSync, mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
@@ -13,7 +13,7 @@ const source = name => join(here, "src", name);
 
 const options = {
   bundle: true, minify: true, write: false, target: "es2022", charset: "utf8", legalComments: "none", logLevel: "warning",
-  absWorkingDir: here, alias: { "editor-core": join(folder, "editor_core.js") },
+  absWorkingDir: here, alias: { "editor-core": join(folder, "editor_core.mjs") },
   define: { "import.meta.url": '""' } // where the module's file would be; the page carries it in itself
 };
 const bundled = async (entry, more) => {

@@ -25,14 +25,18 @@ constexpr double kUsualSamples = 600;
 
 }  // namespace
 
-void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
-  SubspaceOptions& options = arguments.options;
-  app.add_option("--mode", options.mode,
+void add_mode_option(CLI::App& app, GroupMode& mode) {
+  app.add_option("--mode", mode,
                  "What may become of the groups: fixed (as they are), floating (each moved by a translation) or moving "
                  "(each by a rigid motion)")
       ->transform(CLI::CheckedTransformer(kModes).description(""))
       ->type_name("MODE")
       ->default_str("floating");
+}
+
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
+  SubspaceOptions& options = arguments.options;
+  add_mode_option(app, options.mode);
   app.add_option("--lift", options.lift,
                  "How vertices follow the samples: orbit (exact in every region) or paper (not exact in partial ones)")
       ->transform(CLI::CheckedTransformer(kLifts).description(""))

@@ -12,12 +12,13 @@ function bytesOf(base64: string): Uint8Array {
 }
 
 /** The block of data with this id, or null. */
-export function embedded(id: string): { name: string; data: Uint8Array } | null {
+export function embedded(id: string): { name: string; source: string; data: Uint8Array } | null {
   const element = document.getElementById(id);
   if (!element) return null;
   const data = bytesOf(element.textContent ?? "");
   element.textContent = "";
-  return { name: element.dataset.name ?? id, data };
+  const name = element.dataset.name ?? id;
+  return { name, source: element.dataset.source || name, data };
 }
 
 export function coreBytes(): Uint8Array {

@@ -30,6 +30,7 @@ interface Basis { bytes: Uint8Array; annotation: string }
 export class Editor {
   info!: Info;
   meshName = "mesh";
+  sourceName = "mesh"; // of the user's file, for the command that replays
   state!: Snapshot;
   selected = -1;
   radius = 0.05; // of new handles, fraction of the diagonal
@@ -70,6 +71,7 @@ export class Editor {
     this.background.stop();
     this.background.setMesh(name, data);
     this.meshName = name;
+    this.sourceName = name;
     this.meshData = data;
     this.info = this.core.info();
     this.done = [];

@@ -2,7 +2,7 @@
 import { without, type Annotation } from "./annotation";
 import { Core, CoreError } from "./core";
 import { Background, coreBytes, download, embedded } from "./data";
-import { Editor } from "./editor";
+import { Editor, modes } from "./editor";
 import { fromJson } from "./handles";
 import { Input, type Tool } from "./input";
 import { element, Panel, showMessage } from "./panel";
@@ -173,7 +173,9 @@ async function start(): Promise<void> {
   const annotation = embedded("annotation");
   const basis = embedded("basis");
   await editor.open(mesh.name, mesh.data,
-                    annotation && editor.readAnnotationText(new TextDecoder().decode(annotation.data)), basis?.data ?? null);
+                    annotation && editor.readAnnotationText(new TextDecoder().decode(annotation.data)), basis?.data ?? null,
+                    Math.max(0, modes.indexOf((basis?.name ?? "floating") as (typeof modes)[number])));
+  editor.sourceName = mesh.source;
   element("hint").hidden = false;
   document.documentElement.dataset.ready = "true";
 }

@@ -76,7 +76,7 @@ export class Panel {
     const { editor } = this;
     const { info, state } = editor;
     if (!info) return;
-    element("mesh-name").textContent = editor.meshName;
+    element("mesh-name").textContent = editor.sourceName;
     element("mesh-facts").textContent =
       `${info.vertices.toLocaleString("en")} vertices, ${info.faces.toLocaleString("en")} faces` +
       (info.samples ? `; ${info.samples} samples, ${info.degrees_of_freedom} degrees of freedom` : "");
@@ -92,7 +92,7 @@ export class Panel {
     element<HTMLInputElement>("blend").value = String(editor.blend);
     element("blend-value").textContent = `${Math.round(100 * editor.blend)} %`;
     element("command").textContent =
-      `orbifit deform ${editor.meshName} annotation.json --handles handles.json --mode ${modes[state.mode]} -o edited.ply`;
+      `orbifit deform ${editor.sourceName} annotation.json --handles handles.json --mode ${modes[state.mode]} -o edited.ply`;
     const button = (name: string): HTMLButtonElement => document.querySelector(`[data-do=${name}]`)!;
     button("undo").disabled = !editor.canUndo;
     button("redo").disabled = !editor.canRedo;
