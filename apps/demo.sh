@@ -96,6 +96,7 @@ picture chair_edited.png models/chair.ply --compare chair_edited.ply
 section "Deform" "Three handles: the seat up, one foot out, the crest up." chair_deform chair_edited.png "before and after"
 run chair_recheck check models/chair.ply chair.json --deformed chair_edited.ply --mode moving
 section "Check" "The whole stays symmetric to rounding; parts do as far as the lift of the paper keeps them." chair_recheck
+run chair_edit edit models/chair.ply chair.json -o editor.html
 run chair_scan scan chair_edited.ply --views 1 --azimuth 40 --noise 0.001 -o scan.ply
 picture scan.png chair_edited.ply --points scan.ply
 section "Scan" "The edited chair seen by one virtual depth camera." chair_scan scan.png "the scan"
@@ -111,4 +112,4 @@ printf '{"title":"Orbifit: detect, deform, fit","intro":"%s","sections":[%s]}\n'
   "$(IFS=,; echo "${sections[*]}")" >steps.json
 "$orbifit" report steps.json -o index.html >/dev/null
 echo
-echo "Pictures and figures: out/index.html"
+echo "Pictures and figures: out/index.html; the chair to be edited in a browser: out/editor.html"

@@ -5,9 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "orbifit/datasets_tools/generate.h"
+
 #include "geometry/face_tree.h"
 #include "geometry/space_order.h"
-#include "orbifit/datasets_tools/generate.h"
 
 namespace orbifit {
 namespace {

@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "editor.h"
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/mesh_io.h"
 
+#include "editor.h"
 #include "temporary_folder.h"
 
 namespace orbifit {
@@ -38,8 +38,7 @@ class EditorCoreTest : public testing::Test {
   }
   // One foot, moved outwards.
   void move_foot(double by) {
-    folder_.write("handles.json",
-                  R"({"handles": [{"name": "foot", "centre": [0.23, 0.23, 0], "radius": 0.08}]})");
+    folder_.write("handles.json", R"({"handles": [{"name": "foot", "centre": [0.23, 0.23, 0], "radius": 0.08}]})");
     ASSERT_EQ(editor_set_handles(session_, path("handles.json").c_str()), 1) << editor_error();
     solve(0, by);
   }

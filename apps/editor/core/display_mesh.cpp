@@ -18,9 +18,7 @@ constexpr double kCreaseDegrees = 40;
 std::vector<std::uint32_t> places(const Points& vertices) {
   std::vector<std::uint32_t> order(static_cast<std::size_t>(vertices.rows()));
   std::iota(order.begin(), order.end(), 0U);
-  const auto position = [&](std::uint32_t v) {
-    return std::array{vertices(v, 0), vertices(v, 1), vertices(v, 2)};
-  };
+  const auto position = [&](std::uint32_t v) { return std::array{vertices(v, 0), vertices(v, 1), vertices(v, 2)}; };
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return position(a) < position(b); });
   std::vector<std::uint32_t> result(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -231,8 +231,7 @@ int editor_compare(EditorSession* session, int on) {
 
 int editor_residuals(EditorSession* session, int kind, double* numbers) {
   return guarded(-1, [&] {
-    const auto answers =
-        kind == 2 ? session->shape_residuals() : session->residuals(side_of(kind));
+    const auto answers = kind == 2 ? session->shape_residuals() : session->residuals(side_of(kind));
     for (std::size_t r = 0; r < answers.size(); ++r) {
       numbers[3 * r] = answers[r].residual.rms;
       numbers[3 * r + 1] = answers[r].residual.max;

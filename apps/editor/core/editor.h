@@ -35,7 +35,7 @@ const char* editor_info(struct EditorSession* session);
 /* What is shown. side: 0 symmetric, 1 without symmetries. */
 int editor_display_vertices(struct EditorSession* session);
 int editor_display_triangles(struct EditorSession* session);
-const uint32_t* editor_triangles(struct EditorSession* session); /* 3 a triangle */
+const uint32_t* editor_triangles(struct EditorSession* session);        /* 3 a triangle */
 const float* editor_positions(struct EditorSession* session, int side); /* 3 a shown vertex */
 const float* editor_normals(struct EditorSession* session, int side);
 const uint8_t* editor_marks(struct EditorSession* session); /* 4 a shown vertex: orbit, region, handle, pin */

@@ -1,9 +1,9 @@
 #pragma once
 
-// What emscripten 3.1.6's standard library (libc++ 13) does not have yet, as far as the core calls it: the algorithms of
-// std::ranges, each of which hands a range, its order and its projection to the algorithm on iterators; std::bit_cast;
-// and numbers from and to text. Included before every file of the WebAssembly build (portable.cmake); other builds have
-// the standard's.
+// What emscripten 3.1.6's standard library (libc++ 13) does not have yet, as far as the core calls it: the algorithms
+// of std::ranges, each of which hands a range, its order and its projection to the algorithm on iterators;
+// std::bit_cast; and numbers from and to text. Included before every file of the WebAssembly build (portable.cmake);
+// other builds have the standard's.
 
 #include <algorithm>
 #include <charconv>
@@ -25,13 +25,14 @@ constexpr To bit_cast(const From& from) noexcept {
   return __builtin_bit_cast(To, from);
 }
 
-// Decimal numbers, "inf" and "nan", without white space or plus sign before them: by strtod, which rounds correctly here.
+// Decimal numbers, "inf" and "nan", without white space or plus sign before them: by strtod, which rounds correctly
+// here.
 inline from_chars_result from_chars(const char* first, const char* last, double& value) {
   const bool negative = first != last && *first == '-';
   const char* start = negative ? first + 1 : first;
   const char begin = start != last ? *start : ' ';
-  const bool starts = (begin >= '0' && begin <= '9') || begin == '.' || begin == 'i' || begin == 'I' || begin == 'n' ||
-                      begin == 'N';
+  const bool starts =
+      (begin >= '0' && begin <= '9') || begin == '.' || begin == 'i' || begin == 'I' || begin == 'n' || begin == 'N';
   const bool hexadecimal = begin == '0' && last - start > 1 && (start[1] == 'x' || start[1] == 'X');
   if (!starts) return {first, errc::invalid_argument};
   const std::string text(first, hexadecimal ? start + 1 : last);
@@ -90,9 +91,9 @@ auto applied(Predicate& predicate, Projection& projection) {
 
 }  // namespace orbifit_detail
 
-#define ORBIFIT_ORDERED_ALGORITHM(name)                                                          \
-  template <class Range, class Order = ranges::less, class Projection = identity>                \
-  auto name(Range&& range, Order order = {}, Projection projection = {}) {                       \
+#define ORBIFIT_ORDERED_ALGORITHM(name)                                                                 \
+  template <class Range, class Order = ranges::less, class Projection = identity>                       \
+  auto name(Range&& range, Order order = {}, Projection projection = {}) {                              \
     return std::name(std::begin(range), std::end(range), orbifit_detail::projected(order, projection)); \
   }
 ORBIFIT_ORDERED_ALGORITHM(sort)
@@ -102,9 +103,9 @@ ORBIFIT_ORDERED_ALGORITHM(max_element)
 ORBIFIT_ORDERED_ALGORITHM(is_sorted)
 #undef ORBIFIT_ORDERED_ALGORITHM
 
-#define ORBIFIT_PREDICATE_ALGORITHM(name)                                                      \
-  template <class Range, class Predicate, class Projection = identity>                         \
-  auto name(Range&& range, Predicate predicate, Projection projection = {}) {                  \
+#define ORBIFIT_PREDICATE_ALGORITHM(name)                                                                 \
+  template <class Range, class Predicate, class Projection = identity>                                    \
+  auto name(Range&& range, Predicate predicate, Projection projection = {}) {                             \
     return std::name(std::begin(range), std::end(range), orbifit_detail::applied(predicate, projection)); \
   }
 ORBIFIT_PREDICATE_ALGORITHM(all_of)
@@ -201,10 +202,10 @@ bool includes(Left&& left, Right&& right) {
   return std::includes(std::begin(left), std::end(left), std::begin(right), std::end(right));
 }
 
-#define ORBIFIT_SET_ALGORITHM(name)                                                                  \
-  template <class Left, class Right, class Output>                                                   \
-  void name(Left&& left, Right&& right, Output output) {                                             \
-    std::name(std::begin(left), std::end(left), std::begin(right), std::end(right), output);         \
+#define ORBIFIT_SET_ALGORITHM(name)                                                          \
+  template <class Left, class Right, class Output>                                           \
+  void name(Left&& left, Right&& right, Output output) {                                     \
+    std::name(std::begin(left), std::end(left), std::begin(right), std::end(right), output); \
   }
 ORBIFIT_SET_ALGORITHM(set_difference)
 ORBIFIT_SET_ALGORITHM(set_intersection)

@@ -33,7 +33,8 @@ std::optional<SurfacePoint> Picker::pick(const Eigen::Vector3d& origin, const Ei
   SurfacePoint result;
   result.face = face;
   result.barycentric = nearest_on_triangle(point, corner(0), corner(1), corner(2));
-  result.point = result.barycentric[0] * corner(0) + result.barycentric[1] * corner(1) + result.barycentric[2] * corner(2);
+  result.point =
+      result.barycentric[0] * corner(0) + result.barycentric[1] * corner(1) + result.barycentric[2] * corner(2);
   return result;
 }
 

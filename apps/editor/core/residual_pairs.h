@@ -21,7 +21,7 @@ class ResidualPairs {
   ResidualPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const SymmetricImages& images);
 
   struct Answer {
-    Residual residual;     ///< fractions of the diagonal
+    Residual residual;        ///< fractions of the diagonal
     bool at_vertices = true;  ///< all images are vertices
   };
 

@@ -10,13 +10,13 @@
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
-#include "geometry/point_index.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/handles.h"
 #include "orbifit/subspace/subspace.h"
 
 #include "display_mesh.h"
+#include "geometry/point_index.h"
 #include "picker.h"
 #include "residual_pairs.h"
 #include "symmetric_images.h"
@@ -118,8 +118,8 @@ class Session {
   Deformer& deformer(Side side);
   SymmetricImages& images();
   ResidualPairs& pairs();
-  void forget_shape();    // all that was made of the rest shape
-  void forget_groups();   // all that was made of the annotation
+  void forget_shape();   // all that was made of the rest shape
+  void forget_groups();  // all that was made of the annotation
   void take_vertices(Edited& edited, Points vertices);
   void mark_vertices(Mark mark, const std::vector<int>& vertices);
 

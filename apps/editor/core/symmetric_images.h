@@ -4,6 +4,7 @@
 
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
+
 #include "geometry/surface_index.h"
 
 namespace orbifit::editor {

@@ -4,10 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-
 #include <unistd.h>
 
-#include "files/file.h"
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
@@ -17,6 +15,7 @@
 #include "../commands.h"
 #include "../editor_page.h"
 #include "../subspace_arguments.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 
@@ -71,9 +70,8 @@ CommandBody edit(CLI::App& app) {
   return [arguments](CommandContext& context) {
     check_output(arguments->output, {".html"}, {arguments->annotation});
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = arguments->annotation.empty()
-                                        ? orbifit::detect(mesh, DetectOptions{}, context.run)
-                                        : read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
+                                                                  : read_annotation(arguments->annotation, mesh);
     SubspaceOptions options;
     options.mode = arguments->mode;
     const Subspace subspace = build_consistent(mesh, annotation, options, context.run);

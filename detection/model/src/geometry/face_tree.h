@@ -46,8 +46,8 @@ class EmbreeTree {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The same where Embree is not, as in WebAssembly: a full binary tree of boxes over the faces in the order in which they
-/// are given, which is to have neighbours in space near one another.
+/// The same where Embree is not, as in WebAssembly: a full binary tree of boxes over the faces in the order in which
+/// they are given, which is to have neighbours in space near one another.
 class BoxTree {
  public:
   explicit BoxTree(const std::vector<TreeFace>& faces);

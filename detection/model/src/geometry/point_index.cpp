@@ -88,7 +88,7 @@ class Tree {
   }
 
  private:
-  flann::KDTreeSingleIndex<flann::L2_Simple<double>> tree_;
+  flann::KDTreeSingleIndex<flann::L2_Simple<double> > tree_;
 };
 
 #endif

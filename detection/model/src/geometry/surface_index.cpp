@@ -21,7 +21,8 @@ namespace {
 // Beyond this many boxes from the mesh single precision cannot tell its faces apart: every face is then measured.
 constexpr double kFarAway = 1e6;
 
-// Rounding of vertices, of the query and of the tree's own arithmetic, in units of the box; several times the worst case.
+// Rounding of vertices, of the query and of the tree's own arithmetic, in units of the box; several times the worst
+// case.
 constexpr double kCullMargin = 1e-6;
 
 // Squared sine of a corner below which Ericson's method, whose products grow with the fourth power, loses digits.
@@ -48,9 +49,9 @@ constexpr float kFacetMargin = 2e-6F;
 
 // What a query asks of a triangle before it measures, in one line of the cache.
 struct alignas(64) Facet {
-  // Times (p, 1), p in the tree's frame: the height over the triangle's plane, and how far p is outside each edge within
-  // that plane. Times (n, 0): first the cosine of the angle between n and the normal. Not numbers, which no comparison
-  // holds for, where the normal is uncertain.
+  // Times (p, 1), p in the tree's frame: the height over the triangle's plane, and how far p is outside each edge
+  // within that plane. Times (n, 0): first the cosine of the angle between n and the normal. Not numbers, which no
+  // comparison holds for, where the normal is uncertain.
   Eigen::Matrix4f planes;
 };
 
