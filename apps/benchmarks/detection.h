@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "orbifit/datasets_tools/detection_score.h"
-#include "orbifit/datasets_tools/detection_suite.h"
 #include "orbifit/datasets_tools/truth.h"
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/run_context.h"
+
+#include "suite/detection_suite.h"
 
 namespace orbifit::benchmarks {
 

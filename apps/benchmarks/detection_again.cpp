@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "orbifit/datasets_tools/spoil.h"
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 #include "detection.h"
 

@@ -9,7 +9,8 @@
 #include <unistd.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 namespace orbifit {
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/region_residual.h"
+#include "domains/region_residual.h"
 
 #include "shapes.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "orbifit/model/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 
 namespace orbifit {
 

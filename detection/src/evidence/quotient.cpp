@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
+#include "base/random.h"
+#include "geometry/sampling.h"
 
 namespace orbifit {
 

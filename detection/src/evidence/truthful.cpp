@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/model/region_residual.h"
+#include "domains/region_residual.h"
 
 #include "evidence/policy.h"
 #include "surface/near_cells.h"

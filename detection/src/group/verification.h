@@ -8,7 +8,7 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
-#include "orbifit/model/region_residual.h"
+#include "domains/region_residual.h"
 #include "orbifit/model/run_context.h"
 
 #include "surface/surface_patch.h"
