@@ -39,6 +39,7 @@ class Quotient;
 class Deformer {
  public:
   /// \param subspace and mesh outlive the deformer
+  /// \param context  solve() asks it as well whether to stop; a copy is kept
   Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options = {},
            const RunContext& context = RunContext{});
   ~Deformer();
