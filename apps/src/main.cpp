@@ -50,6 +50,11 @@ constexpr std::array kCommands{
             "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj --annotation-out edited.json\n"
             "orbifit deform chair.obj chair.json --basis chair.basis --handles handles.json -o edited.obj",
             commands::deform},
+    Command{"edit", "Make a page in which one drags handles and the symmetries are kept.",
+            "orbifit edit chair.obj -o chair.html --open\n"
+            "orbifit edit chair.obj chair.json -o chair.html\n"
+            "orbifit edit chair.obj chair.json --mode moving -o chair.html",
+            commands::edit},
     Command{"fit", "Fit a template to a scan; its symmetries are kept and complete what the scan does not show.",
             "orbifit fit chair.obj scan.ply -o fitted.obj\n"
             "orbifit fit chair.obj scan.ply --annotation chair.json -o fitted.obj --report fit.json --html fit.html\n"
@@ -75,11 +80,25 @@ constexpr std::array kCommands{
             "orbifit render chair.obj --annotation chair.json -o regions.png\n"
             "orbifit render chair.obj --points scan.ply --up 0 1 0 -o fit.png",
             commands::render},
+    Command{"batch", "Do a whole collection, each item in a process of its own; look at and export the results.",
+            "orbifit batch models --task detect --out results\n"
+            "orbifit batch manifest.jsonl --task fit --out results --jobs 8 --item-timeout 300 --item-memory 4G\n"
+            "orbifit batch manifest.jsonl --task detect --out results --shard 3/64\n"
+            "orbifit batch manifest.jsonl --task detect --out results --retry timeout,crash\n"
+            "orbifit batch status results\n"
+            "orbifit batch report results\n"
+            "orbifit batch export results --sqlite orbifit.db --csv tables\n"
+            "orbifit batch manifest shapenet ShapeNetCore.v2 -o manifest.jsonl",
+            commands::batch},
     Command{"report", "Combine texts, tables and pictures into one self-contained HTML page.",
             "orbifit report steps.json -o index.html", commands::report},
 };
 
 }  // namespace
+
+std::span<const Command> orbifit::commands::all() {
+  return kCommands;
+}
 
 int main(int argc, char** argv) {
   try {

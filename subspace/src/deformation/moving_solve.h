@@ -12,7 +12,7 @@
 
 namespace orbifit {
 
-/// Co-rotated Laplace editing while the regions' groups turn (method notes 2.2, moving). An iteration solves for the
+/// Co-rotated Laplace editing while the regions' groups turn (docs/method.md 2.2, moving). An iteration solves for the
 /// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and
 /// the basis is built anew, so that every state keeps every carried symmetry to rounding.
 class MovingSolve {

@@ -22,7 +22,8 @@ std::vector<AnnotationPicture> annotation_pictures(const Mesh& mesh, const Symme
                                                    ViewOptions view, const RunContext& context,
                                                    const std::function<void(Scene&)>& decorate = nullptr);
 
-/// All of them on one sheet, each with its title and detail below. \param columns  at most so many side by side
+/// All of them on one sheet, each with its title and detail below.
+/// \param columns  at most so many side by side
 Image contact_sheet(const std::vector<AnnotationPicture>& pictures, int columns);
 
 }  // namespace orbifit

@@ -60,12 +60,14 @@ struct ViewOptions {
   Colour background{1, 1, 1};
 };
 
-/// Sets azimuth and elevation so that the picture is seen from there. \param direction  from the scene to the eye, any
+/// Sets azimuth and elevation so that the picture is seen from there.
+/// \param direction  from the scene to the eye, any
 /// length; the view stays as it is where that is zero
 void look_from(const Eigen::Vector3d& direction, ViewOptions& view);
 
 /// Ray-cast picture with soft light and ambient occlusion; the same scene gives the same bytes with any number of
-/// threads. \throw UsageError naming the field of `view`, its value and the rule
+/// threads.
+/// \throw UsageError naming the field of `view`, its value and the rule
 Image render(const Scene& scene, const ViewOptions& view, const RunContext& context);
 
 /// Distinct colours, one a region; the same number gives the same colour.
@@ -81,7 +83,8 @@ Scene region_scene(const Mesh& mesh, const Region& region, bool see_through = fa
 /// Likewise, seen through where the view hides most of the region behind or inside the rest.
 Scene visible_region_scene(const Mesh& mesh, const Region& region, const ViewOptions& view, const RunContext& context);
 
-/// The mesh with an instance of each colour. \param see_through  all else is glass
+/// The mesh with an instance of each colour.
+/// \param see_through  all else is glass
 Scene pattern_scene(const Mesh& mesh, const Pattern& pattern, bool see_through = false);
 
 /// Likewise, seen through where the view hides most of the instances behind or inside the rest.

@@ -28,7 +28,8 @@ struct DetectOptions {
 /// its connected components and sets of congruent components, and the congruences among components as patterns. Every
 /// element of a returned group was verified against the surface. Sorted by area, largest first; parents set. The result
 /// is the same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance
-/// asks for; the search itself depends on how much shape there is at the size of the tolerance. \throw InputError when
+/// asks for; the search itself depends on how much shape there is at the size of the tolerance.
+/// \throw InputError when
 /// the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 

@@ -18,7 +18,7 @@
 
 namespace orbifit {
 
-/// The Laplacians of the samples to choose from (method notes, section 3).
+/// The Laplacians of the samples to choose from (docs/method.md 4).
 enum class LaplacianKind {
   graph,      ///< degree less adjacency of neighbouring samples (the paper)
   cotangent,  ///< the surface's, restricted to the samples (Huang et al. 2006)

@@ -10,7 +10,8 @@ namespace orbifit {
 /// Reads OBJ, OFF, PLY (ascii, little and big endian, float and double), STL (ascii and binary), glTF and GLB, by the
 /// file's ending. Order of vertices and faces and double precision are kept; polygons are cut into fans from their
 /// first corner. An STL's triangles have three vertices of their own each. glTF: the default scene's triangle
-/// primitives with their nodes' transforms applied, in node order. \throw InputError with file, line or element and
+/// primitives with their nodes' transforms applied, in node order.
+/// \throw InputError with file, line or element and
 /// reason: unreadable, empty, truncated, an index out of range, a
 ///        coordinate not finite or beyond 1e100, no vertices, no faces, an unknown ending
 Mesh read_mesh(const std::filesystem::path& file);
