@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
+#include "files/file.h"
 #include "subject.h"
 
 namespace orbifit::benchmarks {

@@ -6,13 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/datasets_tools/fit_cases.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "benchmarks.h"
+#include "cases/fit_cases.h"
 #include "comparison_report.h"
 #include "divided.h"
+#include "files/file.h"
 #include "stage_run.h"
 
 namespace orbifit::benchmarks {

@@ -6,14 +6,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "orbifit/datasets_tools/truth_io.h"
+#include "orbifit/datasets_tools/truth.h"
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "benchmarks.h"
+#include "files/file.h"
 #include "stage_run.h"
 #include "stopwatch.h"
 
@@ -166,7 +166,7 @@ CommandBody detection(CLI::App& app) {
   app.add_flag("--cut", options->cut, "Each form also without a fifth of its area");
   app.add_option("--tolerance", options->detect.tolerance, "The detector's, a fraction of the diagonal")
       ->capture_default_str();
-  app.add_option("--max-seconds", options->detect.max_seconds, "The detector's time for a mesh; 0: no limit")
+  app.add_option("--max-seconds", options->detect.time_budget, "The detector's time for a mesh; 0: no limit")
       ->capture_default_str();
   add_stage_run(app, options->stages, "poses, noise, cuts and the detector");
   app.add_option("--write", options->folder,

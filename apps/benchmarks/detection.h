@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "orbifit/datasets_tools/detection_score.h"
-#include "orbifit/datasets_tools/detection_suite.h"
 #include "orbifit/datasets_tools/truth.h"
 #include "orbifit/model/run_context.h"
+
+#include "suite/detection_suite.h"
 
 namespace orbifit::benchmarks {
 

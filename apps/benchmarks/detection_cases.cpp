@@ -3,13 +3,12 @@
 #include <numeric>
 #include <utility>
 
-#include "orbifit/datasets_tools/carried_truth.h"
-#include "orbifit/datasets_tools/remesh.h"
-#include "orbifit/datasets_tools/spoil.h"
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
+#include "cases/spoil.h"
 #include "command.h"
 #include "detection.h"
+#include "remeshing/remesh.h"
+#include "truth/carried_truth.h"
 
 namespace orbifit::benchmarks {
 

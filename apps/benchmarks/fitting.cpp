@@ -9,15 +9,15 @@
 #include "orbifit/baselines/full_sampling.h"
 #include "orbifit/baselines/similarity_fit.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/fitting/clutter.h"
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 
 #include "benchmarks.h"
+#include "files/file.h"
+#include "scan/clutter.h"
 #include "stage_run.h"
 #include "stopwatch.h"
 

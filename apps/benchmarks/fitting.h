@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "orbifit/datasets_tools/fit_cases.h"
+#include "cases/fit_cases.h"
 
 namespace orbifit::benchmarks {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "orbifit/datasets_tools/table1.h"
+#include "cases/table1.h"
 
 namespace orbifit::benchmarks {
 

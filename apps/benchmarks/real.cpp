@@ -9,10 +9,10 @@
 #include <CLI/CLI.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "benchmarks.h"
+#include "files/file.h"
 #include "stage_run.h"
 
 namespace orbifit::benchmarks {

@@ -7,12 +7,13 @@
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "geometry/point_index.h"
+#include "geometry/sampling.h"
 #include "real.h"
 #include "stopwatch.h"
 
@@ -109,8 +110,8 @@ MeshResidual mesh_residual(const Mesh& mesh, const Points& displacements, const 
       places.row(static_cast<Eigen::Index>(v)) = mesh.vertices.row(vertices[v]);
     }
     const PointIndex index(places);
-    const Motion carried = carried_motion(subspace, state, number);
-    const std::vector<Motion> elements = subspace.regions->test_elements(number);
+    const Motion carried = region_motion(subspace, state, number);
+    const std::vector<Motion> elements = subspace->regions->test_elements(number);
     const std::size_t step = 1 + vertices.size() * elements.size() / kMost;
     for (std::size_t v = 0; v < vertices.size(); v += step) {
       if (v / step % 64 == 0) context.check();

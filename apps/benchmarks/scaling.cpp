@@ -14,9 +14,9 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "benchmarks.h"
+#include "files/file.h"
 #include "stage_run.h"
 #include "stopwatch.h"
 #include "subject.h"

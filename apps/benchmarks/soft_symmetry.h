@@ -8,8 +8,9 @@
 #include <Eigen/SparseCore>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/subspace/corotation.h"
-#include "orbifit/subspace/lift.h"
+
+#include "basis/lift.h"
+#include "deformation/corotation.h"
 
 namespace orbifit::benchmarks {
 

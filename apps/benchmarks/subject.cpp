@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/model/point_index.h"
 #include "orbifit/subspace/displacement_field.h"
-#include "orbifit/subspace/lift.h"
+
+#include "basis/lift.h"
+#include "basis/subspace_parts.h"
+#include "geometry/point_index.h"
 
 namespace orbifit::benchmarks {
 
@@ -48,15 +50,15 @@ double radius_for_samples(const BenchmarkModel& model, int samples, GroupMode mo
 }
 
 HandleRows handle_rows(const BenchmarkModel& model, const Subspace& subspace, const RunContext& context) {
-  const PointIndex index(subspace.sampling.points);
+  const PointIndex index(subspace->sampling.points);
   std::vector<int> vertices;
   std::vector<double> weights;
   std::vector<Eigen::Vector3d> targets;
   for (const Handle& handle : model.handles) {
-    std::vector<char> near(static_cast<std::size_t>(subspace.sampling.points.rows()), 0);
+    std::vector<char> near(static_cast<std::size_t>(subspace->sampling.points.rows()), 0);
     for (const int vertex : handle.vertices) {
       const Eigen::Vector3d rest = model.mesh.vertices.row(vertex);
-      for (const auto& sample : index.within(rest, subspace.sampling.radius)) {
+      for (const auto& sample : index.within(rest, subspace->sampling.radius)) {
         near[static_cast<std::size_t>(sample.index)] = 1;
       }
       vertices.push_back(vertex);
@@ -67,7 +69,7 @@ HandleRows handle_rows(const BenchmarkModel& model, const Subspace& subspace, co
   }
   HandleRows result;
   const Points points = model.mesh.vertices(vertices, Eigen::all);
-  result.rows = lift_weights(points, subspace.sampling.points, subspace.sampling.radius, context);
+  result.rows = lift_weights(points, subspace->sampling.points, subspace->sampling.radius, context);
   result.weights = Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
   result.targets.resize(points.rows(), 3);
   for (std::size_t i = 0; i < targets.size(); ++i) result.targets.row(static_cast<Eigen::Index>(i)) = targets[i];
@@ -75,19 +77,19 @@ HandleRows handle_rows(const BenchmarkModel& model, const Subspace& subspace, co
 }
 
 SoftSampling soft_sampling(const Subspace& subspace) {
-  const SymmetricSampling& sampling = subspace.sampling;
-  SoftSampling result{sampling.points, sampling.radius, {}, static_cast<int>(subspace.basis.carried.rows() / 3)};
+  const SymmetricSampling& sampling = subspace->sampling;
+  SoftSampling result{sampling.points, sampling.radius, {}, static_cast<int>(subspace->basis.carried.rows() / 3)};
   for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
     const int seed = sampling.first_sample[static_cast<std::size_t>(orbit)];
     for (int s = seed + 1; s < sampling.first_sample[static_cast<std::size_t>(orbit) + 1]; ++s) {
-      const Transport& transport = subspace.basis.transports.samples[static_cast<std::size_t>(s)];
+      const Transport& transport = subspace->basis.transports.samples[static_cast<std::size_t>(s)];
       result.pairs.push_back({s, seed, transport.frame, transport.carried});
     }
   }
   for (const SymmetricSampling::Constraint& constraint : sampling.constraints) {
     const int seed = sampling.first_sample[static_cast<std::size_t>(constraint.orbit)];
-    const Transport& left = subspace.basis.transports.words[static_cast<std::size_t>(constraint.left)];
-    const Transport& right = subspace.basis.transports.words[static_cast<std::size_t>(constraint.right)];
+    const Transport& left = subspace->basis.transports.words[static_cast<std::size_t>(constraint.left)];
+    const Transport& right = subspace->basis.transports.words[static_cast<std::size_t>(constraint.right)];
     SymmetryPair pair{-1, seed, left.frame - right.frame,
                       carried_sum(left.carried, -Eigen::Matrix3d::Identity(), right.carried)};
     result.pairs.push_back(std::move(pair));
@@ -119,12 +121,12 @@ void Subject::lift() {
 }
 
 Subject::Traffic Subject::lift_traffic() const {
-  const OrbitLift& lift = subspace_.lift;
-  const std::size_t vertices = subspace_.orbits.followers.size();
+  const OrbitLift& lift = subspace_->lift;
+  const std::size_t vertices = subspace_->orbits.followers.size();
   // Representatives are summed up in whole blocks, then copied to their images: written and read once each.
   const std::size_t sources = 4 * OrbitLift::kLanes * (lift.first.size() - 1) * sizeof(double);
   return {lift.bytes() + lift.first.size() * sizeof(lift.first[0]) +
-              subspace_.orbits.bound.size() * sizeof(subspace_.orbits.bound[0]) + sources +
+              subspace_->orbits.bound.size() * sizeof(subspace_->orbits.bound[0]) + sources +
               vertices * sizeof(VertexOrbits::Follower),
           sources + 3 * vertices * sizeof(double)};
 }
@@ -143,7 +145,7 @@ double Subject::mesh_residual() const {
   Mesh deformed = model_.mesh;
   deformed.vertices += vertex_displacements(subspace_, deformation_.state, context_);
   RunContext context = context_;
-  const auto motions = subspace_.mode == GroupMode::fixed ? CarriedMotions::fixed : CarriedMotions::floating;
+  const auto motions = subspace_->mode == GroupMode::fixed ? CarriedMotions::fixed : CarriedMotions::floating;
   return symmetry_residual(model_.mesh, model_.annotation, &deformed, motions, context).worst_excess;
 }
 

@@ -9,8 +9,8 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/deformer.h"
-#include "orbifit/subspace/subspace.h"
 
+#include "basis/subspace_parts.h"
 #include "models.h"
 #include "soft_symmetry.h"
 
@@ -51,7 +51,7 @@ class Subject {
   void lift();           ///< the displacements of all vertices
 
   const Subspace& subspace() const { return subspace_; }
-  int samples() const { return static_cast<int>(subspace_.sampling.points.rows()); }
+  int samples() const { return static_cast<int>(subspace_->sampling.points.rows()); }
   int degrees_of_freedom() const { return subspace_.degrees_of_freedom(); }
 
   /// Bytes that a lift reads of its own (weights, numbers of atoms, representatives, who follows them) and writes (the

@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "benchmarks.h"
+#include "files/file.h"
 #include "lift_floor.h"
 #include "soft_symmetry.h"
 #include "stopwatch.h"

@@ -33,7 +33,7 @@ FitResult run_kurz(const FitInput& input, const FitOptions& options, double weig
   kurz.inlier_distance = options.inlier_distance;
   kurz.align = options.align;
   kurz.condition = options.condition;
-  kurz.linear_iterations = std::min(kurz.linear_iterations, options.most_iterations);
+  kurz.linear_iterations = std::min(kurz.linear_iterations, options.max_iterations);
   return fit_kurz(input, kurz, context);
 }
 
@@ -161,7 +161,7 @@ FitOptions with_few_iterations(FitOptions options) {
   constexpr int kIterations = 3;
   options.levels = 2;
   options.iterations = kIterations;
-  options.most_iterations = 2 * kIterations;
+  options.max_iterations = 2 * kIterations;
   options.condition = false;
   return options;
 }

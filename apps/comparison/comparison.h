@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "orbifit/datasets_tools/bending.h"
 #include "orbifit/datasets_tools/fit_score.h"
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+
+#include "cases/bending.h"
 
 namespace orbifit {
 

@@ -42,7 +42,7 @@ constexpr std::array kFigures{
     Figure{"hidden_correspondence", "hidden corr. %", 100,
            [](const MethodRun& run) { return run.score ? run.score->correspondence : std::nullopt; }},
     Figure{"inlier_fraction", "explained %", 100,
-           [](const MethodRun& run) { return run.scanned ? std::optional(run.result.inlier_fraction) : std::nullopt; }},
+           [](const MethodRun& run) { return run.scanned ? std::optional(run.result.inlier_ratio) : std::nullopt; }},
     Figure{"handle_error", "handles %", 100,
            [](const MethodRun& run) { return std::optional(run.result.landmark_rms); }},
     Figure{"bending", "bending deg", kDegrees, [](const MethodRun& run) { return std::optional(run.bending.rms); }},

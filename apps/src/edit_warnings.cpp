@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-#include "orbifit/model/point_index.h"
-
+#include "basis/subspace_parts.h"
 #include "command.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 
@@ -61,10 +61,10 @@ class Forbidden {
   /// Of each handle the root mean square of what is forbidden, mesh units.
   std::vector<double> by(const Subspace& subspace, const Region& region, int number) const {
     const std::vector<int> inside = vertices_of_faces(mesh_, region.faces);
-    const std::vector<Pair> pairs = pairs_of(subspace.regions->test_elements(number), inside);
+    const std::vector<Pair> pairs = pairs_of(subspace->regions->test_elements(number), inside);
     const Vector3d scale = Vector3d::Constant(1 / std::max(diagonal(mesh_.vertices), 1e-300));
     // The group's translation, in mode moving also its rotation to first order, that agree with the demands best.
-    const Index unknowns = subspace.mode == GroupMode::fixed ? 0 : subspace.mode == GroupMode::floating ? 3 : 6;
+    const Index unknowns = subspace.mode() == GroupMode::fixed ? 0 : subspace.mode() == GroupMode::floating ? 3 : 6;
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
     const auto rows_of = [&](const Pair& pair) {

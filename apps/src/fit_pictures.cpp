@@ -5,7 +5,8 @@
 #include <string>
 
 #include "orbifit/apps/render.h"
-#include "orbifit/model/point_index.h"
+
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

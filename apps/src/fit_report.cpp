@@ -25,11 +25,11 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"stopped because", result.stopped_because},
            {"iterations", std::to_string(result.iterations.size())},
            {"degrees of freedom", std::to_string(result.degrees_of_freedom)},
-           {"of the scan taken for the template's", percent(result.used_fraction)},
+           {"of the scan taken for the template's", percent(result.overlap)},
            {"left out though it hangs together with that", percent(result.torn_off)},
-           {"of that explained (within 1 %)", percent(result.inlier_fraction)},
+           {"of that explained (within 1 %)", percent(result.inlier_ratio)},
            {"their rms distance, of the diagonal", percent(result.rms)},
-           {"of what the viewpoints should have seen, seen", percent(result.covered)},
+           {"of what the viewpoints should have seen, seen", percent(result.visible_coverage)},
            {"where they have nothing, taken for cut off", percent(result.cut_off)},
            {"confidence", short_number(result.confidence, 2)},
            {"surface that the scan did not see", percent(result.hidden_fraction)},
@@ -49,7 +49,7 @@ ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry)
     if (group.pairs == 0) continue;
     const auto region = std::ranges::find(symmetry.regions, group.region, &RegionResidual::id);
     const bool known = region != symmetry.regions.end();
-    const bool left_out = std::ranges::find(result.relaxed, group.region) != result.relaxed.end();
+    const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
     std::string verdict = "agrees";
     if (group.disagrees) verdict = left_out ? "disagrees: left out" : "disagrees";
     table.rows.push_back({known && !region->name.empty() ? region->name : std::to_string(group.region),
@@ -63,8 +63,8 @@ ReportTable placement_table(const FitResult& result) {
   ReportTable table{{"placement", "scale", "explained", "covered", "score"}, {}};
   for (std::size_t i = 0; i < result.placements.size(); ++i) {
     const Placement& each = result.placements[i];
-    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), short_number(each.explained, 3),
-                          short_number(each.covered, 3), short_number(each.score(), 3)});
+    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), short_number(each.inlier_ratio, 3),
+                          short_number(each.visible_coverage, 3), short_number(each.score(), 3)});
   }
   return table;
 }
@@ -86,8 +86,8 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
   nlohmann::ordered_json placements = nlohmann::ordered_json::array();
   for (const Placement& placement : result.placements) {
     placements.push_back({{"pose", pose_to_json(placement.pose)},
-                          {"explained", placement.explained},
-                          {"covered", placement.covered},
+                          {"explained", placement.inlier_ratio},
+                          {"covered", placement.visible_coverage},
                           {"score", placement.score()}});
   }
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
@@ -113,10 +113,10 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"placements", placements},
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
-          {"used_fraction", result.used_fraction},
+          {"used_fraction", result.overlap},
           {"torn_off", result.torn_off},
-          {"inlier_fraction", result.inlier_fraction},
-          {"covered", result.covered},
+          {"inlier_fraction", result.inlier_ratio},
+          {"covered", result.visible_coverage},
           {"cut_off", result.cut_off},
           {"confidence", result.confidence},
           {"rms", result.rms},
@@ -125,7 +125,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"symmetry",
            {{"field_residual", result.field_residual}, {"worst_excess", symmetry.worst_excess}, {"regions", regions}}},
           {"groups", groups},
-          {"relaxed", result.relaxed},
+          {"relaxed", result.dropped},
           {"seconds", times},
           {"iterations", iterations}};
 }

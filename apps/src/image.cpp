@@ -7,7 +7,8 @@
 
 #include "orbifit/apps/render.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wold-style-cast"

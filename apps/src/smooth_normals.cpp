@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "orbifit/model/topology.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "add_region.h"
+#include "orbifit/detection/add_region.h"
 
 #include <algorithm>
 #include <functional>
@@ -7,7 +7,9 @@
 
 #include "orbifit/model/errors.h"
 
+#include "support/found_region.h"
 #include "support/region_growth.h"
+#include "surface/surface_patch.h"
 
 namespace orbifit {
 
@@ -36,7 +38,7 @@ std::optional<FoundRegion> as_found(const PreparedMesh& prepared, const Region& 
 }
 
 // Whether `outer` says all that `inner` says.
-bool says_all_of(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
+bool subsumes(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   if (inner.faces.empty() || !covers(prepared, outer, inner)) return false;
   const SurfaceMoments moments = surface_moments(prepared, inner.faces);
   const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
@@ -50,25 +52,25 @@ std::string described(const Region& region) {
 
 }  // namespace
 
-RegionAddition add_region(const PreparedMesh& prepared, const FoundRegion& added, const Residual& residual,
-                          double tolerance, SymmetryAnnotation& annotation) {
+RegionAddition add_region(const Mesh& mesh, const Region& added, double tolerance, SymmetryAnnotation& annotation) {
+  const PreparedMesh prepared = prepare(mesh);
+  const std::optional<FoundRegion> found = as_found(prepared, added);
+  if (!found) throw UsageError("the elements of the region to be added form no group " + added.group.symbol());
   RegionAddition result;
   std::vector<Region> kept;
   for (const Region& region : annotation.regions) {
     const std::optional<FoundRegion> known = as_found(prepared, region);
-    if (known && says_all_of(prepared, tolerance, *known, added)) {
-      throw NoResultError(described(region) + " already says what " + added.placement.group.symbol() + " on these " +
+    if (known && subsumes(prepared, tolerance, *known, *found)) {
+      throw NoResultError(described(region) + " already says what " + added.group.symbol() + " on these " +
                           std::to_string(added.faces.size()) + " faces would say");
     }
-    if (known && says_all_of(prepared, tolerance, added, *known)) {
+    if (known && subsumes(prepared, tolerance, *found, *known)) {
       result.replaced.push_back(described(region));
     } else {
       kept.push_back(region);
     }
   }
-  Region region = make_region(added.placement.group, prepared.input_of_normalised(added.placement.centre),
-                              added.placement.frame, added.faces, added.name);
-  region.residual = residual;
+  Region region = added;
   region.id = -1;
   kept.push_back(std::move(region));
   std::ranges::stable_sort(kept, std::greater<>(), [&](const Region& each) { return area_of(prepared, each.faces); });

@@ -75,7 +75,7 @@ using Clock = std::chrono::steady_clock;
 // Whether a share of the time that the options give has been spent.
 bool spent(const DetectOptions& options, Clock::time_point start, double share) {
   const std::chrono::duration<double> time = Clock::now() - start;
-  return options.max_seconds > 0 && time.count() > share * options.max_seconds;
+  return options.time_budget > 0 && time.count() > share * options.time_budget;
 }
 
 /// One run of the detector on a prepared mesh.
@@ -94,9 +94,9 @@ class Detector {
 
   Findings run() {
     // The whole's own group tells most; it gets its time even where the mesh took long to prepare.
-    limit(Clock::now(), std::max(options_.max_seconds, kLeastSeconds));
+    limit(Clock::now(), std::max(options_.time_budget, kLeastSeconds));
     in_time("whole", [this] { find_whole(); });
-    limit(start_, options_.max_seconds);
+    limit(start_, options_.time_budget);
     in_time("parts", [this] { find_in_components(); });
     in_time("pieces", [this] { find_in_segments(); });
     in_time("looser", [this] { tell_of_looser_groups(); });
@@ -118,7 +118,7 @@ class Detector {
  private:
   void limit(Clock::time_point from, double seconds) {
     limited_.deadline = context_.deadline;
-    if (options_.max_seconds <= 0) return;
+    if (options_.time_budget <= 0) return;
     const std::chrono::duration<double> time(std::min(seconds, kLongest));
     const auto end = from + std::chrono::duration_cast<Clock::duration>(time);
     if (!context_.deadline || end < *context_.deadline) limited_.deadline = end;
@@ -437,7 +437,7 @@ void drop_made_by_smoothing(const NoiseCheck& check, Explanation* explanation, s
 std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, double noise, const DetectOptions& options,
                                        const RunContext& context) {
   const Eigen::Index count = fine.mesh.faces.rows();
-  if (options.stand_in_from == 0 || count < options.stand_in_from) return std::nullopt;
+  if (options.simplify_above_faces == 0 || count < options.simplify_above_faces) return std::nullopt;
   context.progress("coarse mesh", 0);
   std::optional<CoarseMesh> coarse = coarse_mesh(fine, {options.tolerance, noise}, context);
   if (coarse && options.explanation != nullptr) {
@@ -457,8 +457,9 @@ void DetectOptions::validate() const {
   if (!(tolerance >= 1e-6 && tolerance <= 0.1))
     refuse("tolerance", std::to_string(tolerance), "1e-6 <= tolerance <= 0.1");
   if (samples < 100) refuse("samples", std::to_string(samples), "samples >= 100");
-  if (stand_in_from < 0) refuse("stand_in_from", std::to_string(stand_in_from), "stand_in_from >= 0");
-  if (!(max_seconds >= 0)) refuse("max_seconds", std::to_string(max_seconds), "max_seconds >= 0");
+  if (simplify_above_faces < 0)
+    refuse("simplify_above_faces", std::to_string(simplify_above_faces), "simplify_above_faces >= 0");
+  if (!(time_budget >= 0)) refuse("time_budget", std::to_string(time_budget), "time_budget >= 0");
 }
 
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
@@ -480,7 +481,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
     // Where creases end within the surface is known to the fine mesh only.
     Components segments = carried_pieces(smooth_segments(prepared), prepared, *coarse);
     DetectOptions on_coarse = options;
-    on_coarse.max_seconds *= kOfDetection;
+    on_coarse.time_budget *= kOfDetection;
     found = Detector(stand_in, std::move(segments), on_coarse, start, context).run();
     const auto late = [&](double share) { return spent(options, start, share); };
     found = carried_back(prepared, *coarse, stand_in, std::move(found),

@@ -1,7 +1,10 @@
-#include "guided_region.h"
+#include "orbifit/detection/guided_region.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -13,9 +16,12 @@
 #include "group/axis_orders.h"
 #include "group/candidates.h"
 #include "group/surroundings.h"
+#include "group/verification.h"
+#include "support/found_region.h"
 #include "support/orbit_region.h"
 #include "support/own_group.h"
 #include "support/region_growth.h"
+#include "surface/surface_patch.h"
 
 namespace orbifit {
 
@@ -38,6 +44,14 @@ PointGroup rotations_of(const PointGroup& group) {
   return {Family::Cn, group.family == Family::Sn ? group.n / 2 : group.n};
 }
 
+// A region grown from a hint, in the normalised mesh's frame.
+struct GrownRegion {
+  FoundRegion region;
+  Verification verification;
+  Residual residual;
+  bool holds = false;
+};
+
 /// Follows one hint.
 class Guide {
  public:
@@ -49,15 +63,15 @@ class Guide {
     refines_ = hint.refine;
   }
 
-  GuidedRegion run() {
+  GrownRegion run() {
     if (hint_.group && polyhedral(*hint_.group)) return finished(solid());
     GroupPlacement placement{start(), frame_about(hint_.direction), point_};
     placement = settled(placement);
     const std::vector<int> faces = faces_;
     const bool found = found_;
     const GroupPlacement larger = hint_.about == About::axis && found ? grown(placement) : placement;
-    GuidedRegion result = finished(larger);
-    if (result.stands || hint_.group || larger.group == placement.group) return result;
+    GrownRegion result = finished(larger);
+    if (result.holds || hint_.group || larger.group == placement.group) return result;
     faces_ = faces;
     found_ = found;
     return finished(placement);
@@ -207,7 +221,7 @@ class Guide {
     return settled(placement);
   }
 
-  GuidedRegion finished(const GroupPlacement& placement) {
+  GrownRegion finished(const GroupPlacement& placement) {
     context_.progress("verification", 0);
     const SurfacePatch patch = patch_of(faces_, options_.samples);
     const double tolerance = tolerance_of(placement.group, patch);
@@ -219,20 +233,20 @@ class Guide {
       tries.push_back(refine_on_vertices(patch, refine(patch, placement, context_, options)));
     }
     tries.push_back(placement);
-    GuidedRegion result;
+    GrownRegion result;
     for (const GroupPlacement& each : tries) {
       Verification verification = verify(patch, motions(each), tolerance, 0, 0, context_);
       const bool better = result.region.faces.empty() || verification.joint > result.verification.joint;
-      const bool stands = passes(verification);
-      if (!stands && !better) continue;
+      const bool holds = passes(verification);
+      if (!holds && !better) continue;
       result.region = {each, faces_, patch.moments.area, ""};
       result.verification = std::move(verification);
-      if (stands) break;
+      if (holds) break;
     }
     const bool seeded = std::ranges::any_of(
         hint_.seeds, [&](int seed) { return std::ranges::binary_search(result.region.faces, seed); });
     result.residual = measure_residual(patch, motions(result.region.placement), context_);
-    result.stands = seeded && found_ && passes(result.verification);
+    result.holds = seeded && found_ && passes(result.verification);
     return result;
   }
 
@@ -245,6 +259,65 @@ class Guide {
   bool refines_;
   bool found_ = false;
   std::vector<int> faces_;
+};
+
+std::string with_digits(double number, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+  return text.data();
+}
+
+std::string percent(double fraction) {
+  return with_digits(100 * fraction, 3) + " %";
+}
+
+// What of a verification falls short, and of how much.
+std::string shortfall_of(const GrownRegion& found) {
+  const Verification& got = found.verification;
+  const VerificationLimits asked;
+  const std::string faces = std::to_string(found.region.faces.size()) + " faces";
+  if (found.region.faces.empty()) return "the surface around the seed faces is empty";
+  if (passes(got)) return "it holds on " + faces + " elsewhere, but not where the seed faces are";
+  if (!got.complete || got.joint < asked.joint) {
+    return percent(got.joint) + " of the area of " + faces + " fits, at least " + percent(asked.joint) + " must";
+  }
+  if (got.worst < asked.worst) {
+    return "one of its motions fits " + percent(got.worst) + " of the area of " + faces + ", each must fit " +
+           percent(asked.worst);
+  }
+  if (got.cluster > asked.cluster) {
+    return "a piece of " + percent(got.cluster) + " of the area of " + faces + " has no image, at most " +
+           percent(asked.cluster) + " may be without";
+  }
+  return "of one part " + percent(got.part) + " of the area fits, at least " + percent(asked.part) + " must";
+}
+
+// A mesh and what a hint asks of it, made ready once.
+class Hinted {
+ public:
+  Hinted(const Mesh& mesh, const RegionHint& hint, const RunContext& context)
+      : prepared_(prepare(mesh)),
+        whole_(std::make_shared<const SurfaceIndex>(prepared_.mesh)),
+        hint_(hint),
+        context_(context) {
+    if (hint.near) {
+      const Similarity& input = prepared_.input_of_normalised;
+      hint_.seeds.push_back(whole_->nearest((*hint.near - input.translation) / input.scale).face);
+    }
+    hint_.validate(static_cast<int>(mesh.faces.rows()));
+  }
+
+  GrownRegion grown(const GuidedRegionOptions& options) const {
+    return Guide(prepared_, whole_, hint_, options, context_).run();
+  }
+
+  const PreparedMesh& prepared() const { return prepared_; }
+
+ private:
+  PreparedMesh prepared_;
+  std::shared_ptr<const SurfaceIndex> whole_;
+  RegionHint hint_;
+  const RunContext& context_;
 };
 
 }  // namespace
@@ -279,10 +352,32 @@ void RegionHint::validate(int faces) const {
   }
 }
 
-GuidedRegion guided_region(const PreparedMesh& prepared, const std::shared_ptr<const SurfaceIndex>& whole,
-                           const RegionHint& hint, const GuidedRegionOptions& options, const RunContext& context) {
-  hint.validate(static_cast<int>(prepared.mesh.faces.rows()));
-  return Guide(prepared, whole, hint, options, context).run();
+GuidedRegion guided_region(const Mesh& mesh, const RegionHint& hint, const GuidedRegionOptions& options,
+                           const RunContext& context) {
+  const Hinted hinted(mesh, hint, context);
+  const GrownRegion found = hinted.grown(options);
+  const GroupPlacement& placement = found.region.placement;
+  GuidedRegion result;
+  result.region = make_region(placement.group, hinted.prepared().input_of_normalised(placement.centre), placement.frame,
+                              found.region.faces, "");
+  result.region.residual = found.residual;
+  result.kept = found.verification.joint;
+  result.holds = found.holds;
+  if (!found.holds) result.shortfall = shortfall_of(found);
+  return result;
+}
+
+std::optional<double> passing_tolerance(const Mesh& mesh, const RegionHint& hint, const GuidedRegionOptions& options,
+                                        const RunContext& context) {
+  constexpr double kStep = 1.5;
+  constexpr double kMaxTolerance = 0.1;  // DetectOptions::tolerance
+  const Hinted hinted(mesh, hint, context);
+  GuidedRegionOptions tried = options;
+  while (tried.tolerance * kStep <= kMaxTolerance) {
+    tried.tolerance = std::stod(with_digits(tried.tolerance * kStep, 2));  // as a person would give it
+    if (hinted.grown(tried).holds) return tried.tolerance;
+  }
+  return std::nullopt;
 }
 
 }  // namespace orbifit

@@ -35,26 +35,26 @@ void FitOptions::validate() const {
   placement.validate();
   require(levels >= 1, "levels", levels, "at least 1");
   require(iterations >= 1, "iterations", iterations, "at least 1");
-  require(most_iterations >= levels * iterations, "most_iterations", most_iterations,
+  require(max_iterations >= levels * iterations, "max_iterations", max_iterations,
           "at least levels * iterations = " + std::to_string(levels * iterations));
   require(last_stiffness > 0, "last_stiffness", last_stiffness, "positive");
   require(first_stiffness > last_stiffness, "first_stiffness", first_stiffness, "more than last_stiffness");
   require(stretch >= 0, "stretch", stretch, "0 or more");
   require(tie > 0 && tie <= 1, "tie", tie, "in (0, 1]");
-  require(most_tied >= 1, "most_tied", most_tied, "at least 1");
-  require(most_tried >= most_tied, "most_tried", most_tried, "at least most_tied");
+  require(max_tied >= 1, "max_tied", max_tied, "at least 1");
+  require(max_tried >= max_tied, "max_tried", max_tried, "at least max_tied");
   require(trim > 0 && trim <= 1, "trim", trim, "in (0, 1]");
   require(scan_points >= 10, "scan_points", scan_points, "at least 10");
   require(landmark_weight > 0, "landmark_weight", landmark_weight, "positive");
   require(inlier_distance > 0, "inlier_distance", inlier_distance, "positive");
-  require(least_inliers >= 0 && least_inliers <= 1, "least_inliers", least_inliers, "in [0, 1]");
+  require(min_inlier_ratio >= 0 && min_inlier_ratio <= 1, "min_inlier_ratio", min_inlier_ratio, "in [0, 1]");
 }
 
 namespace {
 
 // What fits of one template are compared by: of two, the one that lies where the scan has nothing is the worse.
 double worth(const FitResult& result) {
-  return result.confidence * (1 - result.cut_off) * result.used_fraction;
+  return result.confidence * (1 - result.cut_off) * result.overlap;
 }
 
 // The best fit so far, and where it started.
@@ -88,11 +88,11 @@ void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions&
 int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSystems& systems,
                    const FitOptions& options, const RunContext& context) {
   constexpr int kSettling = 3;  // iterations
-  if (static_cast<int>(starts.size()) <= options.most_tied) return 0;
+  if (static_cast<int>(starts.size()) <= options.max_tied) return 0;
   FitOptions brief = options;
   brief.levels = std::min(options.levels, 5);
   brief.iterations = 1;
-  brief.most_iterations = brief.levels + kSettling;
+  brief.max_iterations = brief.levels + kSettling;
   brief.condition = false;
   std::vector<std::pair<double, std::size_t>> promises(starts.size());
   std::vector<int> taken(starts.size());
@@ -103,7 +103,7 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
   });
   const int iterations = std::accumulate(taken.begin(), taken.end(), 0);
   std::ranges::sort(promises);
-  promises.resize(static_cast<std::size_t>(options.most_tied));
+  promises.resize(static_cast<std::size_t>(options.max_tied));
   std::vector<PlacedScan> kept;
   kept.reserve(promises.size());
   for (const auto& [promise, i] : promises) kept.push_back(std::move(starts[i]));
@@ -138,10 +138,10 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
 
 // Whether the fit is one, and why not.
 void conclude(const FitOptions& options, FitResult& result) {
-  const double explained = result.inlier_fraction * result.used_fraction;
+  const double explained = result.inlier_ratio * result.overlap;
   const double seen = 1 - result.hidden_fraction;
   const bool explains =
-      explained >= options.least_inliers && (result.placements.empty() || result.inlier_fraction >= kLeastOfPlaced);
+      explained >= options.min_inlier_ratio && (result.placements.empty() || result.inlier_ratio >= kLeastOfPlaced);
   result.converged = !result.iterations.empty() && explains && seen >= kLeastSeen;
   if (result.iterations.empty() || result.converged) return;
   const auto percent = [](double fraction) { return std::to_string(static_cast<int>(100 * fraction)) + " % of the "; };
@@ -168,7 +168,7 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   result.field_residual =
       worst_field_residual(*subspace, input.mesh, input.annotation, {result.q, result.basis}, context);
   clock.finished("assessment");
-  if ((options.judge_groups || options.relax) && !input.annotation.regions.empty()) {
+  if ((options.judge_groups || options.drop_unsupported) && !input.annotation.regions.empty()) {
     judge_groups(input, best.start, options, context, result);
     clock.finished("groups");
   }

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "orbifit/fitting/alignment.h"
-
+#include "registration/alignment.h"
 #include "stage_clock.h"
 
 namespace orbifit {
@@ -161,8 +160,8 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
   double share = 0;
   int stalled = 0;
   std::string reason = kUsedUp;
-  while (static_cast<int>(iterations.size()) < options_.most_iterations) {
-    context_.progress("fit", double(iterations.size()) / options_.most_iterations);
+  while (static_cast<int>(iterations.size()) < options_.max_iterations) {
+    context_.progress("fit", double(iterations.size()) / options_.max_iterations);
     const Stopwatch clock;
     Matches matches = match(state, now);
     if (!best) share = share_of(matches, now.every);  // the same from then on: energies are compared
@@ -203,7 +202,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(0);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
-    context_.progress("fit", double(i) / options_.most_iterations);
+    context_.progress("fit", double(i) / options_.max_iterations);
     const Stopwatch clock;
     now = stage(i);
     const Matches matches = match(state, now);

@@ -4,15 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/fit.h"
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/moving_surface.h"
 
+#include "registration/correspondences.h"
+#include "scan/scan_preparation.h"
 #include "solver/deformation_system.h"
 #include "solver/scan_views.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/fitting/scan_preparation.h"
-
+#include "placement/surface_placements.h"
 #include "quiet_context.h"
+#include "registration/alignment.h"
+#include "scan/scan_preparation.h"
 
 namespace orbifit {
 
@@ -24,7 +24,7 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
   // Side by side; others in place of those that have too little of the scan near them.
   std::size_t tied = 0;
   while (tied < found.size() && found[tied].score() >= options.tie * found.front().score()) ++tied;
-  const auto most = static_cast<std::size_t>(options.most_tried);
+  const auto most = static_cast<std::size_t>(options.max_tried);
   for (std::size_t first = 0; first < tied && result.places.size() < most;) {
     const std::size_t count = std::min(most - result.places.size(), tied - first);
     std::vector<std::optional<PlacedScan>> placed(count);

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "orbifit/fitting/alignment.h"
-
 #include "assessment/fit_assessment.h"
+#include "basis/subspace_parts.h"
+#include "registration/alignment.h"
 #include "solver/moving_system.h"
 
 namespace orbifit {
@@ -29,7 +29,7 @@ void let_groups_turn(const FitInput& input, const PlacedScan& start, const FitSy
   MovingSystem system(floating.subspace(), input.mesh, options.stretch, floating.contacts(), context);
   if (!system.turns()) return;
   FitOptions more = options;
-  more.most_iterations += result.iterations_in_all;
+  more.max_iterations += result.iterations_in_all;
   run_fit(system, {result.pose, system.at_rest(result.q)}, 0, input, start, more, context, result);
   const SubspaceState state = system.state_of(result.q);
   result.q = state.q;
@@ -44,17 +44,17 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   const Subspace& subspace = system.subspace();
   system.unturn();
   run_fit(system, std::move(state), first_level, input, start, options, context, result);
-  if (subspace.mode == GroupMode::moving) let_groups_turn(input, start, system, options, context, result);
-  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  if (subspace->mode == GroupMode::moving) let_groups_turn(input, start, system, options, context, result);
+  result.samples = static_cast<int>(subspace->sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
-  result.used_fraction = start.used_fraction;
+  result.overlap = start.overlap;
   result.torn_off = start.torn_off;
 
   Mesh deformed = input.mesh;
   const SubspaceState found{result.q, result.basis};
   deformed.vertices += vertex_displacements(subspace, found, context);
   result.rest_annotation = input.annotation;
-  result.annotation = transformed(carried_annotation(input.annotation, subspace, found, deformed), result.pose);
+  result.annotation = transformed(deformed_annotation(input.annotation, subspace, found, deformed), result.pose);
   deformed.vertices = from_template(result.pose, deformed.vertices);
   result.fitted = std::move(deformed);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);

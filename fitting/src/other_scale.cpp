@@ -4,9 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/model/dense.h"
-#include "orbifit/subspace/corotation.h"
+#include "base/dense.h"
+#include "basis/subspace_parts.h"
+#include "deformation/corotation.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 
@@ -29,14 +30,14 @@ FitState with_scale(double scale, const Similarity& pose, const SubspaceState& s
   const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
   FitState result;
   result.pose = {scale, pose.linear, pose(centre) - scale * (pose.linear * centre)};
-  const Points& rest = subspace.sampling.points;
+  const Points& rest = subspace->sampling.points;
   const Points posed = rest + sample_displacements(subspace, state);
   Points target(rest.rows(), 3);
   const Similarity back = inverse(result.pose);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     target.row(i) = (back(pose(posed.row(i).transpose())) - rest.row(i).transpose()).transpose();
   }
-  const Eigen::SparseMatrix<double>& columns = subspace.basis.columns;
+  const Eigen::SparseMatrix<double>& columns = subspace->basis.columns;
   const Eigen::MatrixXd gram = columns.transpose() * columns;
   result.q = solve_semidefinite(gram, columns.transpose() * stacked(target));
   return result;

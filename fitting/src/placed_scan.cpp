@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/fitting/clutter.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
+#include "base/random.h"
+#include "geometry/point_index.h"
+#include "geometry/surface_index.h"
+#include "registration/alignment.h"
+#include "scan/clutter.h"
 
 namespace orbifit {
 
@@ -93,7 +93,7 @@ std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCl
   result.scan = without_planes(surface.index, size, prepare_scan(near, more, context), pose, options.reach, context);
   if (result.scan.points.rows() < kFewestNear) return std::nullopt;
   const Shares shares = shares_of(cloud, result.scan, surface.index, pose, kNear * size * pose.scale, context);
-  result.used_fraction = shares.used;
+  result.overlap = shares.used;
   result.torn_off = shares.torn_off;
   result.scale_open = !near_given(mesh, pose, given);
   result.pose = result.scale_open ? pose : align_rigidly(surface, result.scan, given, context);

@@ -3,13 +3,13 @@
 #include <memory>
 #include <optional>
 
-#include "orbifit/fitting/correspondences.h"
 #include "orbifit/fitting/placement.h"
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 
+#include "registration/correspondences.h"
+#include "scan/scan_preparation.h"
 #include "solver/scan_views.h"
 
 namespace orbifit {
@@ -17,10 +17,10 @@ namespace orbifit {
 /// A placement of a template, and what of the scan may be the template's there.
 struct PlacedScan {
   PreparedScan scan;
-  Similarity pose;           ///< template -> scan
-  double used_fraction = 1;  ///< share of the scan's points near those that are left
-  double torn_off = 0;       ///< share that is not, being far from the template, but hangs together with those
-  bool scale_open = false;   ///< nothing is known of the scale: the pose's is that of the template as it is
+  Similarity pose;          ///< template -> scan
+  double overlap = 1;       ///< share of the scan's points near those that are left
+  double torn_off = 0;      ///< share that is not, being far from the template, but hangs together with those
+  bool scale_open = false;  ///< nothing is known of the scale: the pose's is that of the template as it is
   std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
 };
 

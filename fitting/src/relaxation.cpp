@@ -8,6 +8,7 @@
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "assessment/group_comparison.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
 #include "solver/fit_system.h"
@@ -33,11 +34,11 @@ Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& 
 void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input, const PlacedScan& start,
                const FitOptions& options, const RunContext& context, FitResult& result) {
   for (const GroupAgreement& group : groups) {
-    result.relaxed.push_back(group.region);
+    result.dropped.push_back(group.region);
     context.message("left out region " + std::to_string(group.region) + ": the scan has not its symmetry");
   }
   const SymmetryAnnotation rest =
-      made_consistent(input.mesh, without_regions(input.annotation, result.relaxed), context);
+      made_consistent(input.mesh, without_regions(input.annotation, result.dropped), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
   FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);
@@ -45,7 +46,7 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   found.iterations_in_all += result.iterations_in_all;
   found.placements = std::move(result.placements);
   found.groups = std::move(result.groups);
-  found.relaxed = std::move(result.relaxed);
+  found.dropped = std::move(result.dropped);
   result = std::move(found);
 }
 
@@ -59,7 +60,7 @@ void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptio
     std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);
     if (round == 0) result.groups = groups;
     std::erase_if(groups, [](const GroupAgreement& group) { return !group.disagrees; });
-    if (!options.relax || groups.empty() || round == kMostRelaxations) return;
+    if (!options.drop_unsupported || groups.empty() || round == kMostRelaxations) return;
     leave_out(groups, input, start, options, context, result);
   }
 }

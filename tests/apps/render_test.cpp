@@ -11,7 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "cube.h"
+#include "files/file.h"
 #include "program.h"
 
 namespace orbifit {

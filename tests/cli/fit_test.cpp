@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/annotation_io.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
+#include "files/file.h"
 #include "program.h"
 
 namespace orbifit {

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/annotation_io.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 
 #include "cube.h"
+#include "files/file.h"
 
 namespace orbifit {
 namespace {

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/annotation_io.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "cube.h"
+#include "files/file.h"
 #include "program.h"
 
 namespace orbifit {

@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/bending.h"
+#include "cases/bending.h"
 
 #include <cmath>
 

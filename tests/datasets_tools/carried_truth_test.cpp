@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/carried_truth.h"
+#include "truth/carried_truth.h"
 
 #include <algorithm>
 #include <numeric>
@@ -9,12 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/datasets_tools/remesh.h"
-#include "orbifit/datasets_tools/spoil.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/surface_index.h"
 
+#include "cases/spoil.h"
+#include "geometry/surface_index.h"
+#include "models/orbit_model.h"
+#include "remeshing/remesh.h"
 #include "solids.h"
 
 namespace orbifit {

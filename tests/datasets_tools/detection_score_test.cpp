@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
 #include "scored.h"
 
 namespace orbifit {

@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/detection_suite.h"
+#include "suite/detection_suite.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,11 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/model/dense.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
-#include "orbifit/model/topology.h"
+
+#include "base/dense.h"
+#include "base/random.h"
+#include "geometry/surface_index.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/fit_cases.h"
+#include "cases/fit_cases.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,8 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/topology.h"
+
+#include "geometry/topology.h"
 
 namespace orbifit {
 namespace {

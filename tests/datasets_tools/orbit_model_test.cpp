@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/orbit_model.h"
+#include "models/orbit_model.h"
 
 #include <set>
 #include <string>
@@ -8,8 +8,9 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/topology.h"
+
+#include "base/random.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/remesh.h"
+#include "remeshing/remesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,10 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
-#include "orbifit/model/topology.h"
 
+#include "base/random.h"
+#include "geometry/surface_index.h"
+#include "geometry/topology.h"
 #include "solids.h"
 
 namespace orbifit {

@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/spoil.h"
+#include "cases/spoil.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/topology.h"
 
+#include "geometry/topology.h"
+#include "models/orbit_model.h"
 #include "solids.h"
 
 namespace orbifit {

@@ -9,9 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
+#include "models/orbit_model.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbifit/datasets_tools/table1.h"
+#include "cases/table1.h"
 
 #include <algorithm>
 #include <string>
@@ -7,7 +7,8 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/topology.h"
+
+#include "geometry/topology.h"
 
 namespace orbifit {
 namespace {

@@ -1,5 +1,3 @@
-#include "orbifit/datasets_tools/truth_io.h"
-
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -8,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/truth.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 namespace orbifit {
 namespace {

@@ -11,7 +11,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/surface_index.h"
+
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 namespace {

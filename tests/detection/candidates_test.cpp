@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "shapes.h"
 
 namespace orbifit {

@@ -23,10 +23,11 @@ namespace {
 constexpr int kAlways = 1;
 constexpr int kNever = 0;
 
-SymmetryAnnotation detected(const Mesh& mesh, int stand_in_from, int threads = 1, Explanation* explanation = nullptr) {
+SymmetryAnnotation detected(const Mesh& mesh, int simplify_above_faces, int threads = 1,
+                            Explanation* explanation = nullptr) {
   DetectOptions options;
   options.tolerance = 0.02;  // of the diagonal, so that meshes of few faces are fine
-  options.stand_in_from = stand_in_from;
+  options.simplify_above_faces = simplify_above_faces;
   options.explanation = explanation;
   RunContext context;
   context.threads = threads;

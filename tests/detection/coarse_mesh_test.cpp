@@ -8,9 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
-
+#include "base/random.h"
+#include "geometry/surface_index.h"
 #include "shapes.h"
 
 namespace orbifit {

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
+#include "models/orbit_model.h"
 #include "shapes.h"
 
 namespace orbifit {
@@ -238,7 +238,7 @@ TEST(Detect, StopsWhenToldTo) {
   context.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1);
   EXPECT_THROW(detect(mesh, options, context), TimeoutError);
   context.deadline.reset();
-  options.max_seconds = 1e-6;
+  options.time_budget = 1e-6;
   EXPECT_LE(detect(mesh, options, context).regions.size(), 1U) << "what is verified by then";
 }
 
@@ -250,12 +250,12 @@ TEST(DetectOptions, NamesWhatIsWrong) {
   options.samples = 5;
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
-  options.max_seconds = -1;
+  options.time_budget = -1;
   try {
     options.validate();
     FAIL();
   } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("max_seconds"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("time_budget"), std::string::npos);
   }
 }
 

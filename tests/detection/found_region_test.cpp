@@ -9,8 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "placements.h"
 #include "shapes.h"
 

@@ -13,8 +13,8 @@
 
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/annotation_io.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
 #include "shapes.h"
 
 namespace orbifit {

@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "group/verification.h"
 #include "placements.h"
 

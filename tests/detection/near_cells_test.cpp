@@ -9,10 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
-
+#include "base/random.h"
+#include "geometry/sampling.h"
+#include "geometry/surface_index.h"
 #include "shapes.h"
 
 namespace orbifit {

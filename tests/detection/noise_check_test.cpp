@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "resolution/denoise.h"
 #include "shapes.h"
 

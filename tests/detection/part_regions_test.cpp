@@ -7,12 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/model/dense.h"
-#include "orbifit/model/random.h"
-
+#include "base/dense.h"
+#include "base/random.h"
 #include "group/axis_orders.h"
 #include "group/verification.h"
+#include "models/orbit_model.h"
 #include "placements.h"
 #include "shapes.h"
 #include "support/region_growth.h"

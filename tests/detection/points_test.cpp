@@ -1,5 +1,3 @@
-#include "orbifit/detection/points.h"
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include "orbifit/detection/detect_points.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 
+#include "base/random.h"
+#include "geometry/sampling.h"
 #include "shapes.h"
 
 namespace orbifit {

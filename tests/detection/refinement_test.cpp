@@ -6,10 +6,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "group/verification.h"
+#include "models/orbit_model.h"
 #include "shapes.h"
 
 namespace orbifit {

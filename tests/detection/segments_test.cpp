@@ -11,8 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "shapes.h"
 
 namespace orbifit {

@@ -8,8 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "shapes.h"
 
 namespace orbifit {

@@ -1,11 +1,12 @@
-#include "orbifit/fitting/alignment.h"
+#include "registration/alignment.h"
 
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
-#include "orbifit/fitting/correspondences.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
+#include "registration/correspondences.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbifit/fitting/clutter.h"
+#include "scan/clutter.h"
 
 #include <algorithm>
 
@@ -6,7 +6,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

@@ -4,8 +4,8 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-#include "orbifit/model/dense.h"
-#include "orbifit/model/random.h"
+#include "base/dense.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

@@ -1,6 +1,6 @@
 // A template's parts that touch go on touching as it is fitted.
 
-#include "orbifit/subspace/contacts.h"
+#include "deformation/contacts.h"
 
 #include <algorithm>
 #include <array>
@@ -47,7 +47,7 @@ TEST_P(FittedStool, KeepsItsContacts) {
     options.contacts = with;
     const FitResult result = fit(input, options, context);
     EXPECT_TRUE(result.converged) << result.stopped_because;
-    EXPECT_GT(result.inlier_fraction, GetParam() == GroupMode::moving ? 0.9 : 0.7);
+    EXPECT_GT(result.inlier_ratio, GetParam() == GroupMode::moving ? 0.9 : 0.7);
     EXPECT_LT(result.field_residual, 1e-12);
     for (const Contact& contact : contacts) {
       Eigen::RowVector3d gap = Eigen::RowVector3d::Zero();

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/fitting/alignment.h"
 
 #include "random_pulls.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 namespace {

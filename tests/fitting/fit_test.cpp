@@ -12,7 +12,8 @@
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
 
 namespace orbifit {
 namespace {
@@ -40,7 +41,7 @@ class FitOfModel : public testing::TestWithParam<Case> {
 
 TEST_P(FitOfModel, ExplainsTheScanAndCompletesWhatItDidNotSee) {
   ASSERT_TRUE(result_.converged) << result_.stopped_because;
-  EXPECT_GT(result_.inlier_fraction, 0.97);
+  EXPECT_GT(result_.inlier_ratio, 0.97);
   EXPECT_GT(result_.hidden_fraction, 0.2);
   const Eigen::VectorXd errors =
       (result_.fitted.vertices - truth_.mesh.vertices).rowwise().norm() / diagonal(truth_.mesh.vertices);
@@ -206,9 +207,9 @@ TEST(Fit, ShortFitsChooseAmongPlacesThatTie) {
   FitOptions options;
   options.place = true;
   options.tie = 0.5;
-  options.most_tied = 1;
-  const auto found_of = [&](int most_tried) {
-    options.most_tried = most_tried;
+  options.max_tied = 1;
+  const auto found_of = [&](int max_tried) {
+    options.max_tried = max_tried;
     return fit({model.mesh, model.truth, scan, {3, axis_rotation(Eigen::Vector3d::UnitX(), 1), {9, 9, 9}}}, options,
                context);
   };
@@ -282,7 +283,7 @@ TEST_P(PartOfATable, DoesNotTakeTheRestAway) {
   if (scan.viewpoints.rows() > 1) scan.viewpoints = Points(scan.viewpoints(kept, Eigen::all));
   FitOptions options;
   options.align = false;
-  options.most_iterations = 200;
+  options.max_iterations = 200;
   for (const GroupMode mode : {GroupMode::floating, GroupMode::moving}) {
     options.subspace.mode = mode;
     const FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, options, context);
@@ -374,10 +375,10 @@ TEST(Fit, RefusesAnEmptyScanAndOptionsThatMakeNoSense) {
   options.last_stiffness = 20;
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
-  options.most_tried = options.most_tied - 1;
+  options.max_tried = options.max_tied - 1;
   EXPECT_THROW(options.validate(), UsageError);
   options = {};
-  options.most_iterations = 5;
+  options.max_iterations = 5;
   EXPECT_THROW(options.validate(), UsageError);
 }
 
@@ -395,7 +396,7 @@ TEST_P(PlacesThatTie, AreDecidedByTheirPlacement) {
   const SymmetryAnnotation none = empty_annotation(beam.mesh, beam.truth.tolerance);
   FitOptions options;
   options.place = true;
-  options.most_tried = options.most_tied;  // without short fits, which would choose
+  options.max_tried = options.max_tied;  // without short fits, which would choose
   options.subspace.samples = 60;
   const FitResult result = fit({beam.mesh, none, scan, Similarity{}}, options, context);
   ASSERT_GT(result.placements.size(), 1U);

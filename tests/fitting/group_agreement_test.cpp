@@ -54,7 +54,7 @@ TEST_F(Table, ItsOwnScanAgreesWithAllGroups) {
     EXPECT_FALSE(group.disagrees) << group.region << ": " << group.disagreement;
     EXPECT_LT(group.disagreement, 0.006);
   }
-  EXPECT_TRUE(result.relaxed.empty());
+  EXPECT_TRUE(result.dropped.empty());
 }
 
 TEST_F(Table, AMovedLegDisagreesWithTheWholeButNotWithItsOwnGroup) {
@@ -68,12 +68,12 @@ TEST_F(Table, AMovedLegDisagreesWithTheWholeButNotWithItsOwnGroup) {
 TEST_F(Table, RelaxingFollowsTheLegAndKeepsTheOtherGroups) {
   move_leg(0.06);
   const FitResult held = fitted();
-  options_.relax = true;
+  options_.drop_unsupported = true;
   options_.contacts = false;  // the scan's leg has slid along the board
   FitResult relaxed = fitted();
-  EXPECT_EQ(std::ranges::count(relaxed.relaxed, model_.truth.regions.front().id), 1);
-  EXPECT_EQ(std::ranges::count(relaxed.relaxed, leg().id), 0);
-  EXPECT_EQ(relaxed.rest_annotation.regions.size() + relaxed.relaxed.size(), model_.truth.regions.size());
+  EXPECT_EQ(std::ranges::count(relaxed.dropped, model_.truth.regions.front().id), 1);
+  EXPECT_EQ(std::ranges::count(relaxed.dropped, leg().id), 0);
+  EXPECT_EQ(relaxed.rest_annotation.regions.size() + relaxed.dropped.size(), model_.truth.regions.size());
   const auto error = [&](const FitResult& result) {
     return (result.fitted.vertices - truth_.vertices).rowwise().norm().mean() / diagonal(truth_.vertices);
   };

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 #include "orbifit/subspace/displacement_field.h"
+
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "geometry/sampling.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 namespace {
@@ -56,7 +58,7 @@ TEST_P(MovingGroups, AreFoundAsTheyWereTurned) {
   ASSERT_GT(regions.freedom(), 0);
   Eigen::VectorXd angles(regions.freedom());
   for (double& angle : angles) angle = random_.uniform(-0.2, 0.2);
-  const SubspaceState truth{coordinates(0), std::make_shared<const CarriedBasis>(carried_basis(
+  const SubspaceState truth{coordinates(0), std::make_shared<const ConjugatedBasis>(conjugated_basis(
                                                 subspace_, regions.rotations(regions.turned(regions.rest(), angles))))};
   const Points there = model_.mesh.vertices + vertex_displacements(subspace_, truth);
   const SurfaceSamples samples = sample_surface(model_.mesh, 1500, random_);

@@ -7,11 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/datasets_tools/fit_cases.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
+
+#include "base/random.h"
+#include "cases/fit_cases.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 namespace {
@@ -157,8 +158,8 @@ TEST(PlacementOptions, RefuseWhatMakesNoSense) {
   refused([](PlacementOptions& o) { o.scan_points = 9; });
   refused([](PlacementOptions& o) { o.reach = 0; });
   refused([](PlacementOptions& o) { o.reach = 0.2; });
-  refused([](PlacementOptions& o) { o.least_scale = 0; });
-  refused([](PlacementOptions& o) { o.largest_scale = o.least_scale; });
+  refused([](PlacementOptions& o) { o.min_scale = 0; });
+  refused([](PlacementOptions& o) { o.max_scale = o.min_scale; });
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/motion.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbifit/fitting/scan_preparation.h"
+#include "scan/scan_preparation.h"
 
 #include <string>
 
@@ -7,8 +7,9 @@
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
+
+#include "base/random.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 namespace {

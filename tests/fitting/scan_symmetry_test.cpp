@@ -9,8 +9,9 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/virtual_scan.h"
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 namespace {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 namespace {
@@ -17,7 +19,7 @@ TEST_P(Rows, TimesTheCoordinatesAreTheDisplacements) {
   RunContext context;
   const GeneratedModel model = generate(GetParam());
   const Subspace subspace = build_subspace(model.mesh, model.truth, {}, context);
-  VertexRows rows(subspace, subspace.basis);
+  VertexRows rows(subspace, subspace->basis);
   std::vector<int> vertices(static_cast<std::size_t>(model.mesh.vertices.rows()));
   std::iota(vertices.begin(), vertices.end(), 0);
   rows.prepare({vertices[1], vertices[1], vertices[0]}, context);

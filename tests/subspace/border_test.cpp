@@ -9,10 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/vertex_sets.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "domains/vertex_sets.h"
 #include "parts.h"
 #include "subspaces.h"
 
@@ -158,7 +159,7 @@ class BorderCase : public testing::TestWithParam<BorderModeCase> {
     Points sides(2, 3);
     sides.row(0) = (on + share * (centroid(model_.mesh, border.inside) - on)).transpose();
     sides.row(1) = (on + share * (centroid(model_.mesh, border.outside) - on)).transpose();
-    const RegionMap& regions = *subspace_.regions;
+    const RegionMap& regions = *subspace_->regions;
     const std::vector<int> sets{regions.set_of_face(border.inside), regions.set_of_face(border.outside)};
     return displacement_field(subspace_, state_, sides, sets, RunContext{});
   }
@@ -166,7 +167,7 @@ class BorderCase : public testing::TestWithParam<BorderModeCase> {
   double largest() const { return vertex_displacements(subspace_, state_).rowwise().norm().maxCoeff(); }
 
   std::string sides_of(const Border& border) const {
-    const RegionMap& regions = *subspace_.regions;
+    const RegionMap& regions = *subspace_->regions;
     const auto name = [&](int face) { return regions.name(innermost_region(regions, regions.set_of_face(face))); };
     return name(border.inside) + " and " + name(border.outside);
   }
@@ -178,7 +179,7 @@ class BorderCase : public testing::TestWithParam<BorderModeCase> {
 
   // Within a hundredth of the radius of a border the field is nearly constant on either side.
   void expect_no_steep_layer() const {
-    const std::vector<Border> borders = borders_of(model_.mesh, *subspace_.regions);
+    const std::vector<Border> borders = borders_of(model_.mesh, *subspace_->regions);
     Random random(6, "layers");
     for (int trial = 0; trial < 12; ++trial) {
       const Border& border = borders[random.below(borders.size())];
@@ -217,7 +218,7 @@ TEST_P(InnerBorder, LeavesEveryRegionExact) {
 // The nearer two points on either side of a border, the nearer their displacements; beside corners, where borders
 // meet, too.
 TEST_P(InnerBorder, IsCrossedContinuously) {
-  const std::vector<Border> borders = borders_of(model_.mesh, *subspace_.regions);
+  const std::vector<Border> borders = borders_of(model_.mesh, *subspace_->regions);
   ASSERT_GT(borders.size(), 8U);
   Random random(5, "borders");
   for (int trial = 0; trial < 24; ++trial) {
@@ -230,8 +231,8 @@ TEST_P(InnerBorder, IsCrossedContinuously) {
 
 // Where places meet without overlapping samples that lie in all of them stand along the border.
 TEST_P(InnerBorder, HasSamplesOfBothSidesNearby) {
-  const RegionMap& regions = *subspace_.regions;
-  const SymmetricSampling& sampling = subspace_.sampling;
+  const RegionMap& regions = *subspace_->regions;
+  const SymmetricSampling& sampling = subspace_->sampling;
   for (const Border& border : borders_of(model_.mesh, regions)) {
     const int both = regions.joined(regions.set_of_face(border.inside), regions.set_of_face(border.outside));
     const Eigen::Vector3d middle = 0.5 * (border.start + border.end);

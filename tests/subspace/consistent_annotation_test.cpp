@@ -8,11 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/model/random.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
-#include "orbifit/subspace/subspace.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 #include "support/subspaces.h"
 
 namespace orbifit {
@@ -39,7 +39,7 @@ double worst_after_drag(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   SubspaceOptions options;
   options.mode = mode;
   const Subspace subspace = build_subspace(mesh, annotation, options, RunContext{});
-  const double size = subspace.diagonal;
+  const double size = subspace->diagonal;
   Eigen::Index low = 0;
   Eigen::Index high = 0;
   mesh.vertices.col(0).minCoeff(&low);

@@ -6,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 #include "parts.h"
 #include "subspaces.h"
 
@@ -53,7 +54,7 @@ class ContinuousGroup : public testing::TestWithParam<ContinuousCase> {
 
   Motion random_element(Random& random) const {
     const Region& region = model_.truth.regions[0];
-    const auto& components = subspace_.regions->elements(0);
+    const auto& components = subspace_->regions->elements(0);
     const Motion& component = components[random.below(components.size())];
     const Eigen::Matrix3d turn =
         region.group.has_axis() ? axis_rotation(region.axis, random.uniform(0, 2 * M_PI)) : random.rotation();
@@ -85,8 +86,8 @@ TEST(Continuum, TurnsToPointsOfASphereToRounding) {
 
 TEST_P(ContinuousGroup, FieldIsExactAtAnyAngle) {
   Random random(8, "elements");
-  const Motion carried = carried_motion(subspace_, state_, 0);
-  const int set = subspace_.regions->set_of_face(0);
+  const Motion carried = region_motion(subspace_, state_, 0);
+  const int set = subspace_->regions->set_of_face(0);
   double size = 0;
   for (int trial = 0; trial < 60; ++trial) {
     const auto vertex =
@@ -98,14 +99,15 @@ TEST_P(ContinuousGroup, FieldIsExactAtAnyAngle) {
     pair.row(1) = element(here).transpose();
     const Points field = displacement_field(subspace_, state_, pair, {set, set}, RunContext{});
     const Eigen::Vector3d due = conjugate(carried, element)((pair.row(0) + field.row(0)).transpose());
-    ASSERT_LT((pair.row(1) + field.row(1) - due.transpose()).norm(), 1e-12 * subspace_.diagonal) << "vertex " << vertex;
+    ASSERT_LT((pair.row(1) + field.row(1) - due.transpose()).norm(), 1e-12 * subspace_->diagonal)
+        << "vertex " << vertex;
     size = std::max(size, field.row(0).norm());
   }
-  EXPECT_GT(size, 0.01 * subspace_.diagonal);
+  EXPECT_GT(size, 0.01 * subspace_->diagonal);
 }
 
 TEST_P(ContinuousGroup, VerticesOfOneRingAreExactCopies) {
-  const Motion carried = carried_motion(subspace_, state_, 0);
+  const Motion carried = region_motion(subspace_, state_, 0);
   const Region& region = model_.truth.regions[0];
   const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, state_);
   const std::vector<double> angles = irregular_angles(23);
@@ -115,7 +117,7 @@ TEST_P(ContinuousGroup, VerticesOfOneRingAreExactCopies) {
       const Motion turn = conjugate(
           carried, Motion::rotation(Eigen::Vector3d::UnitZ(), angles[static_cast<std::size_t>(k)], region.centre));
       ASSERT_LT((moved.row(first + k).transpose() - turn(moved.row(first).transpose())).norm(),
-                1e-12 * subspace_.diagonal);
+                1e-12 * subspace_->diagonal);
     }
   }
   EXPECT_LT(field_residual(subspace_, model_.mesh, region, 0, state_, RunContext{}, 300).max, 1e-12);
@@ -124,24 +126,24 @@ TEST_P(ContinuousGroup, VerticesOfOneRingAreExactCopies) {
 TEST_P(ContinuousGroup, RingsHaveTheFreedomThatTheirStabilisersLeave) {
   const Eigen::Vector3d centre = model_.truth.regions[0].centre;
   int freedom = 0;
-  for (int orbit = 0; orbit < subspace_.sampling.orbits(); ++orbit) {
+  for (int orbit = 0; orbit < subspace_->sampling.orbits(); ++orbit) {
     const Eigen::Vector3d seed =
-        subspace_.sampling.points.row(subspace_.sampling.first_sample[static_cast<std::size_t>(orbit)]).transpose() -
+        subspace_->sampling.points.row(subspace_->sampling.first_sample[static_cast<std::size_t>(orbit)]).transpose() -
         centre;
     const double near = 1e-9;
     const bool on_axis = seed.head<2>().norm() < near;
     const bool level = std::abs(seed[2]) < near;
     freedom += seed.norm() < near ? kind_.at_centre : on_axis ? kind_.on_axis : level ? kind_.on_mirror : kind_.generic;
   }
-  if (subspace_.mode != GroupMode::fixed) freedom += kind_.carried;
+  if (subspace_->mode != GroupMode::fixed) freedom += kind_.carried;
   EXPECT_EQ(subspace_.degrees_of_freedom(), freedom);
   EXPECT_EQ(basis_of(subspace_, state_).degrees_of_freedom(), freedom);
 }
 
 TEST_P(ContinuousGroup, SamplesFollowTheGroup) {
   const Points displacements = sample_displacements(subspace_, state_);
-  const Motion carried = carried_motion(subspace_, state_, 0);
-  const SymmetricSampling& sampling = subspace_.sampling;
+  const Motion carried = region_motion(subspace_, state_, 0);
+  const SymmetricSampling& sampling = subspace_->sampling;
   int copies = 0;
   for (std::size_t k = 0; k < sampling.copies.size(); ++k) {
     const auto& copy = sampling.copies[k];
@@ -151,7 +153,7 @@ TEST_P(ContinuousGroup, SamplesFollowTheGroup) {
     EXPECT_LT((copy.turn(sampling.points.row(from).transpose()) - sampling.points.row(to).transpose()).norm(), 1e-12);
     const Eigen::Vector3d due =
         conjugate(carried, copy.turn)((sampling.points.row(from) + displacements.row(from)).transpose());
-    EXPECT_LT((sampling.points.row(to) + displacements.row(to) - due.transpose()).norm(), 1e-12 * subspace_.diagonal);
+    EXPECT_LT((sampling.points.row(to) + displacements.row(to) - due.transpose()).norm(), 1e-12 * subspace_->diagonal);
     ++copies;
   }
   EXPECT_GT(copies, 10);
@@ -199,12 +201,12 @@ TEST_P(NestedContinuous, WheelsOfABodyWithAMirrorAreExact) {
   const WorstResidual worst = worst_residual(model, subspace, state, 300);
   EXPECT_LT(worst.residual, 1e-12) << worst.name;
   // The wheels are images of one another, wherever they go.
-  const Motion mirror = conjugate(carried_motion(subspace, state, 0), model.truth.regions[0].elements[1]);
-  const Motion right = carried_motion(subspace, state, 1);
-  const Motion left = carried_motion(subspace, state, 2);
+  const Motion mirror = conjugate(region_motion(subspace, state, 0), model.truth.regions[0].elements[1]);
+  const Motion right = region_motion(subspace, state, 1);
+  const Motion left = region_motion(subspace, state, 2);
   const Eigen::Vector3d apart = mirror(right(model.truth.regions[1].centre)) - left(model.truth.regions[2].centre);
   const Eigen::Vector3d axle = left.linear * model.truth.regions[2].axis;
-  EXPECT_LT(axle.cross(apart).norm(), 1e-12 * subspace.diagonal);
+  EXPECT_LT(axle.cross(apart).norm(), 1e-12 * subspace->diagonal);
 }
 
 TEST_P(NestedContinuous, SpokesInARimAreExact) {

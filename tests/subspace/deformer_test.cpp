@@ -8,8 +8,9 @@
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 #include "subspaces.h"
 
 namespace orbifit {
@@ -98,7 +99,7 @@ TEST(Deformer, SolutionMinimisesTheEnergy) {
   const Edit edit("table");
   const Mesh& mesh = edit.model.mesh;
   const double alpha = 50;
-  const Corotation rest = corotation(edit.subspace.sampling.points, 2 * edit.subspace.sampling.radius);
+  const Corotation rest = corotation(edit.subspace->sampling.points, 2 * edit.subspace->sampling.radius);
   const std::vector<Eigen::Matrix3d> still(static_cast<std::size_t>(rest.rest.rows()), Eigen::Matrix3d::Identity());
   DeformerOptions options;
   options.contacts = false;  // the energy of equation (3) alone

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/laplacian.h"
+#include "deformation/laplacian.h"
 
 #include <cmath>
 #include <map>
@@ -10,14 +10,15 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/model/dense.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/laplacian_kind.h"
-#include "orbifit/subspace/mesh_laplacian.h"
-#include "orbifit/subspace/point_laplacian.h"
-#include "orbifit/subspace/subspace.h"
+#include "orbifit/subspace/deformer.h"
+
+#include "base/dense.h"
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "deformation/mesh_laplacian.h"
+#include "deformation/point_laplacian.h"
+#include "geometry/point_index.h"
+#include "models/orbit_model.h"
 
 namespace orbifit {
 namespace {
@@ -34,7 +35,7 @@ Sampled sampled(const GeneratedModel& model, double radius) {
   SubspaceOptions options;
   options.radius = radius * diagonal(model.mesh.vertices);
   const Subspace subspace = build_subspace(model.mesh, model.truth, options, RunContext{});
-  return {subspace.sampling.points, options.radius, neighbour_graph(subspace.sampling.points, 2 * options.radius)};
+  return {subspace->sampling.points, options.radius, neighbour_graph(subspace->sampling.points, 2 * options.radius)};
 }
 
 Sparse sample_laplacian(LaplacianKind kind, const Mesh& mesh, const Sampled& sampled) {

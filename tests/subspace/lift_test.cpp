@@ -1,4 +1,4 @@
-#include "orbifit/subspace/lift.h"
+#include "basis/lift.h"
 
 #include <algorithm>
 #include <string>
@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "basis/alike_points.h"
 #include "basis/plain_lift.h"
+#include "basis/subspace_parts.h"
 #include "subspaces.h"
 
 namespace orbifit {
@@ -70,14 +70,14 @@ TEST(Lift, PointsStandForTheirImagesUnderTheWhole) {
     const Subspace subspace = subspace_of(model, GroupMode::floating, 0.06);
     const Eigen::VectorXd q = random_state(subspace, 0.1).q;
     const Points samples = sample_displacements(subspace, q);
-    const Eigen::VectorXd carriers = subspace.basis.carried * q;
-    const VertexOrbits& orbits = subspace.orbits;
+    const Eigen::VectorXd carriers = subspace->basis.carried * q;
+    const VertexOrbits& orbits = subspace->orbits;
     const std::vector<int> stood_for =
-        points_stood_for(subspace.sampling, *subspace.regions, *subspace.words, carriers, orbits);
+        points_stood_for(subspace->sampling, *subspace->regions, *subspace->words, carriers, orbits);
     EXPECT_GT(std::ranges::count(stood_for, 0), orbits.representatives()) << name;
 
-    const PlainLift plain(subspace.sampling, *subspace.regions, true);
-    subspace.regions->prepare();
+    const PlainLift plain(subspace->sampling, *subspace->regions, true);
+    subspace->regions->prepare();
     PlainLift::Scratch scratch;
     for (int r = 0; r < orbits.representatives(); r += 97) {
       Eigen::Vector3d all = Eigen::Vector3d::Zero();
@@ -87,8 +87,8 @@ TEST(Lift, PointsStandForTheirImagesUnderTheWhole) {
       for (auto k = orbits.first_point[at]; k < orbits.first_point[at + 1]; ++k) {
         const auto point = static_cast<std::size_t>(k);
         const int word = orbits.point_words[point];
-        const Transport& transport = subspace.words->transport(word);
-        plain.terms(subspace.words->motion(word)(orbits.positions.row(r).transpose()), orbits.point_sets[point],
+        const Transport& transport = subspace->words->transport(word);
+        plain.terms(subspace->words->motion(word)(orbits.positions.row(r).transpose()), orbits.point_sets[point],
                     scratch);
         Eigen::Vector3d u = Eigen::Vector3d::Zero();
         for (const LiftTerm& term : scratch.terms) u += term.weight * samples.row(term.sample).transpose();
@@ -98,7 +98,7 @@ TEST(Lift, PointsStandForTheirImagesUnderTheWhole) {
         count += stood_for[point];
       }
       EXPECT_EQ(count, orbits.first_point[at + 1] - orbits.first_point[at]);
-      EXPECT_LT((all - some).norm() / count, 1e-7 * subspace.diagonal) << name << ", representative " << r;
+      EXPECT_LT((all - some).norm() / count, 1e-7 * subspace->diagonal) << name << ", representative " << r;
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/moving_surface.h"
+#include "symmetry/moving_surface.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,8 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
+
+#include "base/random.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 namespace {

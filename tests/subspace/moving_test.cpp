@@ -6,11 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/carried_regions.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/carried_regions.h"
+#include "basis/subspace_parts.h"
 #include "subspaces.h"
 
 namespace orbifit {
@@ -76,7 +77,7 @@ TEST(Moving, ATablesLegsSplay) {
 // Q_j = g Q_i g^-1 for the table's legs, and so for where their axes go.
 TEST(Moving, LegsSplayAlike) {
   const Splay splay(GroupMode::moving);
-  const Motion whole = carried_motion(splay.subspace, splay.result.state, 0);
+  const Motion whole = region_motion(splay.subspace, splay.result.state, 0);
   int number = 0;
   region_named(splay.model, "leg 1", number);
   const Region& first = splay.model.truth.regions[static_cast<std::size_t>(number)];
@@ -86,8 +87,8 @@ TEST(Moving, LegsSplayAlike) {
       const Region& other = splay.model.truth.regions[j];
       if (other.name.rfind("leg", 0) != 0 || (element(first.centre) - other.centre).norm() > 1e-9) continue;
       const Motion carried = conjugate(whole, element);
-      const Motion here = carried_motion(splay.subspace, splay.result.state, number);
-      const Motion there = carried_motion(splay.subspace, splay.result.state, static_cast<int>(j));
+      const Motion here = region_motion(splay.subspace, splay.result.state, number);
+      const Motion there = region_motion(splay.subspace, splay.result.state, static_cast<int>(j));
       const Eigen::Vector3d due = carried.linear * here.linear * first.axis;
       EXPECT_LT((there.linear * other.axis).cross(due).norm(), 1e-10);
       ++images;
@@ -108,7 +109,7 @@ TEST(Moving, ACarsWheelsFollowItsNose) {
   region_named(model, "rear left wheel", rear);
   const auto gone = [&](int wheel) {
     const Eigen::Vector3d& centre = model.truth.regions[static_cast<std::size_t>(wheel)].centre;
-    return carried_motion(subspace, result.state, wheel)(centre)[0] - centre[0];
+    return region_motion(subspace, result.state, wheel)(centre)[0] - centre[0];
   };
   EXPECT_GT(gone(front), gone(rear) + 0.2);
   const WorstResidual worst = worst_residual(model, subspace, result.state, 60);
@@ -126,7 +127,7 @@ class MovingModel : public testing::TestWithParam<const char*> {
          {Eigen::Vector3d(1, 0.2, 0.1), Eigen::Vector3d(-0.5, 1, -1), Eigen::Vector3d(-0.3, -0.9, 0.8)}) {
       Eigen::Index vertex = 0;
       (model_.mesh.vertices * way).maxCoeff(&vertex);
-      result.push_back(handle_at(model_.mesh, model_.mesh.vertices.row(vertex).transpose(), 0.1 * subspace_.diagonal));
+      result.push_back(handle_at(model_.mesh, model_.mesh.vertices.row(vertex).transpose(), 0.1 * subspace_->diagonal));
     }
     return result;
   }
@@ -139,22 +140,22 @@ TEST_P(MovingModel, RestPoseIsAFixedPoint) {
   Deformer deformer(subspace_, model_.mesh);
   deformer.set_handles(handles(), 100);
   const Deformation result = deformer.solve(std::vector<Motion>(3), 10);
-  EXPECT_LT(vertex_displacements(subspace_, result.state).rowwise().norm().maxCoeff(), 1e-9 * subspace_.diagonal);
-  EXPECT_LT(result.handle_error, 1e-9 * subspace_.diagonal);
+  EXPECT_LT(vertex_displacements(subspace_, result.state).rowwise().norm().maxCoeff(), 1e-9 * subspace_->diagonal);
+  EXPECT_LT(result.handle_error, 1e-9 * subspace_->diagonal);
 }
 
 TEST_P(MovingModel, RigidMotionOfAllHandlesMovesEverythingRigidly) {
   Deformer deformer(subspace_, model_.mesh, without_contacts());
   deformer.set_handles(handles(), 100);
   Motion motion = Motion::rotation(Eigen::Vector3d(1, 2, 3).normalized(), 0.8, {0.1, 0.2, 0.3});
-  motion.translation += subspace_.diagonal * Eigen::Vector3d(0.4, -0.3, 0.2);
+  motion.translation += subspace_->diagonal * Eigen::Vector3d(0.4, -0.3, 0.2);
   const Deformation result = deformer.solve(std::vector<Motion>(3, motion), 150);
   const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, result.state);
   double worst = 0;
   for (Eigen::Index v = 0; v < moved.rows(); ++v) {
     worst = std::max(worst, (moved.row(v).transpose() - motion(model_.mesh.vertices.row(v).transpose())).norm());
   }
-  EXPECT_LT(worst, 1e-6 * subspace_.diagonal);
+  EXPECT_LT(worst, 1e-6 * subspace_->diagonal);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, MovingModel, testing::Values("bar", "table", "chair"));

@@ -1,12 +1,13 @@
-#include "orbifit/subspace/orbit.h"
+#include "symmetry/orbit.h"
 
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/symmetric_basis.h"
+
+#include "base/random.h"
+#include "basis/symmetric_basis.h"
+#include "models/orbit_model.h"
 
 namespace orbifit {
 namespace {

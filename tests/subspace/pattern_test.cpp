@@ -6,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 #include "parts.h"
 #include "subspaces.h"
 
@@ -117,7 +118,7 @@ class PatternOfParts : public testing::TestWithParam<PatternCase> {
       };
       result.push_back(apart(0));
       for (std::size_t k = 0; k < vertices_[a].size(); ++k) {
-        EXPECT_LT((apart(k) - result.back()).norm(), 1e-12 * subspace_.diagonal) << "instance " << a;
+        EXPECT_LT((apart(k) - result.back()).norm(), 1e-12 * subspace_->diagonal) << "instance " << a;
       }
     }
     return result;
@@ -146,7 +147,7 @@ TEST_P(PatternOfParts, StaysRegularAfterADragThatSpreadsIt) {
   const SubspaceState state = dragged();
   const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, state);
   const std::vector<Eigen::Vector3d> tau = translations(moved);
-  const double tolerance = 1e-12 * subspace_.diagonal;
+  const double tolerance = 1e-12 * subspace_->diagonal;
   const Pattern& pattern = model_.truth.patterns[0];
   if (mode_ == GroupMode::fixed) {
     for (std::size_t a = 0; a < tau.size(); ++a) {
@@ -176,8 +177,8 @@ TEST_P(PatternOfParts, CarriedAnnotationSaysWhereItWent) {
   const SubspaceState state = dragged();
   Mesh deformed = model_.mesh;
   deformed.vertices += vertex_displacements(subspace_, state);
-  const Pattern carried = carried_annotation(model_.truth, subspace_, state, deformed).patterns[0];
-  const double tolerance = 1e-12 * subspace_.diagonal;
+  const Pattern carried = deformed_annotation(model_.truth, subspace_, state, deformed).patterns[0];
+  const double tolerance = 1e-12 * subspace_->diagonal;
   ASSERT_EQ(carried.instances.size(), vertices_.size());
   for (std::size_t a = 0; a < vertices_.size(); ++a) {
     for (std::size_t k = 0; k < vertices_[a].size(); ++k) {

@@ -7,12 +7,14 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "orbifit/datasets_tools/orbit_model.h"
-#include "orbifit/model/dense.h"
-#include "orbifit/model/random.h"
 #include "orbifit/subspace/deformer.h"
 
+#include "base/dense.h"
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "deformation/deformation_energy.h"
 #include "deformation/handle_rows.h"
+#include "models/orbit_model.h"
 #include "subspaces.h"
 
 namespace orbifit {
@@ -112,7 +114,7 @@ struct FullSolve {
       handle_columns.col(c) = stacked(moved(rows.vertices(), Eigen::all));
     }
     const Eigen::SparseMatrix<double> squared = energy.laplacian.transpose() * energy.laplacian;
-    stiffness = restricted(subspace.basis.columns, squared);
+    stiffness = restricted(subspace->basis.columns, squared);
     Eigen::MatrixXd system = stiffness + handle_columns.transpose() * weights.asDiagonal() * handle_columns;
     system.diagonal().array() += 1e-12 * system.diagonal().mean();
     factor.compute(system);
@@ -123,7 +125,7 @@ struct FullSolve {
     std::vector<Eigen::Matrix3d> rotations(static_cast<std::size_t>(energy.rest.rows()), Eigen::Matrix3d::Identity());
     Eigen::VectorXd q;
     for (int iteration = 0; iteration < iterations; ++iteration) {
-      q = factor.solve(subspace.basis.columns.transpose() * stacked(corotated_pull(energy, rotations)) +
+      q = factor.solve(subspace->basis.columns.transpose() * stacked(corotated_pull(energy, rotations)) +
                        handle_columns.transpose() * weights.cwiseProduct(targets));
       rotations = local_rotations(energy, energy.rest + sample_displacements(subspace, q), rotations);
     }
@@ -151,7 +153,7 @@ TEST_P(QuotientOfModel, SolvesAsTheFullComputationDoes) {
   const GeneratedModel model = generate(name);
   const Subspace subspace = subspace_of(model, mode, 0.06);
   const Mesh& mesh = model.mesh;
-  const double size = subspace.diagonal;
+  const double size = subspace->diagonal;
   Deformer deformer(subspace, mesh, {.laplacian = laplacian, .contacts = false});  // equation (3) alone
   Eigen::Index low = 0;
   Eigen::Index high = 0;
@@ -163,7 +165,8 @@ TEST_P(QuotientOfModel, SolvesAsTheFullComputationDoes) {
       Motion{}, Motion{Eigen::Matrix3d::Identity(), size * Eigen::Vector3d(0.1, 0.05, 0.2)} *
                     Motion::rotation(Eigen::Vector3d(1, 2, 3).normalized(), 0.7, mesh.vertices.row(high).transpose())};
   deformer.set_handles(handles, 100);
-  const FullSolve full(subspace, mesh, deformer.energy(), handles, 100);
+  const Corotation energy = deformation_energy(subspace, mesh, laplacian, RunContext{});
+  const FullSolve full(subspace, mesh, energy, handles, 100);
   for (const int iterations : {1, 2, 8}) {
     const Eigen::VectorXd q = full.solve(motions, iterations);
     const Eigen::VectorXd by_quotient = deformer.solve(motions, iterations).state.q;
@@ -173,10 +176,10 @@ TEST_P(QuotientOfModel, SolvesAsTheFullComputationDoes) {
         << iterations << " iterations";
   }
 
-  const Quotient quotient(subspace, deformer.energy());
+  const Quotient quotient(subspace, energy);
   EXPECT_LT((quotient.stiffness() - full.stiffness).norm(), 1e-11 * full.stiffness.norm());
   // The chair has but a mirror plane in common; point Laplacians see the borders of its parts.
-  EXPECT_LE(5 * quotient.classes(), (name == "chair" ? 3 : 2) * subspace.sampling.points.rows());
+  EXPECT_LE(5 * quotient.classes(), (name == "chair" ? 3 : 2) * subspace->sampling.points.rows());
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -200,12 +203,11 @@ TEST_P(QuotientOfGroup, HasOneClassAnOrbitAndTheFullStiffness) {
     orbit.centre = scale * Eigen::Vector3d(0.3, -0.2, 0.7);
     const GeneratedModel model = generate_orbit(PointGroup::parse(symbol).value(), orbit);
     const Subspace subspace = subspace_of(model, GroupMode::floating, 0.15);
-    const Deformer deformer(subspace, model.mesh, {.laplacian = laplacian, .contacts = false});
-    const Corotation& energy = deformer.energy();
+    const Corotation energy = deformation_energy(subspace, model.mesh, laplacian, RunContext{});
     const Quotient quotient(subspace, energy);
-    EXPECT_EQ(quotient.classes(), subspace.sampling.orbits()) << "scale " << scale;
+    EXPECT_EQ(quotient.classes(), subspace->sampling.orbits()) << "scale " << scale;
     const Eigen::SparseMatrix<double> squared = energy.laplacian.transpose() * energy.laplacian;
-    const Eigen::MatrixXd stiffness = restricted(subspace.basis.columns, squared);
+    const Eigen::MatrixXd stiffness = restricted(subspace->basis.columns, squared);
     EXPECT_LT((quotient.stiffness() - stiffness).norm(), 1e-12 * stiffness.norm()) << "scale " << scale;
 
     // Rotations, pull and energy as of the full computation.
@@ -217,8 +219,8 @@ TEST_P(QuotientOfGroup, HasOneClassAnOrbitAndTheFullStiffness) {
         local_rotations(energy, energy.rest + sample_displacements(subspace, q), still);
     Eigen::VectorXd pull;
     quotient.pull(rotations, pull);
-    const Eigen::VectorXd full_pull = subspace.basis.columns.transpose() * stacked(corotated_pull(energy, full));
-    EXPECT_LT((pull - full_pull).norm(), 1e-9 * stiffness.norm() * subspace.diagonal) << "scale " << scale;
+    const Eigen::VectorXd full_pull = subspace->basis.columns.transpose() * stacked(corotated_pull(energy, full));
+    EXPECT_LT((pull - full_pull).norm(), 1e-9 * stiffness.norm() * subspace->diagonal) << "scale " << scale;
     const double due = laplace_energy(energy, full, sample_displacements(subspace, q));
     EXPECT_NEAR(quotient.energy(q, rotations), due, 1e-9 * due) << "scale " << scale;
   }

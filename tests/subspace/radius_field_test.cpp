@@ -6,8 +6,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/point_index.h"
 
+#include "geometry/point_index.h"
 #include "temporary_folder.h"
 
 namespace orbifit {

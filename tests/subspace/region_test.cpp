@@ -12,11 +12,12 @@
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/vertex_grid.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "geometry/vertex_grid.h"
 #include "subspaces.h"
 #include "temporary_folder.h"
 
@@ -59,14 +60,14 @@ class EveryRegion : public testing::TestWithParam<RegionCase> {
 };
 
 TEST_P(EveryRegion, IsExactUnderRandomCoordinates) {
-  EXPECT_LT(basis_of(subspace_, state_).conflict, 1e-12 * subspace_.diagonal);
+  EXPECT_LT(basis_of(subspace_, state_).conflict, 1e-12 * subspace_->diagonal);
   const WorstResidual worst = worst_residual(model_, subspace_, state_, 200);
   EXPECT_LT(worst.residual, 1e-12) << worst.name;
 
   Mesh deformed = model_.mesh;
   deformed.vertices += vertex_displacements(subspace_, state_);
   RunContext context;
-  const SymmetryAnnotation carried = carried_annotation(model_.truth, subspace_, state_, deformed);
+  const SymmetryAnnotation carried = deformed_annotation(model_.truth, subspace_, state_, deformed);
   const SymmetryReport report = symmetry_residual(deformed, carried, nullptr, CarriedMotions::fixed, context);
   for (const RegionResidual& region : report.regions) EXPECT_LT(region.floor.max, 1e-12) << region.name;
   for (const PatternResidual& pattern : report.patterns) EXPECT_LT(pattern.floor.max, 1e-12) << pattern.name;
@@ -75,7 +76,7 @@ TEST_P(EveryRegion, IsExactUnderRandomCoordinates) {
 // The baked lift is the field, but for its weights' rounding to 24 bits.
 TEST_P(EveryRegion, BakedLiftIsTheFieldAtTheVertices) {
   const Points baked = vertex_displacements(subspace_, state_);
-  const VertexOrbits& orbits = subspace_.orbits;
+  const VertexOrbits& orbits = subspace_->orbits;
   Random random(3, "vertices");
   for (int trial = 0; trial < 20; ++trial) {
     const auto v = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(baked.rows())));
@@ -89,7 +90,7 @@ TEST_P(EveryRegion, BakedLiftIsTheFieldAtTheVertices) {
     }
     ASSERT_GE(set, 0);
     const Points field = displacement_field(subspace_, state_, model_.mesh.vertices.row(v), {set}, RunContext{});
-    EXPECT_LT((field.row(0) - baked.row(v)).norm(), 1e-5 * subspace_.diagonal) << "vertex " << v;
+    EXPECT_LT((field.row(0) - baked.row(v)).norm(), 1e-5 * subspace_->diagonal) << "vertex " << v;
   }
 }
 
@@ -98,10 +99,10 @@ TEST_P(EveryRegion, LiftCommutesWithTheGroups) {
   const Points moved = model_.mesh.vertices + vertex_displacements(subspace_, state_);
   const Points& rest = model_.mesh.vertices;
   Random random(4, "pairs");
-  const VertexGrid at(rest, 1e-9 * subspace_.diagonal);
+  const VertexGrid at(rest, 1e-9 * subspace_->diagonal);
   int pairs = 0;
   for (std::size_t i = 0; i < model_.truth.regions.size(); ++i) {
-    const Motion carried = carried_motion(subspace_, state_, static_cast<int>(i));
+    const Motion carried = region_motion(subspace_, state_, static_cast<int>(i));
     const std::vector<int> vertices = vertices_of_faces(model_.mesh, model_.truth.regions[i].faces);
     for (const Motion& element : model_.truth.regions[i].elements) {
       for (int trial = 0; trial < 20; ++trial) {
@@ -110,7 +111,7 @@ TEST_P(EveryRegion, LiftCommutesWithTheGroups) {
         at.visit(element(rest.row(vertex).transpose()), [&](int other) { image = other; });
         if (image < 0) continue;
         const Eigen::Vector3d due = conjugate(carried, element)(moved.row(vertex).transpose());
-        ASSERT_LT((moved.row(image).transpose() - due).norm(), 1e-12 * subspace_.diagonal)
+        ASSERT_LT((moved.row(image).transpose() - due).norm(), 1e-12 * subspace_->diagonal)
             << model_.truth.regions[i].name;
         ++pairs;
       }
@@ -122,8 +123,8 @@ TEST_P(EveryRegion, LiftCommutesWithTheGroups) {
 // A large drag, then the files as users get them.
 // As the lift takes distances for: those of an image from images of places.
 TEST_P(EveryRegion, ExactImagesLieOnThePlacesThatTheyAre) {
-  const RegionMap& regions = *subspace_.regions;
-  const VertexGrid grid(model_.mesh.vertices, 1e-9 * subspace_.diagonal);
+  const RegionMap& regions = *subspace_->regions;
+  const VertexGrid grid(model_.mesh.vertices, 1e-9 * subspace_->diagonal);
   int others = 0;
   for (int place = 0; place < regions.count(); ++place) {
     EXPECT_EQ(regions.exact_images(place, -1), std::vector<int>(static_cast<std::size_t>(regions.places()), -1));
@@ -148,7 +149,7 @@ TEST_P(EveryRegion, ExactImagesLieOnThePlacesThatTheyAre) {
 
 TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
   const Mesh& mesh = model_.mesh;
-  const double size = subspace_.diagonal;
+  const double size = subspace_->diagonal;
   Eigen::Index low = 0;
   Eigen::Index high = 0;
   mesh.vertices.rowwise().sum().minCoeff(&low);
@@ -169,7 +170,7 @@ TEST_P(EveryRegion, IsExactInTheFileAfterADrag) {
   deformed.vertices += displacements;
   const TemporaryFolder folder;
   write_annotation(folder.file("carried.json"),
-                   carried_annotation(model_.truth, subspace_, deformation.state, deformed));
+                   deformed_annotation(model_.truth, subspace_, deformation.state, deformed));
   for (const std::string name : {"deformed.ply", "deformed.obj"}) {
     write_mesh(folder.file(name), deformed);
     const Mesh written = read_mesh(folder.file(name));
@@ -198,7 +199,7 @@ class BetweenVertices : public EveryRegion {};
 TEST_P(BetweenVertices, EveryRegionIsExact) {
   const GeneratedModel cut = cut_irregularly(model_);
   const Subspace subspace = subspace_of(cut, mode_, case_.radius);
-  EXPECT_FALSE(subspace.orbits.images_are_vertices);
+  EXPECT_FALSE(subspace->orbits.images_are_vertices);
   const WorstResidual worst = worst_residual(cut, subspace, random_state(subspace, 0.03), 60);
   EXPECT_LT(worst.residual, 1e-12) << worst.name;
 }

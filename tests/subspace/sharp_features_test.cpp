@@ -1,4 +1,4 @@
-#include "orbifit/subspace/sharp_features.h"
+#include "sampling/sharp_features.h"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/surface_index.h"
+
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 namespace {

@@ -13,15 +13,16 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/carried_regions.h"
 #include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "base/random.h"
+#include "basis/carried_regions.h"
+#include "basis/subspace_parts.h"
+#include "files/file.h"
 #include "io/section_file.h"
+#include "models/orbit_model.h"
 #include "temporary_folder.h"
 
 namespace orbifit {
@@ -106,14 +107,14 @@ Subspace built(const GeneratedModel& model, GroupMode mode, LiftKind lift) {
 SubspaceState random_state_of(const Subspace& subspace) {
   Random random(23, "state");
   SubspaceState state;
-  if (subspace.mode == GroupMode::moving) {
+  if (subspace->mode == GroupMode::moving) {
     const CarriedRegions regions(subspace);
     const auto angle = [&] { return 0.2 * random.normal(); };
     const Eigen::VectorXd angles = Eigen::VectorXd::NullaryExpr(regions.freedom(), angle);
     const auto rotations = regions.rotations(regions.turned(regions.rest(), angles));
-    state.basis = std::make_shared<const CarriedBasis>(carried_basis(subspace, rotations));
+    state.basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace, rotations));
   }
-  const auto coordinate = [&] { return 0.1 * subspace.diagonal * random.normal(); };
+  const auto coordinate = [&] { return 0.1 * subspace->diagonal * random.normal(); };
   state.q = Eigen::VectorXd::NullaryExpr(basis_of(subspace, state).degrees_of_freedom(), coordinate);
   return state;
 }
@@ -159,7 +160,7 @@ TEST_P(StoredSubspace, GivesTheSameFieldInSpaceAndTheSameAnnotation) {
   EXPECT_EQ(displacement_field(read_, same, points, sets, RunContext{}),
             displacement_field(built_, state, points, sets, RunContext{}));
   for (int region = 0; region < built_.regions->count(); ++region) {
-    const Motion there = carried_motion(built_, state, region), here = carried_motion(read_, same, region);
+    const Motion there = region_motion(built_, state, region), here = region_motion(read_, same, region);
     EXPECT_EQ(here.linear, there.linear);
     EXPECT_EQ(here.translation, there.translation);
   }

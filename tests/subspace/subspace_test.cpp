@@ -1,5 +1,3 @@
-#include "orbifit/subspace/subspace.h"
-
 #include <algorithm>
 #include <map>
 #include <string>
@@ -9,13 +7,15 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
 #include "orbifit/subspace/displacement_field.h"
+
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "geometry/point_index.h"
+#include "geometry/surface_index.h"
+#include "models/orbit_model.h"
 
 namespace orbifit {
 namespace {
@@ -52,8 +52,8 @@ class SubspaceOfGroup : public testing::TestWithParam<GroupAndMode> {
 // u(g p) = O u(p) + (I - O) t on the samples: every image of a sample is a sample with the displacement due.
 TEST_P(SubspaceOfGroup, BasisSatisfiesTheConstraintsOnTheSamples) {
   const Points displacements = sample_displacements(subspace_, q_);
-  const Eigen::Vector3d t = carried_translation(subspace_, q_, 0);
-  const Points& samples = subspace_.sampling.points;
+  const Eigen::Vector3d t = region_translation(subspace_, q_, 0);
+  const Points& samples = subspace_->sampling.points;
   const double size = diagonal(model_.mesh.vertices);
   for (const Motion& g : model_.truth.regions[0].elements) {
     for (Eigen::Index k = 0; k < samples.rows(); ++k) {
@@ -74,7 +74,7 @@ TEST_P(SubspaceOfGroup, FieldIsSymmetricInSpace) {
 TEST_P(SubspaceOfGroup, DeformedMeshIsSymmetricUnderTheCarriedGroup) {
   Mesh deformed = model_.mesh;
   deformed.vertices += vertex_displacements(subspace_, q_);
-  const SymmetryAnnotation carried = carried_annotation(model_.truth, subspace_, q_, deformed);
+  const SymmetryAnnotation carried = deformed_annotation(model_.truth, subspace_, q_, deformed);
   RunContext context;
   const SymmetryReport report = symmetry_residual(deformed, carried, nullptr, CarriedMotions::fixed, context);
   EXPECT_TRUE(report.vertices_onto_vertices);
@@ -82,16 +82,16 @@ TEST_P(SubspaceOfGroup, DeformedMeshIsSymmetricUnderTheCarriedGroup) {
 }
 
 TEST_P(SubspaceOfGroup, ColumnsAreIndependentAndAsManyAsOrbitsAndStabilisersAllow) {
-  const Eigen::MatrixXd columns(subspace_.basis.columns);
+  const Eigen::MatrixXd columns(subspace_->basis.columns);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rank(columns);
   EXPECT_EQ(rank.rank(), columns.cols());
   // Each orbit has the dimension of what its seed's stabiliser keeps, by the trace formula; carried translations add
   // the directions that the group does not fix.
   double dimension = 0;
   const auto& elements = model_.truth.regions[0].elements;
-  for (int orbit = 0; orbit < subspace_.sampling.orbits(); ++orbit) {
+  for (int orbit = 0; orbit < subspace_->sampling.orbits(); ++orbit) {
     const Eigen::Vector3d seed =
-        subspace_.sampling.points.row(subspace_.sampling.first_sample[static_cast<std::size_t>(orbit)]);
+        subspace_->sampling.points.row(subspace_->sampling.first_sample[static_cast<std::size_t>(orbit)]);
     double trace = 0;
     int size = 0;
     for (const Motion& g : elements) {
@@ -101,7 +101,7 @@ TEST_P(SubspaceOfGroup, ColumnsAreIndependentAndAsManyAsOrbitsAndStabilisersAllo
     }
     dimension += trace / size;
   }
-  if (subspace_.mode == GroupMode::floating) {
+  if (subspace_->mode == GroupMode::floating) {
     double fixed = 0;
     for (const Motion& g : elements) fixed += g.linear.trace() / static_cast<double>(elements.size());
     dimension += 3 - fixed;
@@ -140,24 +140,24 @@ TEST_P(SubspaceOfModel, SamplesKeepEveryRegion) {
   const double size = diagonal(model_.mesh.vertices);
   const Eigen::VectorXd q = random_coordinates(subspace_, 0.05 * size);
   const Points displacements = sample_displacements(subspace_, q);
-  const Points& samples = subspace_.sampling.points;
+  const Points& samples = subspace_->sampling.points;
   const SurfaceIndex surface(model_.mesh);
   int pairs = 0;
-  for (int region = 0; region < subspace_.regions->count(); ++region) {
-    const Eigen::Vector3d t = carried_translation(subspace_, q, region);
+  for (int region = 0; region < subspace_->regions->count(); ++region) {
+    const Eigen::Vector3d t = region_translation(subspace_, q, region);
     for (Eigen::Index k = 0; k < samples.rows(); ++k) {
       const auto nearest = surface.nearest(samples.row(k).transpose());
-      const auto& here = subspace_.regions->regions_of_face(nearest.face);
+      const auto& here = subspace_->regions->regions_of_face(nearest.face);
       // Well inside the region: a sample that snapped onto an axis may lie beside it.
       if (nearest.distance > 1e-9 * size || !std::ranges::binary_search(here, region)) continue;
-      for (const Motion& g : subspace_.regions->elements(region)) {
+      for (const Motion& g : subspace_->regions->elements(region)) {
         Eigen::Index image = 0;
         const double distance =
             (samples.rowwise() - g(samples.row(k).transpose()).transpose()).rowwise().norm().minCoeff(&image);
-        ASSERT_LT(distance, 1e-9 * size) << subspace_.regions->name(region) << " lacks the image of sample " << k;
+        ASSERT_LT(distance, 1e-9 * size) << subspace_->regions->name(region) << " lacks the image of sample " << k;
         const Eigen::Vector3d due = g.linear * (displacements.row(k).transpose() - t) + t;
         ASSERT_LT((displacements.row(image).transpose() - due).norm(), 1e-9 * size)
-            << subspace_.regions->name(region) << ", sample " << k;
+            << subspace_->regions->name(region) << ", sample " << k;
         ++pairs;
       }
     }
@@ -166,20 +166,20 @@ TEST_P(SubspaceOfModel, SamplesKeepEveryRegion) {
 }
 
 TEST_P(SubspaceOfModel, EverySurfacePointHasASampleWithinTheRadius) {
-  const PointIndex index(subspace_.sampling.points);
+  const PointIndex index(subspace_->sampling.points);
   double worst = 0;
   for (Eigen::Index v = 0; v < model_.mesh.vertices.rows(); ++v) {
     worst = std::max(worst, index.nearest(model_.mesh.vertices.row(v).transpose(), 1).front().distance);
   }
   // Seeds that snapped lie up to 0.4 r off; candidates are finitely many.
-  EXPECT_LT(worst, 1.5 * subspace_.sampling.radius);
+  EXPECT_LT(worst, 1.5 * subspace_->sampling.radius);
 }
 
 TEST_P(SubspaceOfModel, WholeMeshGroupsAreExactOnTheMesh) {
   const Eigen::VectorXd q = random_coordinates(subspace_, 0.03 * diagonal(model_.mesh.vertices));
   Mesh deformed = model_.mesh;
   deformed.vertices += vertex_displacements(subspace_, q);
-  SymmetryAnnotation whole = carried_annotation(model_.truth, subspace_, q, deformed);
+  SymmetryAnnotation whole = deformed_annotation(model_.truth, subspace_, q, deformed);
   std::erase_if(whole.regions, [&](const Region& region) {
     return static_cast<Eigen::Index>(region.faces.size()) != model_.mesh.faces.rows();
   });
@@ -190,12 +190,12 @@ TEST_P(SubspaceOfModel, WholeMeshGroupsAreExactOnTheMesh) {
 
 TEST_P(SubspaceOfModel, IsTheSameWithTwoThreads) {
   SubspaceOptions options;
-  options.mode = subspace_.mode;
-  options.radius = subspace_.sampling.radius;
+  options.mode = subspace_->mode;
+  options.radius = subspace_->sampling.radius;
   RunContext two;
   two.threads = 2;
   const Subspace again = build_subspace(model_.mesh, model_.truth, options, two);
-  EXPECT_EQ(again.sampling.points, subspace_.sampling.points);
+  EXPECT_EQ(again.sampling.points, subspace_->sampling.points);
   const Eigen::VectorXd q = random_coordinates(subspace_, 1);
   EXPECT_EQ(vertex_displacements(again, q), vertex_displacements(subspace_, q));
 }
@@ -233,7 +233,7 @@ TEST(Subspace, ShapesOfFewDegreesOfFreedomHaveMoreSamples) {
   const GeneratedModel model = generate("fan");
   const Subspace subspace = build_subspace(model.mesh, model.truth, {}, RunContext{});
   EXPECT_GT(subspace.degrees_of_freedom(), 100);
-  EXPECT_LT(subspace.sampling.points.rows(), 2700);
+  EXPECT_LT(subspace->sampling.points.rows(), 2700);
 }
 
 TEST(Subspace, RefusesOptionsThatMakeNoSense) {

@@ -10,10 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/datasets_tools/orbit_model.h"
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
+#include "geometry/point_index.h"
+#include "models/orbit_model.h"
 
 namespace orbifit {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/gram.h"
-#include "orbifit/subspace/neighbour_sums.h"
+#include "base/random.h"
+#include "basis/gram.h"
+#include "deformation/neighbour_sums.h"
 
 namespace orbifit {
 namespace {

@@ -23,9 +23,9 @@
 #include <CGAL/boost/graph/helpers.h>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
+#include "files/file.h"
 #include "stopwatch.h"
 
 namespace {

@@ -7,16 +7,16 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "orbifit/detection/add_region.h"
 #include "orbifit/detection/detect.h"
+#include "orbifit/detection/guided_region.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
-#include "add_region.h"
 #include "annotation_edits.h"
-#include "guided_region.h"
 
 namespace orbifit::commands {
 
@@ -88,58 +88,26 @@ RegionHint to_hint(const AnnotateArguments& arguments) {
   return hint;
 }
 
-double area_fraction(const PreparedMesh& prepared, const std::vector<int>& faces) {
+double area_fraction(const Mesh& mesh, const std::vector<int>& faces) {
+  const Eigen::VectorXd areas = face_areas(mesh);
   double area = 0;
-  for (const int face : faces) area += prepared.areas[face];
-  return area / prepared.area;
-}
-
-// What of the verification falls short, and of how much.
-std::string shortfall(const GuidedRegion& found) {
-  const Verification& got = found.verification;
-  const VerificationLimits asked;
-  const std::string faces = count_of(static_cast<long long>(found.region.faces.size()), "face");
-  if (passes(got)) return "it holds on " + faces + " elsewhere, but not where the seed faces are";
-  if (!got.complete || got.joint < asked.joint) {
-    return percent(got.joint) + " of the area of " + faces + " fits, at least " + percent(asked.joint) + " must";
-  }
-  if (got.worst < asked.worst) {
-    return "one of its motions fits " + percent(got.worst) + " of the area of " + faces + ", each must fit " +
-           percent(asked.worst);
-  }
-  if (got.cluster > asked.cluster) {
-    return "a piece of " + percent(got.cluster) + " of the area of " + faces + " has no image, at most " +
-           percent(asked.cluster) + " may be without";
-  }
-  return "of one part " + percent(got.part) + " of the area fits, at least " + percent(asked.part) + " must";
-}
-
-// The least tolerance tried at which the region stands; none up to the largest that detection takes.
-std::optional<double> larger_tolerance(const PreparedMesh& prepared, const std::shared_ptr<const SurfaceIndex>& whole,
-                                       const RegionHint& hint, GuidedRegionOptions options, const RunContext& context) {
-  constexpr double kStep = 1.5;
-  constexpr double kLargest = 0.1;  // DetectOptions::tolerance
-  while (options.tolerance * kStep <= kLargest) {
-    // As it will be printed.
-    options.tolerance = std::stod(short_number(options.tolerance * kStep, 2));
-    if (guided_region(prepared, whole, hint, options, context).stands) return options.tolerance;
-  }
-  return std::nullopt;
+  for (const int face : faces) area += areas[face];
+  return area / areas.sum();
 }
 
 std::string reason_against(const GuidedRegion& found, const Mesh& mesh, const std::optional<double>& passing) {
-  const std::string group = found.region.placement.group.symbol();
+  const std::string group = found.region.group.symbol();
   const std::string advice = passing ? "it would pass with --tolerance " + short_number(*passing, 2)
                                      : "no tolerance up to 0.1 of the diagonal would help";
   const std::string end = "; " + advice + "; nothing was written";
-  if (found.region.faces.empty()) return group + " does not hold: the surface around the seed faces is empty" + end;
-  return group + " does not hold around the seed faces: " + shortfall(found) + "; the residual is " +
-         percent(found.residual.rms) + " rms and " + percent(found.residual.max) + " at most of the diagonal, " +
-         short_number(diagonal(mesh.vertices), 6) + end;
+  if (found.region.faces.empty()) return group + " does not hold: " + found.shortfall + end;
+  return group + " does not hold around the seed faces: " + found.shortfall + "; the residual is " +
+         percent(found.region.residual.rms) + " rms and " + percent(found.region.residual.max) +
+         " at most of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + end;
 }
 
 nlohmann::ordered_json to_json(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
-                               const PreparedMesh& prepared, std::size_t regions) {
+                               const Mesh& mesh, std::size_t regions) {
   nlohmann::ordered_json result = {
       {"id", region.id},
       {"name", region.name},
@@ -148,9 +116,9 @@ nlohmann::ordered_json to_json(const Region& region, const RegionAddition& addit
   };
   if (region.group.has_axis()) result["axis"] = {region.axis.x(), region.axis.y(), region.axis.z()};
   result["faces"] = region.faces.size();
-  result["area_fraction"] = area_fraction(prepared, region.faces);
+  result["area_fraction"] = area_fraction(mesh, region.faces);
   result["parent"] = region.parent ? nlohmann::ordered_json(*region.parent) : nullptr;
-  result["share_kept"] = found.verification.joint;
+  result["share_kept"] = found.kept;
   result["residual"] = {{"rms", region.residual.rms}, {"max", region.residual.max}};
   result["replaced"] = addition.replaced;
   result["regions"] = regions;
@@ -161,16 +129,16 @@ std::string triple(const Eigen::Vector3d& v) {
   return short_number(v.x(), 6) + " " + short_number(v.y(), 6) + " " + short_number(v.z(), 6);
 }
 
-std::string to_text(const Region& region, const RegionAddition& addition, const GuidedRegion& found,
-                    const PreparedMesh& prepared, std::size_t regions) {
+std::string to_text(const Region& region, const RegionAddition& addition, const GuidedRegion& found, const Mesh& mesh,
+                    std::size_t regions) {
   std::string text = "region " + std::to_string(region.id) + " of " + std::to_string(regions) + ": " +
                      region.group.symbol() + " on " + count_of(static_cast<long long>(region.faces.size()), "face") +
-                     ", " + percent(area_fraction(prepared, region.faces)) + " of the area, parent " +
+                     ", " + percent(area_fraction(mesh, region.faces)) + " of the area, parent " +
                      (region.parent ? std::to_string(*region.parent) : "none") + "\n";
   text += "  centre " + triple(region.centre) +
           (region.group.has_axis() ? ", axis " + triple(region.axis) : std::string()) + "\n";
-  text += "  " + percent(found.verification.joint) + " of it fits; residual " + percent(region.residual.rms) +
-          " rms, " + percent(region.residual.max) + " at most of the diagonal\n";
+  text += "  " + percent(found.kept) + " of it fits; residual " + percent(region.residual.rms) + " rms, " +
+          percent(region.residual.max) + " at most of the diagonal\n";
   for (const std::string& old : addition.replaced) text += "  in place of " + old + ", which says nothing more\n";
   return text;
 }
@@ -246,8 +214,7 @@ CommandBody annotate(CLI::App& app) {
     const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
     RegionHint hint;
     if (adds) hint = to_hint(*arguments);
-    const Eigen::Vector3d near =
-        arguments->near.empty() ? Eigen::Vector3d::Zero() : to_point("--near", arguments->near);
+    if (adds && !arguments->near.empty()) hint.near = to_point("--near", arguments->near);
     if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
     DetectOptions limits;
     limits.tolerance = arguments->tolerance;
@@ -269,16 +236,12 @@ CommandBody annotate(CLI::App& app) {
                          : edits_text(changes, annotation, mesh, arguments->list));
       return kDone;
     }
-    const PreparedMesh prepared = prepare(mesh);
-    const auto whole = std::make_shared<const SurfaceIndex>(prepared.mesh);
-    if (!arguments->near.empty()) hint.seeds.push_back(whole->nearest(near).face);
-    hint.validate(static_cast<int>(mesh.faces.rows()));
-    GuidedRegion found = guided_region(prepared, whole, hint, options, context.run);
-    if (!found.stands) {
-      throw NoResultError(reason_against(found, mesh, larger_tolerance(prepared, whole, hint, options, context.run)));
+    GuidedRegion found = guided_region(mesh, hint, options, context.run);
+    if (!found.holds) {
+      throw NoResultError(reason_against(found, mesh, passing_tolerance(mesh, hint, options, context.run)));
     }
     found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
-    const RegionAddition addition = add_region(prepared, found.region, found.residual, options.tolerance, annotation);
+    const RegionAddition addition = add_region(mesh, found.region, options.tolerance, annotation);
     if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
     if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
     const auto added = std::ranges::find(annotation.regions, addition.id, &Region::id);
@@ -289,13 +252,13 @@ CommandBody annotate(CLI::App& app) {
     const Region& region = *added;
     const std::size_t count = annotation.regions.size();
     if (context.json) {
-      nlohmann::ordered_json result = to_json(region, addition, found, prepared, count);
+      nlohmann::ordered_json result = to_json(region, addition, found, mesh, count);
       if (!changes.empty()) result["changes"] = changes;
       if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
       print(result.dump(2) + "\n");
       return kDone;
     }
-    print(lines(changes) + to_text(region, addition, found, prepared, count) +
+    print(lines(changes) + to_text(region, addition, found, mesh, count) +
           (arguments->list ? annotation_table(annotation, mesh) : ""));
     return kDone;
   };

@@ -4,12 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/fitting/clutter.h"
 #include "orbifit/fitting/placement.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 #include "orbifit/subspace/handles.h"
@@ -18,6 +15,9 @@
 #include "../subspace_arguments.h"
 #include "comparison.h"
 #include "comparison_report.h"
+#include "files/file.h"
+#include "registration/alignment.h"
+#include "scan/clutter.h"
 
 namespace orbifit::commands {
 

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 
 #include "../commands.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 

@@ -108,21 +108,21 @@ CommandBody deform(CLI::App& app) {
     const std::string refusal = "the edit is only " + exactness(worst_field) + ", above --max-residual " +
                                 short_number(arguments->max_residual) + "; nothing was written";
     if (!within && !context.json) throw NoResultError(refusal);
-    if (within) write_mesh(arguments->output, edited);
+    if (within) write_edited(arguments->output, arguments->mesh, edited, context.run);
     if (within && !arguments->annotation_output.empty()) {
-      write_annotation(arguments->annotation_output, carried_annotation(annotation, built, deformation.state, edited));
+      write_annotation(arguments->annotation_output, deformed_annotation(annotation, built, deformation.state, edited));
     }
 
     const double size = diagonal(mesh.vertices);
     const double missed = deformation.handle_error / size;
     if (context.json) {
-      const nlohmann::ordered_json summary{{"mode", to_string(built.mode)},
-                                           {"lift", to_string(built.lift_kind)},
+      const nlohmann::ordered_json summary{{"mode", to_string(built.mode())},
+                                           {"lift", to_string(built.lift_kind())},
                                            {"basis", loads ? "loaded" : "built"},
-                                           {"samples", built.sampling.points.rows()},
+                                           {"samples", built.samples().rows()},
                                            {"degrees_of_freedom", built.degrees_of_freedom()},
                                            {"handles", set.handles.size()},
-                                           {"contacts", deformer.contacts().size()},
+                                           {"contacts", deformer.contacts()},
                                            {"iterations", set.iterations},
                                            {"energy", deformation.energy},
                                            {"handle_error", missed},

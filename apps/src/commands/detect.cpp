@@ -11,14 +11,14 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/apps/render.h"
-#include "orbifit/detection/points.h"
+#include "orbifit/detection/detect_points.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 
 #include "../commands.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 
@@ -245,7 +245,7 @@ CommandBody detect(CLI::App& app) {
       "--points", arguments->points,
       "The file is a scan (PLY, PCD, XYZ, PTS), perhaps seen from one side only: the annotation's face numbers "
       "are point numbers, and its counts of vertices and of faces are both the number of points");
-  app.add_option("--max-seconds", options.max_seconds, "Stop then and keep what is verified; 0: no limit")
+  app.add_option("--max-seconds", options.time_budget, "Stop then and keep what is verified; 0: no limit")
       ->capture_default_str();
   app.add_option("--samples", options.samples, "Surface samples on which a whole mesh is verified")
       ->capture_default_str();

@@ -11,7 +11,6 @@
 #include "orbifit/detection/detect.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
 #include "orbifit/subspace/handles.h"
@@ -20,6 +19,7 @@
 #include "../edit_warnings.h"
 #include "../fit_report.h"
 #include "../subspace_arguments.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 
@@ -48,10 +48,10 @@ void check_outputs(const FitArguments& arguments) {
 std::string to_text(const FitArguments& arguments, const FitResult& result, const SymmetryReport& symmetry) {
   double seconds = 0;
   for (const StageTime& time : result.times) seconds += time.seconds;
-  std::string text = arguments.output + ": " + percent(result.inlier_fraction) + " of the scan " +
-                     (result.used_fraction < 1 ? "(" + percent(1 - result.used_fraction) + " left out) " : "") +
-                     "within " + percent(arguments.options.inlier_distance) + " of the diagonal (rms " +
-                     percent(result.rms) + "), " + percent(result.hidden_fraction) + " of the surface not seen; " +
+  std::string text = arguments.output + ": " + percent(result.inlier_ratio) + " of the scan " +
+                     (result.overlap < 1 ? "(" + percent(1 - result.overlap) + " left out) " : "") + "within " +
+                     percent(arguments.options.inlier_distance) + " of the diagonal (rms " + percent(result.rms) +
+                     "), " + percent(result.hidden_fraction) + " of the surface not seen; " +
                      exactness(result.field_residual) + "\n";
   text += "symmetry residual added to the mesh " + short_number(symmetry.worst_excess, 3) + "\n";
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
@@ -59,7 +59,7 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;
-    const bool left_out = std::ranges::find(result.relaxed, group.region) != result.relaxed.end();
+    const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
     text += "region " + std::to_string(group.region) + ": the scan is off its symmetry by " +
             percent(group.disagreement) + " of the diagonal (rms " + percent(group.held) + ", without the group " +
             percent(group.free) + (left_out ? "); left out\n" : ")\n");
@@ -94,7 +94,8 @@ CommandBody fit(CLI::App& app) {
                  "Write no mesh and exit with 1 where the fit is less symmetric than this fraction of the diagonal")
       ->type_name("R");
   add_without_option(app, arguments->without);
-  app.add_flag("--auto-relax", options.relax, "Do not keep the groups that the scan has not, as a fit without shows");
+  app.add_flag("--auto-relax", options.drop_unsupported,
+               "Do not keep the groups that the scan has not, as a fit without shows");
   app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
@@ -159,7 +160,7 @@ CommandBody fit(CLI::App& app) {
     if (result.field_residual > kExactResidual) {
       context.run.message("warning: the fit is only " + exactness(result.field_residual));
     }
-    write_mesh(arguments->output, result.fitted);
+    write_edited(arguments->output, arguments->mesh, result.fitted, context.run);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
     print(context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
     return kDone;

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/topology.h"
 
 #include "../commands.h"
+#include "geometry/topology.h"
 
 namespace orbifit::commands {
 

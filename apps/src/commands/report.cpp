@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
 #include "../commands.h"
+#include "files/file.h"
 
 namespace orbifit::commands {
 

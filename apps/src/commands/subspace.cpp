@@ -9,13 +9,14 @@
 
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/random.h"
 #include "orbifit/subspace/displacement_field.h"
 #include "orbifit/subspace/subspace_io.h"
 
 #include "../commands.h"
 #include "../residual_json.h"
 #include "../subspace_arguments.h"
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit::commands {
 
@@ -39,16 +40,16 @@ LiftResiduals random_field_residuals(const Mesh& mesh, const SymmetryAnnotation&
                                      const RunContext& run) {
   Random random(run.seed, "field residual");
   Eigen::VectorXd q(subspace.degrees_of_freedom());
-  const double size = 0.05 * subspace.diagonal;
+  const double size = 0.05 * subspace.diagonal();
   for (double& coordinate : q) coordinate = size * random.normal();
-  return {subspace.lift_kind, field_residuals(subspace, mesh, annotation, {q, nullptr}, run)};
+  return {subspace.lift_kind(), field_residuals(subspace, mesh, annotation, {q, nullptr}, run)};
 }
 
 // The same samples and coordinates under the lift that was not chosen.
 LiftResiduals residuals_of_other_lift(const Mesh& mesh, const SymmetryAnnotation& annotation, const Subspace& built,
                                       SubspaceOptions options, const RunContext& run) {
-  options.lift = built.lift_kind == LiftKind::orbit ? LiftKind::paper : LiftKind::orbit;
-  options.radius = built.sampling.radius;
+  options.lift = built.lift_kind() == LiftKind::orbit ? LiftKind::paper : LiftKind::orbit;
+  options.radius = built.radius();
   options.samples = 0;
   RunContext silent = run;
   silent.on_message = nullptr;
@@ -119,13 +120,13 @@ CommandBody subspace(CLI::App& app) {
     }
     context.run.check();
     if (stores) write_subspace(arguments->output, built, mesh, annotation);
-    const double neighbours = static_cast<double>(built.lift.used) / std::max(1, built.orbits.representatives());
+    const double neighbours = static_cast<double>(built->lift.used) / std::max(1, built->orbits.representatives());
     if (context.json) {
-      nlohmann::ordered_json summary{{"mode", to_string(built.mode)},
-                                     {"lift", to_string(built.lift_kind)},
-                                     {"radius", built.sampling.radius},
-                                     {"samples", built.sampling.points.rows()},
-                                     {"orbits", built.sampling.orbits()},
+      nlohmann::ordered_json summary{{"mode", to_string(built.mode())},
+                                     {"lift", to_string(built.lift_kind())},
+                                     {"radius", built.radius()},
+                                     {"samples", built.samples().rows()},
+                                     {"orbits", built->sampling.orbits()},
                                      {"degrees_of_freedom", built.degrees_of_freedom()},
                                      {"samples_per_vertex", neighbours},
                                      {"build_seconds", seconds},
@@ -134,12 +135,12 @@ CommandBody subspace(CLI::App& app) {
       print(summary.dump(2) + "\n");
       return kDone;
     }
-    std::string text = "mode                " + to_string(built.mode) + "\n";
-    text += "lift                " + to_string(built.lift_kind) + "\n";
-    text += "radius              " + short_number(built.sampling.radius) + " (" +
-            short_number(100 * built.sampling.radius / diagonal(mesh.vertices), 3) + " % of the diagonal)\n";
-    text += "samples             " + std::to_string(built.sampling.points.rows()) + " in " +
-            count_of(built.sampling.orbits(), "orbit") + "\n";
+    std::string text = "mode                " + to_string(built.mode()) + "\n";
+    text += "lift                " + to_string(built.lift_kind()) + "\n";
+    text += "radius              " + short_number(built.radius()) + " (" +
+            short_number(100 * built.radius() / diagonal(mesh.vertices), 3) + " % of the diagonal)\n";
+    text += "samples             " + std::to_string(built.samples().rows()) + " in " +
+            count_of(built->sampling.orbits(), "orbit") + "\n";
     text += "degrees of freedom  " + std::to_string(built.degrees_of_freedom()) + "\n";
     text += "samples a vertex    " + short_number(neighbours, 3) + "\n";
     text += "time                " + short_number(seconds, 3) + " s\n";

@@ -1,4 +1,4 @@
-#include "assignment.h"
+#include "detection_score/assignment.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
-#include "crease_index.h"
+#include "detection_score/crease_index.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "orbifit/model/surface_index.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit::scoring {
 

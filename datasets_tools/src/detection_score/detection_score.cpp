@@ -6,12 +6,12 @@
 
 #include "orbifit/model/errors.h"
 
-#include "format_check.h"
-#include "pattern_match.h"
-#include "region_match.h"
-#include "region_validity.h"
-#include "scored_surface.h"
-#include "triviality.h"
+#include "detection_score/format_check.h"
+#include "detection_score/pattern_match.h"
+#include "detection_score/region_match.h"
+#include "detection_score/region_validity.h"
+#include "detection_score/scored_surface.h"
+#include "detection_score/triviality.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "face_set.h"
+#include "detection_score/face_set.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "format_check.h"
+#include "detection_score/format_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit::scoring {
 

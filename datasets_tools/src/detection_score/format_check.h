@@ -5,7 +5,7 @@
 
 #include "orbifit/model/annotation.h"
 
-#include "face_set.h"
+#include "detection_score/face_set.h"
 
 namespace orbifit::scoring {
 

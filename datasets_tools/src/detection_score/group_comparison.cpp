@@ -1,4 +1,4 @@
-#include "group_comparison.h"
+#include "detection_score/group_comparison.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit::scoring {
 

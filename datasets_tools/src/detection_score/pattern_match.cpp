@@ -1,4 +1,4 @@
-#include "pattern_match.h"
+#include "detection_score/pattern_match.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "assignment.h"
-#include "scored_surface.h"
+#include "detection_score/assignment.h"
+#include "detection_score/scored_surface.h"
 
 namespace orbifit::scoring {
 

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "orbifit/model/annotation.h"
-#include "orbifit/model/random.h"
 #include "orbifit/model/run_context.h"
 
-#include "face_set.h"
+#include "base/random.h"
+#include "detection_score/face_set.h"
 
 namespace orbifit::scoring {
 

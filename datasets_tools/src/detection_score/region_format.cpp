@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 
-#include "format_check.h"
-#include "group_comparison.h"
+#include "detection_score/format_check.h"
+#include "detection_score/group_comparison.h"
 
 namespace orbifit::scoring {
 

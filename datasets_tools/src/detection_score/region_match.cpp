@@ -1,4 +1,4 @@
-#include "region_match.h"
+#include "detection_score/region_match.h"
 
 #include <algorithm>
 #include <tuple>

@@ -6,8 +6,8 @@
 #include "orbifit/datasets_tools/truth.h"
 #include "orbifit/model/annotation.h"
 
-#include "face_set.h"
-#include "group_comparison.h"
+#include "detection_score/face_set.h"
+#include "detection_score/group_comparison.h"
 
 namespace orbifit::scoring {
 

@@ -1,4 +1,4 @@
-#include "region_validity.h"
+#include "detection_score/region_validity.h"
 
 #include <algorithm>
 #include <numbers>

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "orbifit/model/annotation.h"
-#include "orbifit/model/random.h"
 
-#include "scored_surface.h"
+#include "base/random.h"
+#include "detection_score/scored_surface.h"
 
 namespace orbifit::scoring {
 

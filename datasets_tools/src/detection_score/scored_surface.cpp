@@ -1,8 +1,8 @@
-#include "scored_surface.h"
+#include "detection_score/scored_surface.h"
 
 #include <algorithm>
 
-#include "crease_index.h"
+#include "detection_score/crease_index.h"
 
 namespace orbifit::scoring {
 

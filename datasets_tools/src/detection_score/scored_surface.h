@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "orbifit/model/motion.h"
-#include "orbifit/model/random.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
 
-#include "face_set.h"
+#include "base/random.h"
+#include "detection_score/face_set.h"
+#include "geometry/sampling.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit::scoring {
 

@@ -1,11 +1,11 @@
-#include "triviality.h"
+#include "detection_score/triviality.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Dense>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit::scoring {
 

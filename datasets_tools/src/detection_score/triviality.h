@@ -1,9 +1,9 @@
 #pragma once
 
 #include "orbifit/datasets_tools/detection_score.h"
-#include "orbifit/model/random.h"
 
-#include "scored_surface.h"
+#include "base/random.h"
+#include "detection_score/scored_surface.h"
 
 namespace orbifit::scoring {
 

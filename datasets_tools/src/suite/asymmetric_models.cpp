@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "../shapes.h"
-#include "suite_builder.h"
-#include "suite_lists.h"
-#include "suite_parts.h"
+#include "models/shapes.h"
+#include "suite/suite_builder.h"
+#include "suite/suite_lists.h"
+#include "suite/suite_parts.h"
 
 namespace orbifit {
 

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <string>
 
-#include "../shapes.h"
-#include "suite_builder.h"
-#include "suite_lists.h"
-#include "suite_parts.h"
+#include "models/shapes.h"
+#include "suite/suite_builder.h"
+#include "suite/suite_lists.h"
+#include "suite/suite_parts.h"
 
 namespace orbifit {
 

@@ -1,9 +1,9 @@
-#include "orbifit/datasets_tools/detection_suite.h"
+#include "suite/detection_suite.h"
 
 #include <iterator>
 #include <utility>
 
-#include "suite_lists.h"
+#include "suite/suite_lists.h"
 
 namespace orbifit {
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "suite_builder.h"
-#include "suite_lists.h"
-#include "suite_parts.h"
+#include "suite/suite_builder.h"
+#include "suite/suite_lists.h"
+#include "suite/suite_parts.h"
 
 namespace orbifit {
 

@@ -7,8 +7,8 @@
 
 #include "orbifit/datasets_tools/generate.h"
 
-#include "suite_builder.h"
-#include "suite_lists.h"
+#include "suite/suite_builder.h"
+#include "suite/suite_lists.h"
 
 namespace orbifit {
 

@@ -3,11 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "orbifit/datasets_tools/orbit_model.h"
-
-#include "suite_builder.h"
-#include "suite_lists.h"
-#include "suite_parts.h"
+#include "models/orbit_model.h"
+#include "suite/suite_builder.h"
+#include "suite/suite_lists.h"
+#include "suite/suite_parts.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "suite_builder.h"
+#include "suite/suite_builder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <Eigen/LU>
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
-#include "orbifit/model/dense.h"
 
-#include "../primitives.h"
+#include "base/dense.h"
+#include "models/primitives.h"
 
 namespace orbifit {
 

@@ -9,7 +9,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
 
-#include "../model_builder.h"
+#include "models/model_builder.h"
 
 namespace orbifit {
 

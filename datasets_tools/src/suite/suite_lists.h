@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "orbifit/datasets_tools/detection_suite.h"
+#include "suite/detection_suite.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "suite_parts.h"
+#include "suite/suite_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,8 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/random.h"
-
-#include "../shapes.h"
+#include "base/random.h"
+#include "models/shapes.h"
 
 namespace orbifit {
 

@@ -10,8 +10,8 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
 
-#include "../model_builder.h"
-#include "../primitives.h"
+#include "models/model_builder.h"
+#include "models/primitives.h"
 
 namespace orbifit {
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "orbifit/model/dense.h"
-
+#include "base/dense.h"
 #include "group/verification.h"
 
 namespace orbifit {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "group/verification.h"
 
 namespace orbifit {

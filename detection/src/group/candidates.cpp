@@ -9,9 +9,9 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
+#include "base/dense.h"
+#include "base/random.h"
+#include "geometry/sampling.h"
 
 namespace orbifit {
 

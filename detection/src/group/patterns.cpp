@@ -9,8 +9,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbifit/model/dense.h"
-
+#include "base/dense.h"
 #include "group/verification.h"
 
 namespace orbifit {

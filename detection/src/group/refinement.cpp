@@ -7,9 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
-#include "orbifit/model/point_index.h"
-
+#include "base/dense.h"
+#include "geometry/point_index.h"
 #include "group/verification.h"
 #include "surface/thresholds.h"
 

@@ -7,8 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
-
+#include "base/dense.h"
 #include "surface/face_points.h"
 #include "surface/thresholds.h"
 

@@ -7,9 +7,8 @@
 
 #include <Eigen/Dense>
 
-#include "orbifit/model/dense.h"
-#include "orbifit/model/random.h"
-
+#include "base/dense.h"
+#include "base/random.h"
 #include "surface/thresholds.h"
 
 namespace orbifit {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit {
 

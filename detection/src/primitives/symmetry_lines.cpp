@@ -8,8 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
-
+#include "base/dense.h"
 #include "surface/thresholds.h"
 
 namespace orbifit {

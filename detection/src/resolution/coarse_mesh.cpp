@@ -12,8 +12,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/surface_index.h"
-
+#include "geometry/surface_index.h"
 #include "surface/face_points.h"
 #include "surface/vertex_clusters.h"
 

@@ -5,8 +5,8 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/topology.h"
 
+#include "geometry/topology.h"
 #include "surface/surface_patch.h"
 
 namespace orbifit {

@@ -13,8 +13,9 @@
 #include <Eigen/Dense>
 
 #include "orbifit/model/point_group.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

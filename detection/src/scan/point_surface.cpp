@@ -11,9 +11,10 @@
 #include <string>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/fitted_plane.h"
 #include "orbifit/model/point_group.h"
-#include "orbifit/model/point_index.h"
+
+#include "geometry/fitted_plane.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

@@ -10,8 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/point_index.h"
-
+#include "geometry/point_index.h"
 #include "group/axis_orders.h"
 #include "group/verification.h"
 #include "support/own_group.h"

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/surface_index.h"
 
+#include "geometry/surface_index.h"
 #include "support/found_region.h"
 
 namespace orbifit {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "orbifit/detection/explanation.h"
-#include "orbifit/model/dense.h"
 
+#include "base/dense.h"
 #include "evidence/chance_symmetry.h"
 #include "group/axis_orders.h"
 #include "group/verification.h"

@@ -6,8 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "orbifit/model/topology.h"
-
+#include "geometry/topology.h"
 #include "group/verification.h"
 #include "surface/creases.h"
 #include "surface/face_points.h"

@@ -10,8 +10,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "orbifit/model/random.h"
-
+#include "base/random.h"
 #include "group/patterns.h"
 #include "group/subgroups_within.h"
 #include "group/verification.h"

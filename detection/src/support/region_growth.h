@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "orbifit/model/point_index.h"
 #include "orbifit/model/run_context.h"
 
+#include "geometry/point_index.h"
 #include "group/refinement.h"
 #include "surface/components.h"
 #include "surface/surface_patch.h"

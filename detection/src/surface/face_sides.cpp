@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "orbifit/model/disjoint_sets.h"
-#include "orbifit/model/topology.h"
+#include "base/disjoint_sets.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 

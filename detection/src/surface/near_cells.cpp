@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/cover_triangle.h"
+#include "geometry/cover_triangle.h"
 
 namespace orbifit {
 

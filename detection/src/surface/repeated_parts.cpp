@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/model/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 
 namespace orbifit {
 

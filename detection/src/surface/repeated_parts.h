@@ -1,7 +1,6 @@
 #pragma once
 
-#include "orbifit/model/topology.h"
-
+#include "geometry/topology.h"
 #include "surface/surface_patch.h"
 
 namespace orbifit {

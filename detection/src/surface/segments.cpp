@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "orbifit/model/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 
 namespace orbifit {
 

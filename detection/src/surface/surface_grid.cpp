@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "orbifit/model/cover_triangle.h"
+#include "geometry/cover_triangle.h"
 
 namespace orbifit {
 

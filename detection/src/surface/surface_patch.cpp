@@ -11,8 +11,8 @@
 #include <Eigen/Geometry>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
 #include "surface/creases.h"
 
 namespace orbifit {

@@ -9,9 +9,10 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
-#include "orbifit/model/topology.h"
+
+#include "geometry/sampling.h"
+#include "geometry/surface_index.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 

@@ -10,7 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "orbifit/model/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 
 namespace orbifit {
 

@@ -6,12 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/deformer.h"
 
 #include "assessment/fit_assessment.h"
+#include "basis/subspace_parts.h"
 #include "fit_starts.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 
@@ -49,7 +50,7 @@ SubspaceState edit_in_subspace(const Subspace& subspace, const FitInput& input, 
   Deformation found = deformer.solve(motions, iterations);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   FitIteration each;
-  each.change = found.last_change / subspace.diagonal;
+  each.change = found.last_change / subspace->diagonal;
   each.seconds = taken.count() / iterations;
   result.iterations.assign(static_cast<std::size_t>(iterations), each);
   result.q = found.state.q;
@@ -62,9 +63,9 @@ void finish_baseline(const FitInput& input, const FitOptions& options, const Poi
   result.fitted.vertices = from_template(result.pose, input.mesh.vertices + displacements);
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   if (start != nullptr) {
-    result.used_fraction = start->used_fraction;
+    result.overlap = start->overlap;
     assess_fit(input, start->scan, start->views->silhouette.seen(), options, context, result);
-    result.converged = result.inlier_fraction * result.used_fraction >= options.least_inliers;
+    result.converged = result.inlier_ratio * result.overlap >= options.min_inlier_ratio;
     return;
   }
   result.landmark_rms = pulls_rms(input, result);
@@ -78,11 +79,11 @@ void carry_annotation(const FitInput& input, const Subspace* subspace, const Eig
   SymmetryAnnotation carried = input.annotation;
   if (subspace != nullptr && carriers.size() > 0) {
     // One coordinate, by which the carriers go where they are.
-    const auto basis = std::make_shared<CarriedBasis>();
+    const auto basis = std::make_shared<ConjugatedBasis>();
     basis->carried = carriers;
     basis->carried_offset = Eigen::VectorXd::Zero(carriers.size());
     carried =
-        carried_annotation(input.annotation, *subspace, SubspaceState{Eigen::VectorXd::Ones(1), basis}, input.mesh);
+        deformed_annotation(input.annotation, *subspace, SubspaceState{Eigen::VectorXd::Ones(1), basis}, input.mesh);
   }
   result.annotation = transformed(carried, result.pose);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);

@@ -4,8 +4,9 @@
 #include <utility>
 
 #include "orbifit/baselines/symmetry_constraints.h"
-#include "orbifit/subspace/corotation.h"
 
+#include "basis/subspace_parts.h"
+#include "deformation/corotation.h"
 #include "deformation/handle_rows.h"
 #include "for_each_coordinate.h"
 #include "plain_weights.h"
@@ -31,8 +32,8 @@ Sparse system_of(const Sparse& scalar, Index unknowns) {
 
 VectorXd edit_full_sampling(const Subspace& subspace, const Mesh& mesh, const std::vector<Handle>& handles,
                             const FullSamplingOptions& options, FitResult& record) {
-  const Points& samples = subspace.sampling.points;
-  const SampleEdges edges = neighbour_graph(samples, subspace.sampling.radii);
+  const Points& samples = subspace->sampling.points;
+  const SampleEdges edges = neighbour_graph(samples, subspace->sampling.radii);
   const Corotation energy = corotation(samples, edges, graph_laplacian(edges, samples.rows()));
   const HandleRows rows(handles, subspace, mesh);
   const LiftWeights all = plain_weights(subspace);
@@ -82,7 +83,7 @@ VectorXd edit_full_sampling(const Subspace& subspace, const Mesh& mesh, const st
     FitIteration entry;
     entry.stiffness = 1;
     entry.energy = laplace_energy(energy, rotations, moved);
-    entry.change = (moved - previous).rowwise().norm().maxCoeff() / subspace.diagonal;
+    entry.change = (moved - previous).rowwise().norm().maxCoeff() / subspace->diagonal;
     rotations = local_rotations(energy, samples + moved, rotations);
     entry.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     record.iterations.push_back(entry);

@@ -4,6 +4,7 @@
 #include "orbifit/model/errors.h"
 
 #include "baseline_fit.h"
+#include "basis/subspace_parts.h"
 #include "fit_trial.h"
 #include "full_editing.h"
 #include "full_system.h"
@@ -20,7 +21,7 @@ double worst_constraint(const Subspace& subspace, const Eigen::VectorXd& unknown
   Eigen::VectorXd all = Eigen::VectorXd::Zero(constraints.cols());
   all.head(unknowns.size()) = unknowns;
   const Eigen::VectorXd left = constraints * all;
-  return Eigen::Map<const Points>(left.data(), left.size() / 3, 3).rowwise().norm().maxCoeff() / subspace.diagonal;
+  return Eigen::Map<const Points>(left.data(), left.size() / 3, 3).rowwise().norm().maxCoeff() / subspace->diagonal;
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ FitResult fit_full_sampling(const FitInput& input, const FullSamplingOptions& op
   const bool edit = by_handles_alone(input);
   if (!edit) start = baseline_start(input, options.fit, context);
   const Subspace subspace = plain_subspace(input, options.fit, context);
-  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  result.samples = static_cast<int>(subspace->sampling.points.rows());
   Points displacements;
   if (edit) {
     clock.finished("prepare");

@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "orbifit/baselines/symmetry_constraints.h"
-#include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
 
+#include "basis/subspace_parts.h"
 #include "for_each_coordinate.h"
 #include "plain_weights.h"
+#include "registration/alignment.h"
 #include "solver/rigid_modes.h"
 
 namespace orbifit {
@@ -48,26 +49,26 @@ std::vector<int> nearest_samples(const LiftWeights& weights) {
 }
 
 Sparse constraints_of(const Subspace& subspace, FullSymmetry symmetry) {
-  if (symmetry == FullSymmetry::none) return Sparse(0, 3 * subspace.sampling.points.rows());
+  if (symmetry == FullSymmetry::none) return Sparse(0, 3 * subspace->sampling.points.rows());
   return symmetry_constraints(subspace);
 }
 
 }  // namespace
 
 LiftWeights plain_weights(const Subspace& subspace) {
-  const auto count = static_cast<Index>(subspace.orbits.followers.size());
+  const auto count = static_cast<Index>(subspace->orbits.followers.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (Index v = 0; v < count; ++v) {
-    const int representative = subspace.orbits.followers[static_cast<std::size_t>(v)].representative;
-    subspace.lift.visit(representative, [&](int atom, double weight) { entries.emplace_back(v, atom, weight); });
+    const int representative = subspace->orbits.followers[static_cast<std::size_t>(v)].representative;
+    subspace->lift.visit(representative, [&](int atom, double weight) { entries.emplace_back(v, atom, weight); });
   }
-  LiftWeights weights(count, subspace.sampling.points.rows());
+  LiftWeights weights(count, subspace->sampling.points.rows());
   weights.setFromTriplets(entries.begin(), entries.end());
   return weights;
 }
 
 FullSystem::FullSystem(const Subspace& subspace, const Mesh& mesh, double stretch, FullSymmetry symmetry, double weight)
-    : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
+    : DeformationSystem(CorotatedEnergy(subspace->sampling.points, subspace->sampling.radius, stretch)),
       mesh_(mesh),
       weights_(plain_weights(subspace)),
       nearest_(nearest_samples(weights_)),
@@ -75,8 +76,8 @@ FullSystem::FullSystem(const Subspace& subspace, const Mesh& mesh, double stretc
       pivot_(bounding_box_centre(mesh.vertices)),
       constraints_(constraints_of(subspace, symmetry)),
       unknowns_(constraints_.cols()),
-      metric_(metric_of(subspace.sampling, symmetry != FullSymmetry::none, unknowns_)),
-      rigid_(rigid_modes(subspace.sampling.points)),
+      metric_(metric_of(subspace->sampling, symmetry != FullSymmetry::none, unknowns_)),
+      rigid_(rigid_modes(subspace->sampling.points)),
       stiffness_(lower_for_each_coordinate(energy_.matrix(), unknowns_)),
       coupled_(static_cast<std::size_t>(samples()), std::vector<bool>(static_cast<std::size_t>(samples()), false)),
       known_(static_cast<std::size_t>(mesh.faces.rows()), 0),

@@ -6,9 +6,9 @@
 #include <Eigen/SparseCore>
 
 #include "orbifit/baselines/full_sampling.h"
-#include "orbifit/subspace/lift.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "basis/lift.h"
 #include "saddle_system.h"
 #include "solver/deformation_system.h"
 

@@ -3,6 +3,7 @@
 #include "orbifit/model/errors.h"
 
 #include "baseline_fit.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 
@@ -16,14 +17,14 @@ FitResult edit_by_handles(const FitInput& input, const FitOptions& options, cons
   const SubspaceState state = edit_in_subspace(subspace, input, kAlpha, kIterations, context, clock, result);
   clock.finished("fit");
   result.pose = input.pose;
-  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  result.samples = static_cast<int>(subspace->sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   const Points displacements = vertex_displacements(subspace, state, context);
   finish_baseline(input, options, displacements, nullptr, context, result);
   Mesh deformed = input.mesh;
   deformed.vertices += displacements;
   result.rest_annotation = input.annotation;
-  result.annotation = transformed(carried_annotation(input.annotation, subspace, state, deformed), result.pose);
+  result.annotation = transformed(deformed_annotation(input.annotation, subspace, state, deformed), result.pose);
   return result;
 }
 

@@ -60,7 +60,7 @@ FitResult fit_kurz(const FitInput& input, const KurzOptions& options, const RunC
   FitOptions assessment;
   assessment.inlier_distance = options.inlier_distance;
   assess_fit(input, unit.scan, SeenSurface(input.scan, unit.scan.points), assessment, context, result);
-  result.converged = result.inlier_fraction >= assessment.least_inliers;
+  result.converged = result.inlier_ratio >= assessment.min_inlier_ratio;
   return result;
 }
 

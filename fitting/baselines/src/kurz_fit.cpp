@@ -5,9 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "orbifit/fitting/alignment.h"
-
 #include "kurz_ceres.h"
+#include "registration/alignment.h"
 #include "solver/outward_faces.h"
 #include "solver/pulls.h"
 #include "symmetry/lattice.h"

@@ -6,10 +6,10 @@
 #include <Eigen/SparseCore>
 
 #include "orbifit/baselines/kurz.h"
-#include "orbifit/fitting/correspondences.h"
 
 #include "kurz_normal.h"
 #include "kurz_terms.h"
+#include "registration/correspondences.h"
 #include "unit_input.h"
 
 namespace orbifit {

@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
+
+#include "base/dense.h"
 
 namespace orbifit {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit {
 

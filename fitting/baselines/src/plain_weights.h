@@ -1,7 +1,8 @@
 #pragma once
 
-#include "orbifit/subspace/lift.h"
 #include "orbifit/subspace/subspace.h"
+
+#include "basis/lift.h"
 
 namespace orbifit {
 

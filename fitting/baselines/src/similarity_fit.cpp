@@ -2,10 +2,10 @@
 
 #include <numeric>
 
-#include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
 
 #include "baseline_fit.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 

@@ -1,11 +1,12 @@
 #include "orbifit/baselines/svd_nullspace.h"
 
-#include <utility>
+#include <memory>
 
 #include "orbifit/baselines/symmetry_constraints.h"
-#include "orbifit/model/dense.h"
 
+#include "base/dense.h"
 #include "baseline_fit.h"
+#include "basis/subspace_parts.h"
 #include "fit_trial.h"
 #include "solver/fit_system.h"
 
@@ -27,17 +28,18 @@ Eigen::MatrixXd svd_nullspace(const Eigen::SparseMatrix<double>& constraints) {
   return svd.eigenvectors().leftCols((svd.eigenvalues().array() < kFree * kFree).count());
 }
 
-Subspace with_svd_basis(Subspace subspace) {
+Subspace with_svd_basis(const Subspace& subspace) {
   const Eigen::MatrixXd all = svd_nullspace(symmetry_constraints(subspace));
-  const Eigen::Index moved = 3 * subspace.sampling.points.rows();
+  const Eigen::Index moved = 3 * subspace->sampling.points.rows();
   const Eigen::MatrixXd gram = all.topRows(moved).transpose() * all.topRows(moved);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(gram);
-  const Eigen::Index free = (parts.eigenvalues().array() > kMoving * kMoving).count();
-  const Eigen::MatrixXd basis = all * parts.eigenvectors().rightCols(free);
-  subspace.basis.columns = basis.topRows(moved).sparseView(0, 0);
-  subspace.basis.carried = basis.bottomRows(basis.rows() - moved);
-  subspace.basis.atoms = subspace.basis.columns;  // the plain lift's atoms are the samples
-  return subspace;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(gram);
+  const Eigen::Index free = (spectrum.eigenvalues().array() > kMoving * kMoving).count();
+  const Eigen::MatrixXd basis = all * spectrum.eigenvectors().rightCols(free);
+  const auto parts = std::make_shared<SubspaceParts>(*subspace);
+  parts->basis.columns = basis.topRows(moved).sparseView(0, 0);
+  parts->basis.carried = basis.bottomRows(basis.rows() - moved);
+  parts->basis.atoms = parts->basis.columns;  // the plain lift's atoms are the samples
+  return Subspace(parts);
 }
 
 void SvdNullspaceOptions::validate() const {
@@ -52,9 +54,9 @@ FitResult fit_svd_nullspace(const FitInput& input, const SvdNullspaceOptions& op
   PlacedScan start;
   const bool edit = by_handles_alone(input);
   if (!edit) start = baseline_start(input, options.fit, context);
-  Subspace own = plain_subspace(input, options.fit, context);
+  const Subspace own = plain_subspace(input, options.fit, context);
   StageClock of_basis(result.times);
-  const Subspace subspace = with_svd_basis(std::move(own));
+  const Subspace subspace = with_svd_basis(own);
   of_basis.finished("null space");
   if (edit) {
     result.pose = input.pose;
@@ -66,11 +68,11 @@ FitResult fit_svd_nullspace(const FitInput& input, const SvdNullspaceOptions& op
             result);
   }
   clock.finished("fit");
-  result.samples = static_cast<int>(subspace.sampling.points.rows());
+  result.samples = static_cast<int>(subspace->sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
   finish_baseline(input, options.fit, vertex_displacements(subspace, {result.q, nullptr}, context),
                   edit ? nullptr : &start, context, result);
-  carry_annotation(input, &subspace, subspace.basis.carried * result.q, result);
+  carry_annotation(input, &subspace, subspace->basis.carried * result.q, result);
   return result;
 }
 

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "basis/subspace_parts.h"
+
 namespace orbifit {
 
 namespace {
@@ -12,7 +14,7 @@ using Eigen::Matrix3d;
 // Rows of C as they come, three at a time.
 class Rows {
  public:
-  explicit Rows(const Subspace& subspace) : translations_(3 * subspace.sampling.points.rows()) {}
+  explicit Rows(const Subspace& subspace) : translations_(3 * subspace->sampling.points.rows()) {}
 
   void add_sample(int sample, const Matrix3d& block) { add(Eigen::Index{3} * sample, block); }
 
@@ -43,11 +45,11 @@ class Rows {
 };
 
 void add_orbits(const Subspace& subspace, Rows& rows) {
-  const SymmetricSampling& sampling = subspace.sampling;
+  const SymmetricSampling& sampling = subspace->sampling;
   for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
     const int seed = sampling.first_sample[static_cast<std::size_t>(orbit)];
     for (int k = seed + 1; k < sampling.first_sample[static_cast<std::size_t>(orbit) + 1]; ++k) {
-      const Transport& transport = subspace.basis.transports.samples[static_cast<std::size_t>(k)];
+      const Transport& transport = subspace->basis.transports.samples[static_cast<std::size_t>(k)];
       rows.add_sample(k, Matrix3d::Identity());
       rows.add_sample(seed, -transport.frame);
       rows.add_carried(transport.carried, -1);
@@ -57,11 +59,11 @@ void add_orbits(const Subspace& subspace, Rows& rows) {
 }
 
 void add_stabilisers(const Subspace& subspace, Rows& rows) {
-  const std::vector<Transport>& words = subspace.basis.transports.words;
-  for (const auto& [orbit, left_word, right_word] : subspace.sampling.constraints) {
+  const std::vector<Transport>& words = subspace->basis.transports.words;
+  for (const auto& [orbit, left_word, right_word] : subspace->sampling.constraints) {
     const Transport& left = words[static_cast<std::size_t>(left_word)];
     const Transport& right = words[static_cast<std::size_t>(right_word)];
-    rows.add_sample(subspace.sampling.first_sample[static_cast<std::size_t>(orbit)], left.frame - right.frame);
+    rows.add_sample(subspace->sampling.first_sample[static_cast<std::size_t>(orbit)], left.frame - right.frame);
     rows.add_carried(left.carried, 1);
     rows.add_carried(right.carried, -1);
     rows.next();
@@ -70,8 +72,8 @@ void add_stabilisers(const Subspace& subspace, Rows& rows) {
 
 // A vertex is to have some displacement that meets its constraints: what they ask of t once that is eliminated.
 void add_bound_vertices(const Subspace& subspace, Rows& rows) {
-  const CarriedTransports& transports = subspace.basis.transports;
-  for (const BoundPoint& point : subspace.orbits.bindings) {
+  const CarriedTransports& transports = subspace->basis.transports;
+  for (const BoundPoint& point : subspace->orbits.bindings) {
     const Binding binding = binding_of(point.words, transports);
     for (const WordPair& pair : point.words) {
       const Transport& left = transports.words[static_cast<std::size_t>(pair.left)];
@@ -93,8 +95,8 @@ Eigen::SparseMatrix<double> symmetry_constraints(const Subspace& subspace) {
   Rows rows(subspace);
   add_orbits(subspace, rows);
   add_stabilisers(subspace, rows);
-  if (subspace.basis.carried.rows() > 0) add_bound_vertices(subspace, rows);
-  return rows.take(3 * subspace.sampling.points.rows() + subspace.basis.carried.rows());
+  if (subspace->basis.carried.rows() > 0) add_bound_vertices(subspace, rows);
+  return rows.take(3 * subspace->sampling.points.rows() + subspace->basis.carried.rows());
 }
 
 }  // namespace orbifit

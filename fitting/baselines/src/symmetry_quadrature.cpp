@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-
+#include "base/random.h"
+#include "geometry/sampling.h"
 #include "symmetry/lattice.h"
 
 namespace orbifit {

@@ -8,8 +8,9 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/region_map.h"
 #include "orbifit/subspace/subspace.h"
+
+#include "symmetry/region_map.h"
 
 namespace orbifit {
 

@@ -1,7 +1,8 @@
 #include "unit_input.h"
 
-#include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
+
+#include "registration/alignment.h"
 
 namespace orbifit {
 

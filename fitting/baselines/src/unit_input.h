@@ -1,11 +1,12 @@
 #pragma once
 
 #include "orbifit/baselines/kurz.h"
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
+
+#include "scan/scan_preparation.h"
 
 namespace orbifit {
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/subspace/moving_surface.h"
-
+#include "base/random.h"
+#include "geometry/sampling.h"
 #include "solver/pulls.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
@@ -33,7 +32,7 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
     ++inliers;
     squares += distance * distance;
   }
-  result.inlier_fraction = double(inliers) / static_cast<double>(scan.points.rows());
+  result.inlier_ratio = double(inliers) / static_cast<double>(scan.points.rows());
   result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
 
   if (seen.knows_viewpoints()) {
@@ -43,10 +42,10 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
     const SeenSurface::Coverage coverage =
         seen.coverage(sample_surface(result.fitted, kSamples, random), surface, Similarity{}, reach);
     result.cut_off = coverage.cut_off();
-    result.covered = coverage.without_cut_off().share();
+    result.visible_coverage = coverage.without_cut_off().share();
   }
-  const double whole = result.used_fraction / (result.used_fraction + result.torn_off);
-  result.confidence = result.inlier_fraction * result.covered * whole;
+  const double whole = result.overlap / (result.overlap + result.torn_off);
+  result.confidence = result.inlier_ratio * result.visible_coverage * whole;
 
   const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
   result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));

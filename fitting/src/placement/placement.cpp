@@ -9,17 +9,18 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/fitting/correspondences.h"
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 
+#include "base/random.h"
+#include "geometry/sampling.h"
 #include "placement/pose_hypotheses.h"
 #include "placement/scan_symmetry.h"
+#include "placement/surface_placements.h"
 #include "placement/symmetry_hypotheses.h"
 #include "placement/template_field.h"
+#include "registration/alignment.h"
+#include "registration/correspondences.h"
+#include "scan/scan_preparation.h"
 #include "scan/seen_surface.h"
 
 namespace orbifit {
@@ -174,7 +175,7 @@ class Search {
   // The share of the points that a pose explains; 0 below the bar, and for scales that are not allowed.
   double judged(const Similarity& pose, double bar) const {
     const double relative = pose.scale * size_ / extent_;
-    if (relative < options_.least_scale || relative > options_.largest_scale) return 0;
+    if (relative < options_.min_scale || relative > options_.max_scale) return 0;
     const Similarity back = inverse(pose);
     const double reach = reach_of(pose) / pose.scale;
     if (share(back, 24, reach, 0.7 * bar) <= 0 || share(back, 80, reach, 0.9 * bar) <= 0) return 0;
@@ -285,8 +286,9 @@ class Search {
         result[i].pose = align_with_scale(surface_, scan_, of, starts[i], {iterations, robust, 0.015});
         const Similarity back = inverse(result[i].pose);
         const double reach = reach_of(result[i].pose);
-        result[i].explained = closeness(back, reach / result[i].pose.scale, 1500);
-        result[i].covered = seen_.coverage(samples_, surface_.index, result[i].pose, reach + 2 * scan_.spacing).share();
+        result[i].inlier_ratio = closeness(back, reach / result[i].pose.scale, 1500);
+        result[i].visible_coverage =
+            seen_.coverage(samples_, surface_.index, result[i].pose, reach + 2 * scan_.spacing).share();
       }
     });
     return result;
@@ -315,8 +317,8 @@ void PlacementOptions::validate() const {
   require(scan_points >= 10, "PlacementOptions.scan_points", scan_points, "at least 10");
   require(refined >= 1, "PlacementOptions.refined", refined, "at least 1");
   require(reach > 0 && reach < 0.2, "PlacementOptions.reach", reach, "in (0, 0.2)");
-  require(least_scale > 0, "PlacementOptions.least_scale", least_scale, "positive");
-  require(largest_scale > least_scale, "PlacementOptions.largest_scale", largest_scale, "more than least_scale");
+  require(min_scale > 0, "PlacementOptions.min_scale", min_scale, "positive");
+  require(max_scale > min_scale, "PlacementOptions.max_scale", max_scale, "more than min_scale");
 }
 
 std::vector<Placement> find_placements(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& scan,

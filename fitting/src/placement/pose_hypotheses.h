@@ -5,8 +5,9 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
+
+#include "base/random.h"
+#include "geometry/sampling.h"
 
 namespace orbifit {
 

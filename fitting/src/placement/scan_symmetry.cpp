@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/dense.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
+#include "base/dense.h"
+#include "base/random.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/run_context.h"
 
+#include "scan/scan_preparation.h"
 #include "scan/seen_surface.h"
 
 namespace orbifit {

@@ -6,9 +6,9 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 
+#include "base/random.h"
+#include "geometry/sampling.h"
 #include "placement/scan_symmetry.h"
 
 namespace orbifit {

@@ -4,7 +4,8 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/surface_index.h"
+
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 

@@ -1,12 +1,12 @@
-#include "orbifit/fitting/alignment.h"
+#include "registration/alignment.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-#include "orbifit/fitting/correspondences.h"
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
+#include "registration/correspondences.h"
 
 namespace orbifit {
 

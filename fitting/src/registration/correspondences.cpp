@@ -1,4 +1,4 @@
-#include "orbifit/fitting/correspondences.h"
+#include "registration/correspondences.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 namespace orbifit {
 

@@ -1,11 +1,11 @@
-#include "orbifit/fitting/clutter.h"
+#include "scan/clutter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "orbifit/model/fitted_plane.h"
-#include "orbifit/model/random.h"
+#include "base/random.h"
+#include "geometry/fitted_plane.h"
 
 namespace orbifit {
 

@@ -1,6 +1,6 @@
 #include "scan/scan_normals.h"
 
-#include "orbifit/model/fitted_plane.h"
+#include "geometry/fitted_plane.h"
 
 namespace orbifit {
 

@@ -3,8 +3,9 @@
 #include <vector>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/model/point_index.h"
 #include "orbifit/model/run_context.h"
+
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "orbifit/fitting/scan_preparation.h"
+#include "scan/scan_preparation.h"
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/fitted_plane.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
+#include "geometry/fitted_plane.h"
+#include "geometry/point_index.h"
 #include "scan/scan_normals.h"
 #include "scan/stray_points.h"
 

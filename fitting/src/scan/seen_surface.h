@@ -6,9 +6,10 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
-#include "orbifit/model/point_index.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/sampling.h"
+
+#include "geometry/point_index.h"
+#include "geometry/sampling.h"
 
 namespace orbifit {
 

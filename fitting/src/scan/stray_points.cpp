@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbifit/model/fitted_plane.h"
+#include "geometry/fitted_plane.h"
 
 namespace orbifit {
 

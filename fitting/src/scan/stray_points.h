@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/model/point_index.h"
+
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

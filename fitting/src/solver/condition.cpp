@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 

@@ -6,8 +6,9 @@
 #include <Eigen/SparseCore>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/subspace/corotation.h"
-#include "orbifit/subspace/neighbour_sums.h"
+
+#include "deformation/corotation.h"
+#include "deformation/neighbour_sums.h"
 
 namespace orbifit {
 

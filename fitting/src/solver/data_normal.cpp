@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/fitting/alignment.h"
-#include "orbifit/subspace/gram.h"
+#include "basis/gram.h"
+#include "registration/alignment.h"
 
 namespace orbifit {
 

@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-#include "orbifit/fitting/correspondences.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 
+#include "registration/correspondences.h"
 #include "solver/corotated_energy.h"
 #include "solver/pulls.h"
 

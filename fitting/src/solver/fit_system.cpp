@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "orbifit/fitting/alignment.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/corotation.h"
 
+#include "basis/subspace_parts.h"
+#include "deformation/corotation.h"
+#include "registration/alignment.h"
 #include "solver/condition.h"
 #include "solver/data_normal.h"
 #include "solver/rigid_modes.h"
@@ -20,14 +21,14 @@ constexpr double kMostGrowth = 1.1;  // in one iteration
 }  // namespace
 
 FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts)
-    : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
+    : DeformationSystem(CorotatedEnergy(subspace->sampling.points, subspace->sampling.radius, stretch)),
       subspace_(subspace),
-      rows_(subspace, subspace.basis),
+      rows_(subspace, subspace->basis),
       mesh_(mesh),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)},
       contacts_(std::move(contacts), subspace, kContactWeight),
-      stiffness_matrix_(restricted(subspace.basis.columns, energy_.matrix())) {
-  const Eigen::MatrixXd rigid = subspace.basis.columns.transpose() * rigid_modes(subspace.sampling.points);
+      stiffness_matrix_(restricted(subspace->basis.columns, energy_.matrix())) {
+  const Eigen::MatrixXd rigid = subspace->basis.columns.transpose() * rigid_modes(subspace->sampling.points);
   hold_matrix_ = kPreferPose * rigid * rigid.transpose();
   hold_matrix_.diagonal().array() += kHoldStill * static_cast<double>(samples());
   contacts_.add_gram(hold_matrix_);
@@ -61,7 +62,7 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
     normal.matrix(dof, dof) += cost;
     normal.side[dof] -= cost * step_.length * hold.grown;
   }
-  normal.side.head(dof) += hold.stiffness * (subspace_.basis.columns.transpose() * stacked(energy_.pull()));
+  normal.side.head(dof) += hold.stiffness * (subspace_->basis.columns.transpose() * stacked(energy_.pull()));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
   Eigen::VectorXd contact_pull = Eigen::VectorXd::Zero(dof);
   contacts_.add_pull([&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; }, contact_pull);

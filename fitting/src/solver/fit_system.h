@@ -5,11 +5,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "orbifit/fitting/correspondences.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/contact_energy.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "deformation/contact_energy.h"
+#include "registration/correspondences.h"
 #include "solver/data_normal.h"
 #include "solver/deformation_system.h"
 #include "solver/vertex_rows.h"

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/corotation.h"
 
+#include "base/dense.h"
+#include "basis/subspace_parts.h"
+#include "deformation/corotation.h"
 #include "solver/condition.h"
 #include "solver/rigid_modes.h"
 #include "solver/vertex_rows.h"
@@ -44,14 +45,14 @@ LiftWeights rows_of(const LiftWeights& weights, const std::vector<int>& rows) {
 
 MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts,
                            const RunContext& context)
-    : DeformationSystem(CorotatedEnergy(subspace.sampling.points, subspace.sampling.radius, stretch)),
+    : DeformationSystem(CorotatedEnergy(subspace->sampling.points, subspace->sampling.radius, stretch)),
       subspace_(subspace),
       mesh_(mesh),
       contacts_(std::move(contacts)),
       regions_(subspace),
       stiffness_(energy_.matrix()),
-      rigid_(rigid_modes(subspace.sampling.points)),
-      spread_(lift_weights(mesh.vertices, subspace.sampling.points, subspace.sampling.radius, context)),
+      rigid_(rigid_modes(subspace->sampling.points)),
+      spread_(lift_weights(mesh.vertices, subspace->sampling.points, subspace->sampling.radius, context)),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)} {}
 
 VectorXd MovingSystem::at_rest(const VectorXd& coordinates) const {
@@ -73,7 +74,7 @@ CarriedRegions::Turns MovingSystem::turns_of(const VectorXd& q) const {
   return turns;
 }
 
-std::shared_ptr<const CarriedBasis> MovingSystem::basis_at(const CarriedRegions::Turns& turns) const {
+std::shared_ptr<const ConjugatedBasis> MovingSystem::basis_at(const CarriedRegions::Turns& turns) const {
   constexpr std::size_t kKept = 2;  // where a step begins and where it ends: one of them is gone back to
   const auto at = std::ranges::find(known_, turns, &KnownBasis::turns);
   if (at != known_.end()) {
@@ -81,7 +82,7 @@ std::shared_ptr<const CarriedBasis> MovingSystem::basis_at(const CarriedRegions:
   } else {
     if (known_.size() == kKept) known_.erase(known_.begin());
     known_.push_back(
-        {turns, std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(turns)))});
+        {turns, std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns)))});
   }
   return known_.back().basis;
 }
@@ -101,8 +102,8 @@ Points MovingSystem::vertices_at(const VectorXd& q, const RunContext& context) c
 VectorXd MovingSystem::turned(const VectorXd& q, const VectorXd& angles, const Points& displacements) const {
   const Index dof = subspace_.degrees_of_freedom();
   const CarriedRegions::Turns next = regions_.turned(turns_of(q), angles);
-  const std::shared_ptr<const CarriedBasis> basis = basis_at(next);
-  if (basis->conflict > kConflict * subspace_.diagonal || basis->columns.cols() != dof) return {};
+  const std::shared_ptr<const ConjugatedBasis> basis = basis_at(next);
+  if (basis->conflict > kConflict * subspace_->diagonal || basis->columns.cols() != dof) return {};
   VectorXd result = at_rest(q.head(dof));
   for (std::size_t f = 0; f < next.size(); ++f) {
     Eigen::Map<Eigen::Matrix3d>(result.data() + dof + kEntries * static_cast<Index>(f)) = next[f];
@@ -133,14 +134,14 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   const SubspaceState now = state_of(hold.around);
   const CarriedRegions::Turns turns = turns_of(hold.around);
   const Points moved = sample_displacements(subspace_, now);
-  const Points& rest = subspace_.sampling.points;
+  const Points& rest = subspace_->sampling.points;
   Mesh deformed;
   deformed.vertices = mesh_.vertices + vertex_displacements(subspace_, now, context);
   deformed.faces = mesh_.faces;
 
   // How the samples move by increments of the coordinates, and by small turns.
   const Eigen::SparseMatrix<double>& columns = now.basis->columns;
-  const MatrixXd turn_columns = regions_.columns(turns, rest + moved, carried_centres(subspace_, now));
+  const MatrixXd turn_columns = regions_.columns(turns, rest + moved, region_centres(subspace_, now));
   const std::vector<int> touched = touched_vertices(mesh_, pairs, pulls);
   const LiftWeights spread = rows_of(spread_, touched);
   const Points missing = deformed.vertices(touched, Eigen::all) - Points(spread * (rest + moved));

@@ -6,11 +6,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "orbifit/subspace/carried_regions.h"
-#include "orbifit/subspace/contact_energy.h"
-#include "orbifit/subspace/lift.h"
-#include "orbifit/subspace/subspace.h"
-
+#include "basis/carried_regions.h"
+#include "basis/lift.h"
+#include "basis/subspace_parts.h"
+#include "deformation/contact_energy.h"
 #include "solver/data_normal.h"
 #include "solver/deformation_system.h"
 
@@ -46,7 +45,7 @@ class MovingSystem final : public DeformationSystem {
 
  private:
   CarriedRegions::Turns turns_of(const Eigen::VectorXd& q) const;
-  std::shared_ptr<const CarriedBasis> basis_at(const CarriedRegions::Turns& turns) const;
+  std::shared_ptr<const ConjugatedBasis> basis_at(const CarriedRegions::Turns& turns) const;
   // Turned by the angles, at the coordinates there that bring the samples nearest to these displacements; none where
   // groups turned so no longer agree.
   Eigen::VectorXd turned(const Eigen::VectorXd& q, const Eigen::VectorXd& angles, const Points& displacements) const;
@@ -61,7 +60,7 @@ class MovingSystem final : public DeformationSystem {
   ScanStep step_;
   struct KnownBasis {
     CarriedRegions::Turns turns;
-    std::shared_ptr<const CarriedBasis> basis;
+    std::shared_ptr<const ConjugatedBasis> basis;
   };
   mutable std::vector<KnownBasis> known_;  // of those that were asked for last, the last one last
   Eigen::MatrixXd matrix_;                 // of the last system, lower half

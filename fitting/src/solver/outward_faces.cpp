@@ -1,8 +1,8 @@
 #include "solver/outward_faces.h"
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/subspace/moving_surface.h"
+#include "base/random.h"
+#include "geometry/sampling.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
+#include "scan/scan_preparation.h"
 #include "solver/silhouette_pulls.h"
 
 namespace orbifit {

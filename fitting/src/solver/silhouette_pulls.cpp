@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/surface_index.h"
+#include "base/random.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 

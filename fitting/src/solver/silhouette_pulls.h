@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "orbifit/fitting/correspondences.h"
-#include "orbifit/fitting/scan_preparation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/subspace/moving_surface.h"
 
+#include "geometry/sampling.h"
+#include "registration/correspondences.h"
+#include "scan/scan_preparation.h"
 #include "scan/seen_surface.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 

@@ -1,5 +1,7 @@
 #include "solver/vertex_rows.h"
 
+#include "basis/subspace_parts.h"
+
 namespace orbifit {
 
 namespace {
@@ -16,11 +18,11 @@ VertexRows::Rows rows_of(const Eigen::Matrix3Xd& dense) {
 
 }  // namespace
 
-VertexRows::VertexRows(const Subspace& subspace, const CarriedBasis& basis)
+VertexRows::VertexRows(const Subspace& subspace, const ConjugatedBasis& basis)
     : subspace_(subspace),
       basis_(basis),
-      own_(static_cast<std::size_t>(subspace.orbits.representatives())),
-      ways_(subspace.orbits.followers.size()),
+      own_(static_cast<std::size_t>(subspace->orbits.representatives())),
+      ways_(subspace->orbits.followers.size()),
       known_(ways_.size(), 0),
       own_known_(own_.size(), 0) {}
 
@@ -35,8 +37,8 @@ void VertexRows::prepare(const std::vector<int>& vertices, const RunContext& con
     const auto representative = static_cast<std::size_t>(way.representative);
     if (own_known_[representative] == 0) fresh.push_back(way.representative);
     own_known_[representative] = 1;
-    const VertexOrbits::Follower& follower = subspace_.orbits.followers[v];
-    const std::array<int, 3> carried_by{follower.word, subspace_.orbits.bound[representative], follower.turn};
+    const VertexOrbits::Follower& follower = subspace_->orbits.followers[v];
+    const std::array<int, 3> carried_by{follower.word, subspace_->orbits.bound[representative], follower.turn};
     const auto [entry, added] = shift_of_.try_emplace(carried_by, static_cast<int>(shifts_.size()));
     if (added) {
       Eigen::Matrix3Xd dense = Eigen::Matrix3Xd::Zero(3, dof);

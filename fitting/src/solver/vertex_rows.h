@@ -7,7 +7,8 @@
 #include <Eigen/Core>
 
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/subspace.h"
+
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 
@@ -35,7 +36,7 @@ class VertexRows {
   };
 
   /// References are kept.
-  VertexRows(const Subspace& subspace, const CarriedBasis& basis);
+  VertexRows(const Subspace& subspace, const ConjugatedBasis& basis);
 
   /// Makes the rows of these vertices, in parallel. \param vertices  any order, repeated ones too
   void prepare(const std::vector<int>& vertices, const RunContext& context);
@@ -51,7 +52,7 @@ class VertexRows {
 
  private:
   const Subspace& subspace_;
-  const CarriedBasis& basis_;
+  const ConjugatedBasis& basis_;
   std::vector<Rows> own_, shifts_;
   std::vector<Way> ways_;
   std::vector<char> known_, own_known_;

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "orbifit/model/vertex_grid.h"
+#include "geometry/vertex_grid.h"
 
 namespace orbifit {
 

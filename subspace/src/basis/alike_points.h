@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "orbifit/subspace/group_words.h"
-#include "orbifit/subspace/region_map.h"
-#include "orbifit/subspace/symmetric_sampling.h"
-#include "orbifit/subspace/vertex_orbits.h"
+#include "basis/vertex_orbits.h"
+#include "sampling/symmetric_sampling.h"
+#include "symmetry/group_words.h"
+#include "symmetry/region_map.h"
 
 namespace orbifit {
 

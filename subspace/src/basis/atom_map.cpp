@@ -1,4 +1,4 @@
-#include "orbifit/subspace/orbit_lift.h"
+#include "basis/orbit_lift.h"
 
 namespace orbifit {
 

@@ -4,10 +4,11 @@
 #include <utility>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/sharp_features.h"
 #include "orbifit/subspace/subspace.h"
 
 #include "basis/rest_basis.h"
+#include "basis/subspace_parts.h"
+#include "sampling/sharp_features.h"
 #include "sampling/symmetric_sampler.h"
 
 namespace orbifit {
@@ -86,7 +87,7 @@ SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, Gr
   return best;
 }
 
-void add_atoms(const Subspace& subspace, CarriedBasis& basis) {
+void add_atoms(const SubspaceParts& subspace, ConjugatedBasis& basis) {
   const auto count = static_cast<Eigen::Index>(subspace.lift.atoms.size());
   const bool floating = subspace.mode != GroupMode::fixed;
   const Eigen::SparseMatrix<double, Eigen::RowMajor> rows(basis.columns);
@@ -133,7 +134,7 @@ void add_atoms(const Subspace& subspace, CarriedBasis& basis) {
   basis.atoms.setFromTriplets(entries.begin(), entries.end());
 }
 
-void add_transports(const Subspace& subspace, const std::vector<Matrix3d>& rotations, CarriedBasis& basis) {
+void add_transports(const SubspaceParts& subspace, const std::vector<Matrix3d>& rotations, ConjugatedBasis& basis) {
   basis.rotations = rotations;
   basis.transports = transports_of(subspace.sampling, *subspace.regions, *subspace.words, rotations);
   for (const BoundPoint& bound : subspace.orbits.bindings) {
@@ -141,8 +142,8 @@ void add_transports(const Subspace& subspace, const std::vector<Matrix3d>& rotat
   }
 }
 
-CarriedBasis basis_without_atoms(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
-  CarriedBasis basis;
+ConjugatedBasis basis_without_atoms(const SubspaceParts& subspace, const std::vector<Matrix3d>& rotations) {
+  ConjugatedBasis basis;
   add_transports(subspace, rotations, basis);
   const int carriers = subspace.mode == GroupMode::fixed ? 0 : subspace.regions->carriers();
   static_cast<SymmetricBasis&>(basis) =
@@ -161,21 +162,21 @@ void SubspaceOptions::validate() const {
 }
 
 bool keeps_freedom(const Subspace& subspace, const std::vector<Matrix3d>& rotations, double tolerance) {
-  const CarriedBasis basis = basis_without_atoms(subspace, rotations);
-  if (!(basis.conflict <= tolerance) || basis.columns.cols() < subspace.basis.columns.cols()) return false;
+  const ConjugatedBasis basis = basis_without_atoms(*subspace, rotations);
+  if (!(basis.conflict <= tolerance) || basis.columns.cols() < subspace->basis.columns.cols()) return false;
   for (std::size_t i = 0; i < basis.bindings.size(); ++i) {
-    if (basis.bindings[i].kept.trace() < subspace.basis.bindings[i].kept.trace() - 0.5) return false;
+    if (basis.bindings[i].kept.trace() < subspace->basis.bindings[i].kept.trace() - 0.5) return false;
   }
   return true;
 }
 
-CarriedBasis carried_basis(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
-  CarriedBasis basis = basis_without_atoms(subspace, rotations);
-  add_atoms(subspace, basis);
+ConjugatedBasis conjugated_basis(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
+  ConjugatedBasis basis = basis_without_atoms(*subspace, rotations);
+  add_atoms(*subspace, basis);
   return basis;
 }
 
-void complete_rest_basis(Subspace& subspace) {
+void complete_rest_basis(SubspaceParts& subspace) {
   add_transports(subspace, {}, subspace.basis);
   add_atoms(subspace, subspace.basis);
 }
@@ -189,7 +190,8 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
                      " entries; it must have one for each of the " + std::to_string(mesh.vertices.rows()) +
                      " vertices");
   }
-  Subspace subspace;
+  const auto parts = std::make_shared<SubspaceParts>();
+  SubspaceParts& subspace = *parts;
   subspace.mode = options.mode;
   subspace.lift_kind = options.lift;
   subspace.diagonal = diagonal(mesh.vertices);
@@ -207,7 +209,7 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
       orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits, averaged, context);
   add_atoms(subspace, subspace.basis);
   context.progress("lift", 1);
-  return subspace;
+  return Subspace(parts);
 }
 
 }  // namespace orbifit

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/carried_regions.h"
+#include "basis/carried_regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 
@@ -60,17 +61,17 @@ bool CarriedRegions::overlap(int a, int b) const {
 }
 
 CarriedRegions::CarriedRegions(const Subspace& subspace) : subspace_(subspace) {
-  const RegionMap& regions = *subspace.regions;
+  const RegionMap& regions = *subspace->regions;
   const auto count = static_cast<std::size_t>(regions.count());
   samples_.resize(count);
-  for (int k = 0; k < static_cast<int>(subspace.sampling.sets.size()); ++k) {
-    for (const int place : regions.set_places(subspace.sampling.sets[static_cast<std::size_t>(k)])) {
+  for (int k = 0; k < static_cast<int>(subspace->sampling.sets.size()); ++k) {
+    for (const int place : regions.set_places(subspace->sampling.sets[static_cast<std::size_t>(k)])) {
       if (place < regions.count()) samples_[static_cast<std::size_t>(place)].push_back(k);
     }
   }
   Points centroids = Points::Zero(static_cast<Eigen::Index>(count), 3);
   for (std::size_t i = 0; i < count; ++i) {
-    for (const int k : samples_[i]) centroids.row(static_cast<Eigen::Index>(i)) += subspace.sampling.points.row(k);
+    for (const int k : samples_[i]) centroids.row(static_cast<Eigen::Index>(i)) += subspace->sampling.points.row(k);
     centroids.row(static_cast<Eigen::Index>(i)) /= std::max(1.0, static_cast<double>(samples_[i].size()));
   }
   std::vector<int> order(count);
@@ -87,9 +88,9 @@ CarriedRegions::CarriedRegions(const Subspace& subspace) : subspace_(subspace) {
   std::vector<char> taken(count, 0);
   for (std::size_t place = 0; place < order.size(); ++place) {
     if (taken[static_cast<std::size_t>(order[place])] == 0)
-      gather(place, order, centroids, kNear * subspace.diagonal, taken);
+      gather(place, order, centroids, kNear * subspace->diagonal, taken);
   }
-  if (subspace.mode == GroupMode::moving) keep_agreeing();
+  if (subspace->mode == GroupMode::moving) keep_agreeing();
 }
 
 // Adds one way after another and turns them all, each by another angle. Ways that lose freedom are given up too:
@@ -110,7 +111,7 @@ void CarriedRegions::keep_agreeing() {
       ++freedom_;
       Eigen::VectorXd angles(freedom_);
       for (Eigen::Index k = 0; k < freedom_; ++k) angles[k] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(k));
-      if (keeps_freedom(subspace_, rotations(turned(rest(), angles)), kAgree * subspace_.diagonal)) continue;
+      if (keeps_freedom(subspace_, rotations(turned(rest(), angles)), kAgree * subspace_->diagonal)) continue;
       free = before;
       --freedom_;
     }
@@ -120,7 +121,7 @@ void CarriedRegions::keep_agreeing() {
 // The family of a region: all that the elements of regions around take it to.
 void CarriedRegions::gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
                             std::vector<char>& taken) {
-  const RegionMap& regions = *subspace_.regions;
+  const RegionMap& regions = *subspace_->regions;
   Family family;
   family.members.push_back({order[first], Matrix3d::Identity()});
   taken[static_cast<std::size_t>(order[first])] = 1;

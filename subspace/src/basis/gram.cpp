@@ -1,4 +1,4 @@
-#include "orbifit/subspace/gram.h"
+#include "basis/gram.h"
 
 #include "kernels/kernels.h"
 

@@ -1,10 +1,10 @@
-#include "orbifit/subspace/lift.h"
+#include "basis/lift.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "orbifit/model/point_index.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/orbit_lift.h"
+#include "basis/orbit_lift.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 #include <unordered_map>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
 #include "basis/alike_points.h"
 #include "basis/plain_lift.h"
 

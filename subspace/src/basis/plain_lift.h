@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "orbifit/subspace/region_map.h"
-#include "orbifit/subspace/symmetric_sampling.h"
+#include "sampling/symmetric_sampling.h"
+#include "symmetry/region_map.h"
 
 namespace orbifit {
 

@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/carried_regions.h"
 
+#include "basis/carried_regions.h"
+#include "basis/subspace_parts.h"
 #include "kernels/kernels.h"
 
 namespace orbifit {
@@ -44,12 +45,12 @@ void bind(const Binding& binding, const Vector3d& position, const Eigen::VectorX
 
 // The part of the lift that turns with the regions (method notes 2.2): the sum of w (R - 1) (p - x), each atom turning
 // the point about itself. Linear in each, so that it does not matter by which of several words an atom is seen.
-void add_turned_rest(const Subspace& subspace, const CarriedBasis& basis, int representative, Vector3d& u) {
-  const Vector3d start = subspace.orbits.positions.row(representative).transpose();
-  subspace.lift.visit(representative, [&](int atom, double weight) {
+void add_turned_rest(const Subspace& subspace, const ConjugatedBasis& basis, int representative, Vector3d& u) {
+  const Vector3d start = subspace->orbits.positions.row(representative).transpose();
+  subspace->lift.visit(representative, [&](int atom, double weight) {
     const auto a = static_cast<std::size_t>(atom);
     Vector3d arm = -basis.atom_positions[a];
-    if (is_position(subspace.lift.atoms[a].kind)) arm += start;
+    if (is_position(subspace->lift.atoms[a].kind)) arm += start;
     u += weight * (basis.atom_rotations[a] * arm - arm);
   });
 }
@@ -61,7 +62,7 @@ struct LiftState {
   std::vector<double> copiers;  // sixteen doubles a word: frame's columns and shift
 };
 
-LiftState lift_state(const CarriedBasis& basis, const SubspaceState& state) {
+LiftState lift_state(const ConjugatedBasis& basis, const SubspaceState& state) {
   const bool turned = !basis.rotations.empty();
   LiftState result;
   Eigen::VectorXd atoms = basis.atoms * state.q;
@@ -84,27 +85,27 @@ LiftState lift_state(const CarriedBasis& basis, const SubspaceState& state) {
 
 // What the copy of a vertex lacks: how its word turns the place itself, the turn on its circle, and how what lies
 // between that place and the vertex turns along.
-Vector3d finished(const Subspace& subspace, const CarriedBasis& basis, int vertex, const Eigen::VectorXd& carriers,
+Vector3d finished(const Subspace& subspace, const ConjugatedBasis& basis, int vertex, const Eigen::VectorXd& carriers,
                   const Vector3d& copied) {
   const bool turned = !basis.rotations.empty();
-  const VertexOrbits::Follower& follower = subspace.orbits.followers[static_cast<std::size_t>(vertex)];
-  const Vector3d start = subspace.orbits.positions.row(follower.representative).transpose();
+  const VertexOrbits::Follower& follower = subspace->orbits.followers[static_cast<std::size_t>(vertex)];
+  const Vector3d start = subspace->orbits.positions.row(follower.representative).transpose();
   Vector3d u = copied;
   Vector3d around = Vector3d::Zero();
   if (turned) {
     const auto word = static_cast<std::size_t>(follower.word);
     u += (basis.transports.words[word].frame - basis.transports.rest_words[word].frame) * start;
-    const auto& [offset, region] = subspace.orbits.offsets[static_cast<std::size_t>(vertex)];
+    const auto& [offset, region] = subspace->orbits.offsets[static_cast<std::size_t>(vertex)];
     if (region >= 0) around = basis.rotations[static_cast<std::size_t>(region)] * offset - offset;
   }
   if (follower.turn < 0) return u + around;
-  const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
-  const bool floating = subspace.mode != GroupMode::fixed;
-  const Transport rest = step_transport(*subspace.regions, place, -1, motion, floating);
-  const Transport now = turned ? step_transport(*subspace.regions, place, -1, motion, floating,
+  const auto& [place, motion] = subspace->orbits.turns[static_cast<std::size_t>(follower.turn)];
+  const bool floating = subspace->mode != GroupMode::fixed;
+  const Transport rest = step_transport(*subspace->regions, place, -1, motion, floating);
+  const Transport now = turned ? step_transport(*subspace->regions, place, -1, motion, floating,
                                                 basis.rotations[static_cast<std::size_t>(place)])
                                : rest;
-  return around + carried_by(now, turned ? &rest : nullptr, subspace.words->motion(follower.word)(start), u, carriers);
+  return around + carried_by(now, turned ? &rest : nullptr, subspace->words->motion(follower.word)(start), u, carriers);
 }
 
 }  // namespace
@@ -117,12 +118,40 @@ std::string to_string(LiftKind kind) {
   return kind == LiftKind::paper ? "paper" : "orbit";
 }
 
-const CarriedBasis& basis_of(const Subspace& subspace, const SubspaceState& state) {
-  return state.basis ? *state.basis : subspace.basis;
+GroupMode Subspace::mode() const {
+  return parts_->mode;
+}
+
+LiftKind Subspace::lift_kind() const {
+  return parts_->lift_kind;
+}
+
+int Subspace::degrees_of_freedom() const {
+  return parts_->degrees_of_freedom();
+}
+
+int Subspace::regions() const {
+  return parts_->regions->count();
+}
+
+const Points& Subspace::samples() const {
+  return parts_->sampling.points;
+}
+
+double Subspace::radius() const {
+  return parts_->sampling.radius;
+}
+
+double Subspace::diagonal() const {
+  return parts_->diagonal;
+}
+
+const ConjugatedBasis& basis_of(const Subspace& subspace, const SubspaceState& state) {
+  return state.basis ? *state.basis : subspace->basis;
 }
 
 Points sample_displacements(const Subspace& subspace, const SubspaceState& state) {
-  const CarriedBasis& basis = basis_of(subspace, state);
+  const ConjugatedBasis& basis = basis_of(subspace, state);
   Eigen::VectorXd stacked = basis.columns * state.q;
   if (!basis.rotations.empty()) stacked += basis.offset;
   return Eigen::Map<const Points>(stacked.data(), stacked.size() / 3, 3);
@@ -132,11 +161,11 @@ Points sample_displacements(const Subspace& subspace, const Eigen::VectorXd& q) 
   return sample_displacements(subspace, SubspaceState{q, nullptr});
 }
 
-Motion carried_motion(const Subspace& subspace, const SubspaceState& state, int region) {
-  const CarriedBasis& basis = basis_of(subspace, state);
+Motion region_motion(const Subspace& subspace, const SubspaceState& state, int region) {
+  const ConjugatedBasis& basis = basis_of(subspace, state);
   if (basis.carried.rows() == 0) return {};
   Motion motion;
-  const Vector3d& centre = subspace.regions->centre(region);
+  const Vector3d& centre = subspace->regions->centre(region);
   if (!basis.rotations.empty()) {
     motion = Motion::about(basis.rotations[static_cast<std::size_t>(region)], centre);
   }
@@ -144,23 +173,23 @@ Motion carried_motion(const Subspace& subspace, const SubspaceState& state, int 
   return motion;
 }
 
-Vector3d carried_translation(const Subspace& subspace, const Eigen::VectorXd& q, int region) {
-  return carried_motion(subspace, {q, nullptr}, region).translation;
+Vector3d region_translation(const Subspace& subspace, const Eigen::VectorXd& q, int region) {
+  return region_motion(subspace, {q, nullptr}, region).translation;
 }
 
-Points carried_centres(const Subspace& subspace, const SubspaceState& state) {
-  Points centres(subspace.regions->count(), 3);
-  for (int i = 0; i < subspace.regions->count(); ++i) {
-    centres.row(i) = carried_motion(subspace, state, i)(subspace.regions->centre(i)).transpose();
+Points region_centres(const Subspace& subspace, const SubspaceState& state) {
+  Points centres(subspace->regions->count(), 3);
+  for (int i = 0; i < subspace->regions->count(); ++i) {
+    centres.row(i) = region_motion(subspace, state, i)(subspace->regions->centre(i)).transpose();
   }
   return centres;
 }
 
 Points vertex_displacements(const Subspace& subspace, const SubspaceState& state, const RunContext& context) {
-  const CarriedBasis& basis = basis_of(subspace, state);
+  const ConjugatedBasis& basis = basis_of(subspace, state);
   const bool turned = !basis.rotations.empty();
-  const VertexOrbits& orbits = subspace.orbits;
-  const OrbitLift& lift = subspace.lift;
+  const VertexOrbits& orbits = subspace->orbits;
+  const OrbitLift& lift = subspace->lift;
   const LiftState now = lift_state(basis, state);
 
   // Representatives. Sums take about half a microsecond a block, copies a few nanoseconds.
@@ -216,24 +245,24 @@ Points vertex_displacements(const Subspace& subspace, const Eigen::VectorXd& q) 
   return vertex_displacements(subspace, SubspaceState{q, nullptr});
 }
 
-VertexWay vertex_way(const Subspace& subspace, const CarriedBasis& basis, int vertex) {
-  const VertexOrbits::Follower& follower = subspace.orbits.followers[static_cast<std::size_t>(vertex)];
+VertexWay vertex_way(const Subspace& subspace, const ConjugatedBasis& basis, int vertex) {
+  const VertexOrbits::Follower& follower = subspace->orbits.followers[static_cast<std::size_t>(vertex)];
   VertexWay way{follower.representative, Matrix3d::Identity(), {}};
   const auto go_on = [&](const Carried& carried, const Matrix3d& frame) {
     way.carried = carried_sum(way.carried, way.along, carried);
     way.along = way.along * frame;
   };
   if (follower.turn >= 0) {
-    const auto& [place, motion] = subspace.orbits.turns[static_cast<std::size_t>(follower.turn)];
-    const bool floating = subspace.mode != GroupMode::fixed;
-    const Transport step = basis.rotations.empty() ? step_transport(*subspace.regions, place, -1, motion, floating)
-                                                   : step_transport(*subspace.regions, place, -1, motion, floating,
+    const auto& [place, motion] = subspace->orbits.turns[static_cast<std::size_t>(follower.turn)];
+    const bool floating = subspace->mode != GroupMode::fixed;
+    const Transport step = basis.rotations.empty() ? step_transport(*subspace->regions, place, -1, motion, floating)
+                                                   : step_transport(*subspace->regions, place, -1, motion, floating,
                                                                     basis.rotations[static_cast<std::size_t>(place)]);
     go_on(step.carried, step.frame);
   }
   const Transport& word = basis.transports.words[static_cast<std::size_t>(follower.word)];
   go_on(word.carried, word.frame);
-  const int bound = subspace.orbits.bound[static_cast<std::size_t>(follower.representative)];
+  const int bound = subspace->orbits.bound[static_cast<std::size_t>(follower.representative)];
   if (bound >= 0) {
     const Binding& binding = basis.bindings[static_cast<std::size_t>(bound)];
     go_on(binding.bound, binding.kept);
@@ -241,9 +270,9 @@ VertexWay vertex_way(const Subspace& subspace, const CarriedBasis& basis, int ve
   return way;
 }
 
-void add_representative_rows(const Subspace& subspace, const CarriedBasis& basis, int representative,
+void add_representative_rows(const Subspace& subspace, const ConjugatedBasis& basis, int representative,
                              Eigen::Ref<Eigen::Matrix3Xd> rows) {
-  subspace.lift.visit(representative, [&](int atom, double weight) {
+  subspace->lift.visit(representative, [&](int atom, double weight) {
     for (int c = 0; c < 3; ++c) {
       for (decltype(basis.atoms)::InnerIterator it(basis.atoms, 3 * Eigen::Index{atom} + c); it; ++it) {
         rows(c, it.col()) += weight * it.value();
@@ -252,7 +281,7 @@ void add_representative_rows(const Subspace& subspace, const CarriedBasis& basis
   });
 }
 
-void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int vertex,
+void add_vertex_rows(const Subspace& subspace, const ConjugatedBasis& basis, int vertex,
                      Eigen::Ref<Eigen::Matrix3Xd> rows) {
   const VertexWay way = vertex_way(subspace, basis, vertex);
   for (const auto& [carrier, matrix] : way.carried) {
@@ -265,16 +294,16 @@ void add_vertex_rows(const Subspace& subspace, const CarriedBasis& basis, int ve
   }
 }
 
-SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,
-                                      const SubspaceState& state, const Mesh& deformed) {
+SymmetryAnnotation deformed_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,
+                                       const SubspaceState& state, const Mesh& deformed) {
   SymmetryAnnotation result = annotation;
   result.mesh_diagonal = diagonal(deformed.vertices);
-  const CarriedBasis& basis = basis_of(subspace, state);
+  const ConjugatedBasis& basis = basis_of(subspace, state);
   Eigen::VectorXd carriers = basis.carried * state.q;
   if (carriers.size() > 0) carriers += basis.carried_offset;
   for (std::size_t i = 0; i < result.regions.size(); ++i) {
     Region& region = result.regions[i];
-    const Motion motion = carried_motion(subspace, state, static_cast<int>(i));
+    const Motion motion = region_motion(subspace, state, static_cast<int>(i));
     const auto move = [&](Motion& element) { element = conjugate(motion, element); };
     region.centre = motion(region.centre);
     region.axis = motion.linear * region.axis;
@@ -291,22 +320,22 @@ SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, cons
   };
   for (std::size_t i = 0; i < result.patterns.size(); ++i) {
     Pattern& pattern = result.patterns[i];
-    const int first = subspace.regions->first_place_of_pattern(static_cast<int>(i));
+    const int first = subspace->regions->first_place_of_pattern(static_cast<int>(i));
     for (std::size_t a = 0; a < pattern.instances.size(); ++a) {
-      pattern.instances[a].motion = subspace.regions->elements(first)[a];
-      pattern.instances[a].motion.translation += moved(subspace.regions->instance_shift(first + static_cast<int>(a)));
+      pattern.instances[a].motion = subspace->regions->elements(first)[a];
+      pattern.instances[a].motion.translation += moved(subspace->regions->instance_shift(first + static_cast<int>(a)));
     }
     for (std::size_t g = 0; g < pattern.generators.size(); ++g) {
       pattern.generators[g].translation +=
-          moved(subspace.regions->generator_shift(static_cast<int>(i), static_cast<int>(g)));
+          moved(subspace->regions->generator_shift(static_cast<int>(i), static_cast<int>(g)));
     }
   }
   return result;
 }
 
-SymmetryAnnotation carried_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,
-                                      const Eigen::VectorXd& q, const Mesh& deformed) {
-  return carried_annotation(annotation, subspace, SubspaceState{q, nullptr}, deformed);
+SymmetryAnnotation deformed_annotation(const SymmetryAnnotation& annotation, const Subspace& subspace,
+                                       const Eigen::VectorXd& q, const Mesh& deformed) {
+  return deformed_annotation(annotation, subspace, SubspaceState{q, nullptr}, deformed);
 }
 
 }  // namespace orbifit

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/symmetric_basis.h"
+#include "basis/symmetric_basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit {
 

@@ -1,12 +1,12 @@
-#include "orbifit/subspace/vertex_orbits.h"
+#include "basis/vertex_orbits.h"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 
-#include "orbifit/model/space_order.h"
-#include "orbifit/model/vertex_grid.h"
-#include "orbifit/model/vertex_sets.h"
+#include "domains/vertex_sets.h"
+#include "geometry/space_order.h"
+#include "geometry/vertex_grid.h"
 
 namespace orbifit {
 

@@ -1,9 +1,10 @@
-#include "orbifit/subspace/contact_energy.h"
+#include "deformation/contact_energy.h"
 
 #include <cmath>
 #include <utility>
 
-#include "orbifit/subspace/lift.h"
+#include "basis/lift.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 
@@ -38,10 +39,10 @@ MatrixXd turning_of(const std::vector<Contact>& contacts, std::size_t side, cons
 }  // namespace
 
 ContactEnergy::ContactEnergy(std::vector<Contact> contacts, const Subspace& subspace, double weight)
-    : contacts_(std::move(contacts)), weight_(weight), rows_(contact_rows(contacts_, subspace, subspace.basis)) {
+    : contacts_(std::move(contacts)), weight_(weight), rows_(contact_rows(contacts_, subspace, subspace->basis)) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     rows_.middleRows<3>(3 * static_cast<Index>(i)) *= scale(i);
-    if (contacts_[i].gap.norm() > kClosed * subspace.diagonal) gapped_.push_back(i);
+    if (contacts_[i].gap.norm() > kClosed * subspace->diagonal) gapped_.push_back(i);
   }
   pull_.resize(rows_.cols(), 3 * static_cast<Index>(gapped_.size()));
   for (std::size_t g = 0; g < gapped_.size(); ++g) {
@@ -65,7 +66,7 @@ void ContactEnergy::add_gram(MatrixXd& system) const {
 ContactRows contact_rows_at(const std::vector<Contact>& contacts, double weight, const Subspace& subspace,
                             const SubspaceState& state, const Points& displacements,
                             const std::vector<Eigen::Matrix3d>& rotations, const SmallTurns* small) {
-  const CarriedBasis& basis = basis_of(subspace, state);
+  const ConjugatedBasis& basis = basis_of(subspace, state);
   const auto count = static_cast<Index>(contacts.size());
   const Index ways = small != nullptr ? small->columns.cols() : 0;
   ContactRows result{MatrixXd(3 * count, basis.columns.cols() + ways), VectorXd(3 * count)};
@@ -85,7 +86,7 @@ ContactRows contact_rows_at(const std::vector<Contact>& contacts, double weight,
     places.row(row) = (contact.point + 0.5 * (first + second)).transpose();
   }
   if (ways > 0) {
-    const Points samples = subspace.sampling.points + sample_displacements(subspace, state);
+    const Points samples = subspace->sampling.points + sample_displacements(subspace, state);
     result.rows.rightCols(ways) =
         turning_of(contacts, 0, places, samples, *small) - turning_of(contacts, 1, places, samples, *small);
   }

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/contacts.h"
+#include "deformation/contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 #include <limits>
 #include <map>
 
-#include "orbifit/model/disjoint_sets.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/topology.h"
-#include "orbifit/subspace/moving_surface.h"
-
+#include "base/disjoint_sets.h"
+#include "base/random.h"
+#include "basis/subspace_parts.h"
 #include "deformation/touching_points.h"
+#include "geometry/topology.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
@@ -69,7 +69,7 @@ Vector3d difference(const TouchingPoints& touching, const Mesh& mesh, const Poin
 class ContactTrials {
  public:
   ContactTrials(const Subspace& subspace, const Mesh& mesh, const RunContext& context)
-      : mesh_(mesh), diagonal_(subspace.diagonal) {
+      : mesh_(mesh), diagonal_(subspace->diagonal) {
     Random random(11, "contacts");
     for (Points& each : moved_) {
       Eigen::VectorXd q(subspace.degrees_of_freedom());
@@ -392,12 +392,12 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
                                    const RunContext& context) {
   const Components parts = touching_parts(mesh, weld_vertices(mesh.vertices));
   if (parts.faces.size() < 2) return {};
-  const double spacing = options.spacing * subspace.sampling.radius;
+  const double spacing = options.spacing * subspace->sampling.radius;
   const std::vector<TouchingPoints> touching =
-      touching_points(mesh, parts.component_of_face, options.tolerance * subspace.diagonal, spacing, context);
+      touching_points(mesh, parts.component_of_face, options.tolerance * subspace->diagonal, spacing, context);
   if (touching.empty()) return {};
   const ContactTrials trials(subspace, mesh, context);
-  const NearestSample nearest(subspace.sampling.points, mesh, parts.component_of_face);
+  const NearestSample nearest(subspace->sampling.points, mesh, parts.component_of_face);
   std::vector<Contact> contacts;
   const auto keep = [&](const std::vector<Candidate>& candidates, const Orbits& orbits) {
     for (const Numbers& orbit : orbits) {
@@ -425,7 +425,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
   std::vector<Candidate> small;
   for (std::size_t k = 0; k < joints.members.size(); ++k) {
     if (joints.small[k] == 0) continue;
-    small.push_back(candidate_of(touching, places_of(joints.members[k], touching, kNoGap * subspace.diagonal)));
+    small.push_back(candidate_of(touching, places_of(joints.members[k], touching, kNoGap * subspace->diagonal)));
     for (const int number : joints.members[k]) in_small[static_cast<std::size_t>(number)] = 1;
   }
   keep(small, orbits_of(trials.look_at(small, touching)));
@@ -445,7 +445,7 @@ Vector3d turned_gap(const Contact& contact, const std::array<Eigen::Matrix3d, 2>
 }
 
 Eigen::MatrixXd contact_rows(const std::vector<Contact>& contacts, const Subspace& subspace,
-                             const CarriedBasis& basis) {
+                             const ConjugatedBasis& basis) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3 * static_cast<Index>(contacts.size()), basis.degrees_of_freedom());
   Eigen::Matrix3Xd of_vertex(3, rows.cols());
   for (std::size_t i = 0; i < contacts.size(); ++i) {

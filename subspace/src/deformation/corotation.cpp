@@ -1,12 +1,11 @@
-#include "orbifit/subspace/corotation.h"
+#include "deformation/corotation.h"
 
 #include <algorithm>
 #include <utility>
 
 #include <Eigen/LU>
 
-#include "orbifit/model/dense.h"
-
+#include "base/dense.h"
 #include "kernels/kernels.h"
 
 namespace orbifit {

@@ -8,10 +8,10 @@
 #include <Eigen/Cholesky>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/contact_energy.h"
-#include "orbifit/subspace/mesh_laplacian.h"
-#include "orbifit/subspace/point_laplacian.h"
 
+#include "basis/subspace_parts.h"
+#include "deformation/contact_energy.h"
+#include "deformation/deformation_energy.h"
 #include "deformation/handle_rows.h"
 #include "deformation/moving_solve.h"
 #include "deformation/quotient.h"
@@ -23,20 +23,6 @@ namespace {
 
 // Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal without the contacts.
 constexpr double kHold = 1e-12;
-
-Corotation energy_of(const Subspace& subspace, const Mesh& mesh, LaplacianKind kind, const RunContext& context) {
-  const Points& samples = subspace.sampling.points;
-  const SampleEdges edges = neighbour_graph(samples, subspace.sampling.radii);
-  switch (kind) {
-    case LaplacianKind::cotangent:
-      return corotation(samples, edges,
-                        cotangent_sample_laplacian(mesh, samples, subspace.sampling.radius, edges, context));
-    case LaplacianKind::point:
-      return corotation(samples, edges, point_laplacian(samples, edges));
-    default:
-      return corotation(samples, edges, graph_laplacian(edges, samples.rows()));
-  }
-}
 
 // What a contact weighs against equation (3): see kContactWeight.
 double contact_weight(const Corotation& corotation) {
@@ -62,14 +48,14 @@ struct Deformer::Implementation {
                  const RunContext& context)
       : subspace(the_subspace),
         mesh(the_mesh),
-        corotation(energy_of(subspace, mesh, options.laplacian, context)),
+        corotation(deformation_energy(subspace, mesh, options.laplacian, context)),
         quotient(subspace, corotation),
         stiffness(quotient.stiffness()) {
     const double weight = contact_weight(corotation);
     std::vector<Contact> found;
     // Fixed groups lock parts in place: what touches them could not follow a handle.
-    if (options.contacts && subspace.mode != GroupMode::fixed) found = find_contacts(subspace, mesh, {}, context);
-    if (subspace.mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
+    if (options.contacts && subspace->mode != GroupMode::fixed) found = find_contacts(subspace, mesh, {}, context);
+    if (subspace->mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
     contacts = ContactEnergy(std::move(found), subspace, weight);
     if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
     contacts.add_gram(stiffness);
@@ -86,12 +72,8 @@ Deformer::Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOpt
 Deformer::~Deformer() = default;
 Deformer::Deformer(Deformer&&) noexcept = default;
 
-const Corotation& Deformer::energy() const {
-  return implementation_->corotation;
-}
-
-const std::vector<Contact>& Deformer::contacts() const {
-  return implementation_->contacts.contacts();
+std::size_t Deformer::contacts() const {
+  return implementation_->contacts.contacts().size();
 }
 
 void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {

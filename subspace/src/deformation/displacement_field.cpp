@@ -9,10 +9,10 @@
 #include <optional>
 #include <utility>
 
-#include "orbifit/model/vertex_grid.h"
-#include "orbifit/model/vertex_sets.h"
-
 #include "basis/plain_lift.h"
+#include "basis/subspace_parts.h"
+#include "domains/vertex_sets.h"
+#include "geometry/vertex_grid.h"
 
 namespace orbifit {
 
@@ -29,12 +29,12 @@ class FieldEvaluator {
   FieldEvaluator(const Subspace& subspace, const SubspaceState& state)
       : subspace_(subspace),
         basis_(basis_of(subspace, state)),
-        words_(*subspace.words),
-        plain_(subspace.sampling, *subspace.regions, subspace.lift_kind == LiftKind::orbit),
+        words_(*subspace->words),
+        plain_(subspace->sampling, *subspace->regions, subspace->lift_kind == LiftKind::orbit),
         samples_(sample_displacements(subspace, state)) {
     carriers_ = basis_.carried * state.q;
     if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
-    closure_.doublet = kDoublet * subspace.diagonal;
+    closure_.doublet = kDoublet * subspace->diagonal;
     transports_ = basis_.transports;
   }
 
@@ -42,8 +42,8 @@ class FieldEvaluator {
   std::size_t points_seen() const { return points_seen_; }
 
   Vector3d operator()(const Vector3d& point, int set) {
-    if (subspace_.lift_kind == LiftKind::paper) return paper(point);
-    const Orbit orbit = snapped_orbit_of(point, set, *subspace_.regions, words_, closure_);
+    if (subspace_->lift_kind == LiftKind::paper) return paper(point);
+    const Orbit orbit = snapped_orbit_of(point, set, *subspace_->regions, words_, closure_);
     points_seen_ += orbit.points.size();
     if (static_cast<std::size_t>(words_.count()) != transports_.words.size()) add_new_words();
     const Vector3d start = orbit.points.front().position;
@@ -62,7 +62,7 @@ class FieldEvaluator {
     }
     Vector3d around = Vector3d::Zero();  // how what lies between the point and the one it is snapped to turns along
     if (!basis_.rotations.empty()) {
-      const int region = innermost_region(*subspace_.regions, set);
+      const int region = innermost_region(*subspace_->regions, set);
       const Vector3d offset = point - (orbit.turned_by < 0 ? start : orbit.turn(start));
       if (region >= 0) around = basis_.rotations[static_cast<std::size_t>(region)] * offset - offset;
     }
@@ -79,10 +79,10 @@ class FieldEvaluator {
       u = bound;
     }
     if (orbit.turned_by < 0) return u + around;
-    const Transport rest = step_transport(*subspace_.regions, orbit.turned_by, -1, orbit.turn, floating());
+    const Transport rest = step_transport(*subspace_->regions, orbit.turned_by, -1, orbit.turn, floating());
     Transport now = rest;
     if (!basis_.rotations.empty()) {
-      now = step_transport(*subspace_.regions, orbit.turned_by, -1, orbit.turn, floating(),
+      now = step_transport(*subspace_->regions, orbit.turned_by, -1, orbit.turn, floating(),
                            basis_.rotations[static_cast<std::size_t>(orbit.turned_by)]);
     }
     Vector3d turned = now.frame * (start + u) + now.shift - (rest.frame * start + rest.shift);
@@ -96,7 +96,7 @@ class FieldEvaluator {
     Matrix3d rotation;
   };
 
-  bool floating() const { return subspace_.mode != GroupMode::fixed; }
+  bool floating() const { return subspace_->mode != GroupMode::fixed; }
 
   // Points bring new words; the samples' stay as they are.
   void add_new_words() {
@@ -122,20 +122,20 @@ class FieldEvaluator {
     if (!added) return entry->second;
     const LiftAtom atom{term.sample, word, static_cast<LiftAtom::Kind>(term.kind), term.place};
     const AtomMap map =
-        atom_map(atom, subspace_.sampling, *subspace_.regions, transports_, floating(), basis_.rotations);
+        atom_map(atom, subspace_->sampling, *subspace_->regions, transports_, floating(), basis_.rotations);
     Seen& seen = entry->second;
     seen.position = map.position;
     seen.displacement = map.offset;
     seen.rotation.setIdentity();
     if (map.orbit >= 0) {
-      const int seed = subspace_.sampling.first_sample[static_cast<std::size_t>(map.orbit)];
+      const int seed = subspace_->sampling.first_sample[static_cast<std::size_t>(map.orbit)];
       seen.displacement += map.frame * samples_.row(seed).transpose();
     }
     add_carried(map.carried, seen.displacement);
     if (basis_.rotations.empty()) return seen;
     const int region =
         atom.sample >= 0
-            ? innermost_region(*subspace_.regions, subspace_.sampling.sets[static_cast<std::size_t>(atom.sample)])
+            ? innermost_region(*subspace_->regions, subspace_->sampling.sets[static_cast<std::size_t>(atom.sample)])
             : atom.place;
     if (region >= 0) seen.rotation = basis_.rotations[static_cast<std::size_t>(region)];
     seen.rotation = transports_.words[static_cast<std::size_t>(word)].frame.transpose() * seen.rotation *
@@ -144,7 +144,7 @@ class FieldEvaluator {
   }
 
   const Subspace& subspace_;
-  const CarriedBasis& basis_;
+  const ConjugatedBasis& basis_;
   GroupWords words_;
   PlainLift plain_;
   Points samples_;
@@ -163,10 +163,11 @@ class PairResidual {
       : subspace_(subspace),
         mesh_(mesh),
         baked_(vertex_displacements(subspace, state)),
-        images_(mesh.vertices, kMet * subspace.diagonal),
+        images_(mesh.vertices, kMet * subspace->diagonal),
         field_(subspace, state) {
-    if (subspace.lift_kind != LiftKind::orbit) return;
-    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v) sets_.push_back(set_of_vertex(subspace.orbits, v));
+    if (subspace->lift_kind != LiftKind::orbit) return;
+    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v)
+      sets_.push_back(set_of_vertex(subspace->orbits, v));
   }
 
   /// Images at vertices are measured at once, others by finish().
@@ -175,9 +176,9 @@ class PairResidual {
   void add(int vertex, const Motion& motion, const Motion& carried, int from_place, int element) {
     const Vector3d place = mesh_.vertices.row(vertex).transpose();
     const Vector3d image = motion(place);
-    const int image_set = sets_.empty() ? 0 : subspace_.regions->carried_set(set_of(vertex), from_place, element);
+    const int image_set = sets_.empty() ? 0 : subspace_->regions->carried_set(set_of(vertex), from_place, element);
     int met = -1;
-    const auto& followers = subspace_.orbits.followers;
+    const auto& followers = subspace_->orbits.followers;
     const int own = followers[static_cast<std::size_t>(vertex)].representative;
     images_.visit(image, [&](int other) {
       if (met >= 0 || followers[static_cast<std::size_t>(other)].representative != own) return;
@@ -208,7 +209,7 @@ class PairResidual {
       const Vector3d place = mesh_.vertices.row(pair.vertex).transpose();
       const Vector3d image = pair.motion(place);
       const int set = set_of(pair.vertex);
-      const int image_set = subspace_.regions->carried_set(set, pair.from_place, pair.element);
+      const int image_set = subspace_->regions->carried_set(set, pair.from_place, pair.element);
       measure(field_(place, set), field_(image, image_set), place, pair.motion, pair.carried);
     }
     off_vertices_.clear();
@@ -234,7 +235,7 @@ class PairResidual {
   // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
   void measure(const Vector3d& here, const Vector3d& there, const Vector3d& place, const Motion& motion,
                const Motion& carried) {
-    const double error = (there - (carried(place + here) - motion(place))).norm() / subspace_.diagonal;
+    const double error = (there - (carried(place + here) - motion(place))).norm() / subspace_->diagonal;
     residual_.max = std::max(residual_.max, error);
     squares_ += error * error;
     count_ += 1;
@@ -261,10 +262,10 @@ std::size_t most_off_vertices(int pairs) {
 Residual residual_of(PairResidual& residual, const Subspace& subspace, const Mesh& mesh, const Region& region,
                      int region_number, const SubspaceState& state, const RunContext& context, int pairs) {
   const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
-  const std::vector<Motion> elements = subspace.regions->test_elements(region_number);
-  const std::size_t components = subspace.regions->elements(region_number).size();
+  const std::vector<Motion> elements = subspace->regions->test_elements(region_number);
+  const std::size_t components = subspace->regions->elements(region_number).size();
   const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
-  const Motion carried = carried_motion(subspace, state, region_number);
+  const Motion carried = region_motion(subspace, state, region_number);
   for (std::size_t v = 0; v < vertices.size(); v += step) {
     context.check();
     for (std::size_t e = 0; e < elements.size(); ++e) {
@@ -324,9 +325,9 @@ double worst_field_residual(const Subspace& subspace, const Mesh& mesh, const Sy
 
 Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Pattern& pattern, int pattern_number,
                           const SubspaceState& state, const RunContext& context) {
-  const RegionMap& regions = *subspace.regions;
+  const RegionMap& regions = *subspace->regions;
   const int first = regions.first_place_of_pattern(pattern_number);
-  const CarriedBasis& basis = basis_of(subspace, state);
+  const ConjugatedBasis& basis = basis_of(subspace, state);
   Eigen::VectorXd carriers = basis.carried * state.q;
   if (carriers.size() > 0) carriers += basis.carried_offset;
   PairResidual residual(subspace, mesh, state);

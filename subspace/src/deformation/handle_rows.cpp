@@ -5,6 +5,8 @@
 
 #include "orbifit/model/errors.h"
 
+#include "basis/subspace_parts.h"
+
 namespace orbifit {
 
 namespace {
@@ -14,10 +16,10 @@ constexpr std::size_t kMostOfHandle = 48;  // of a handle
 // A handle counts as the samples within r of its points, and at least as three.
 double weight_of(const std::vector<int>& vertices, const Mesh& mesh, const Subspace& subspace) {
   double near = 0;
-  for (Eigen::Index k = 0; k < subspace.sampling.points.rows(); ++k) {
-    const double reach = subspace.sampling.radii[k] * subspace.sampling.radii[k];
+  for (Eigen::Index k = 0; k < subspace->sampling.points.rows(); ++k) {
+    const double reach = subspace->sampling.radii[k] * subspace->sampling.radii[k];
     near += std::ranges::any_of(vertices, [&](int vertex) {
-      return (mesh.vertices.row(vertex) - subspace.sampling.points.row(k)).squaredNorm() <= reach;
+      return (mesh.vertices.row(vertex) - subspace->sampling.points.row(k)).squaredNorm() <= reach;
     });
   }
   return std::max(3.0, near);
@@ -45,7 +47,7 @@ HandleRows::HandleRows(const std::vector<Handle>& handles, const Subspace& subsp
         Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(points.size()), freedom);
     for (std::size_t i = 0; i < points.size(); ++i) {
       Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, freedom);
-      add_vertex_rows(subspace, subspace.basis, points[i], own);
+      add_vertex_rows(subspace, subspace->basis, points[i], own);
       rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = own;
       vertices_.push_back(points[i]);
       weights_.push_back(part.weight);

@@ -1,11 +1,11 @@
-#include "orbifit/subspace/laplacian.h"
+#include "deformation/laplacian.h"
 
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <numeric>
 
-#include "orbifit/model/point_index.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

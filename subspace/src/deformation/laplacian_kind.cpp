@@ -1,4 +1,4 @@
-#include "orbifit/subspace/laplacian_kind.h"
+#include "orbifit/subspace/deformer.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/mesh_laplacian.h"
+#include "deformation/mesh_laplacian.h"
 
 #include <algorithm>
 #include <array>

@@ -7,9 +7,11 @@
 
 #include <Eigen/Cholesky>
 
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
-#include "orbifit/subspace/lift.h"
+
+#include "base/dense.h"
+#include "basis/lift.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 
@@ -106,14 +108,14 @@ CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const 
   const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::Matrix3d>(sum).singularValues();
   if (!(values[1] > kLine * values[0])) return regions_.rest();
   CarriedRegions::Turns turns = regions_.as_one(blended_rotation(sum));
-  const bool agree = keeps_freedom(subspace_, regions_.rotations(turns), kConflict * subspace_.diagonal);
+  const bool agree = keeps_freedom(subspace_, regions_.rotations(turns), kConflict * subspace_->diagonal);
   return agree ? turns : regions_.rest();
 }
 
 Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions,
                                int iterations, const SubspaceState& start) const {
   const Points& rest = corotation_.rest;
-  const LiftWeights spread = lift_weights(handles.rest(), rest, subspace_.sampling.radius, RunContext{});
+  const LiftWeights spread = lift_weights(handles.rest(), rest, subspace_->sampling.radius, RunContext{});
   const SampleEnergy energy(corotation_, spread, handles.weights(), alpha);
   const VectorXd targets = handles.targets(motions);
 
@@ -135,11 +137,11 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
     local = local_rotations(corotation_, rest + sample_displacements(subspace_, state), local);
   } else {
     turns = first_turns(handles, targets);
-    const auto basis = std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(turns)));
+    const auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns)));
     state = {VectorXd::Zero(basis->columns.cols()), basis};
     if (start.q.size() == state.q.size()) state.q = start.q;
     for (std::size_t k = 0; k < local.size(); ++k) {
-      const int region = innermost_region(*subspace_.regions, subspace_.sampling.sets[k]);
+      const int region = innermost_region(*subspace_->regions, subspace_->sampling.sets[k]);
       if (region >= 0) local[k] = basis->rotations[static_cast<std::size_t>(region)];
     }
   }
@@ -167,11 +169,11 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
     const VectorXd wanted = targets - stacked(lifted) + VectorXd(applied(spread, stacked(before)));
     Points turned_delta = turned_coordinates(local);
     if (regions_.freedom() > 0) {
-      const MatrixXd turning = regions_.columns(turns, rest + before, carried_centres(subspace_, state));
+      const MatrixXd turning = regions_.columns(turns, rest + before, region_centres(subspace_, state));
       MatrixXd columns(3 * rest.rows(), state.q.size() + turning.cols());
       columns << MatrixXd(state.basis->columns), turning;
       // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
-      const MatrixXd along = regions_.columns(turns, turned_delta, Points::Zero(subspace_.regions->count(), 3));
+      const MatrixXd along = regions_.columns(turns, turned_delta, Points::Zero(subspace_->regions->count(), 3));
       const VectorXd laplace = stacked(turned_delta - corotation_.delta);
       const SmallTurns small{regions_, turns, turning};
       const VectorXd both = energy
@@ -182,11 +184,11 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
       const double largest = angles.cwiseAbs().maxCoeff();
       if (largest > kMostTurn) angles *= kMostTurn / largest;
       const CarriedRegions::Turns next = regions_.turned(turns, angles);
-      auto basis = std::make_shared<const CarriedBasis>(carried_basis(subspace_, regions_.rotations(next)));
-      if (basis->conflict <= kConflict * subspace_.diagonal) {
+      auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(next)));
+      if (basis->conflict <= kConflict * subspace_->diagonal) {
         for (Eigen::Index k = 0; k < rest.rows(); ++k) {
           const auto sample = static_cast<std::size_t>(k);
-          const int region = innermost_region(*subspace_.regions, subspace_.sampling.sets[sample]);
+          const int region = innermost_region(*subspace_->regions, subspace_->sampling.sets[sample]);
           if (region < 0) continue;
           const auto r = static_cast<std::size_t>(region);
           local[sample] = basis->rotations[r] * state.basis->rotations[r].transpose() * local[sample];

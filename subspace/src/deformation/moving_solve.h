@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "orbifit/subspace/carried_regions.h"
-#include "orbifit/subspace/contact_energy.h"
-#include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/deformer.h"
-#include "orbifit/subspace/lift.h"
 
+#include "basis/carried_regions.h"
+#include "basis/lift.h"
+#include "deformation/contact_energy.h"
+#include "deformation/corotation.h"
 #include "deformation/handle_rows.h"
 
 namespace orbifit {

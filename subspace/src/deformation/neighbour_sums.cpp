@@ -1,4 +1,4 @@
-#include "orbifit/subspace/neighbour_sums.h"
+#include "deformation/neighbour_sums.h"
 
 #include "kernels/kernels.h"
 

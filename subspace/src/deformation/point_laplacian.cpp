@@ -1,4 +1,4 @@
-#include "orbifit/subspace/point_laplacian.h"
+#include "deformation/point_laplacian.h"
 
 #include <algorithm>
 #include <cmath>

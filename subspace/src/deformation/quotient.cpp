@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/carried_regions.h"
-
+#include "base/random.h"
+#include "basis/carried_regions.h"
+#include "basis/subspace_parts.h"
 #include "kernels/kernels.h"
 
 namespace orbifit {
@@ -100,7 +100,7 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
     laplace.push_back(corotation.laplacian * moved.back());
   }
   const auto look = [&](int sample) {
-    const Matrix3d& frame = subspace.basis.transports.samples[static_cast<std::size_t>(sample)].frame;
+    const Matrix3d& frame = subspace->basis.transports.samples[static_cast<std::size_t>(sample)].frame;
     Look result;
     result.rest = frame.transpose() * covariance_of(corotation, corotation.rest, sample) * frame;
     result.delta = frame.transpose() * corotation.delta.row(sample).transpose();
@@ -116,19 +116,20 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
   }
   // Frames at samples that stabilisers fix are one of several; neighbourhoods that are images all the same look alike.
   std::vector<int> representatives;
-  for (int orbit = 0; orbit < subspace.sampling.orbits(); ++orbit) {
+  for (int orbit = 0; orbit < subspace->sampling.orbits(); ++orbit) {
     std::vector<std::pair<int, Look>> known;
     const auto at = static_cast<std::size_t>(orbit);
     const std::size_t first = counts_.size();
-    for (int k = subspace.sampling.first_sample[at]; k < subspace.sampling.first_sample[at + 1]; ++k) {
+    for (int k = subspace->sampling.first_sample[at]; k < subspace->sampling.first_sample[at + 1]; ++k) {
       const Look seen = look(k);
       const double largest = std::max({1.0, scale, seen.laplace[0].norm(), seen.covariance[0].norm()});
       const auto same = std::ranges::find_if(
           known, [&](const auto& other) { return difference(other.second, seen) <= kAlike * largest; });
       const int stands_for_it = same != known.end() ? same->first : k;
       class_of_sample_.push_back(static_cast<int>(first) + static_cast<int>(same - known.begin()));
-      frame_.emplace_back(subspace.basis.transports.samples[static_cast<std::size_t>(k)].frame *
-                          subspace.basis.transports.samples[static_cast<std::size_t>(stands_for_it)].frame.transpose());
+      frame_.emplace_back(
+          subspace->basis.transports.samples[static_cast<std::size_t>(k)].frame *
+          subspace->basis.transports.samples[static_cast<std::size_t>(stands_for_it)].frame.transpose());
       if (same != known.end()) {
         counts_[first + static_cast<std::size_t>(same - known.begin())] += 1;
         continue;
@@ -139,7 +140,7 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
     }
   }
 
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> columns(subspace.basis.columns);
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> columns(subspace->basis.columns);
   const Eigen::SparseMatrix<double, Eigen::RowMajor> laplacian(corotation.laplacian);
   using Row = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;
   Eigen::Matrix<double, 12, Eigen::Dynamic> covariance = Eigen::Matrix<double, 12, Eigen::Dynamic>::Zero(12, freedom_);

@@ -5,8 +5,9 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "orbifit/subspace/corotation.h"
 #include "orbifit/subspace/subspace.h"
+
+#include "deformation/corotation.h"
 
 namespace orbifit {
 

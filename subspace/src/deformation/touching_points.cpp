@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/subspace/moving_surface.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 

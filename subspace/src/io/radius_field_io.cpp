@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/subspace/radius_field.h"
+
+#include "files/file.h"
 
 namespace orbifit {
 

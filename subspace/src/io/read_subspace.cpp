@@ -7,6 +7,7 @@
 #include "orbifit/subspace/subspace_io.h"
 
 #include "basis/rest_basis.h"
+#include "basis/subspace_parts.h"
 #include "io/basis_format.h"
 
 namespace orbifit {
@@ -32,7 +33,8 @@ std::vector<Motion> get_motions(SectionReader& section, const char* field, std::
 }
 
 // Refuses the basis of another mesh or annotation.
-void get_source(SectionReader section, const Mesh& mesh, const SymmetryAnnotation& annotation, Subspace& subspace) {
+void get_source(SectionReader section, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                SubspaceParts& subspace) {
   const auto vertices = section.integer("vertices"), faces = section.integer("faces");
   if (vertices != mesh.vertices.rows() || faces != mesh.faces.rows()) {
     section.refuse("mesh", "the basis is of a mesh of " + std::to_string(vertices) + " vertices and " +
@@ -194,7 +196,7 @@ void get_orbits(SectionReader section, const RegionMap& regions, int words, std:
   section.end();
 }
 
-void get_lift(SectionReader section, const Subspace& subspace, OrbitLift& lift) {
+void get_lift(SectionReader section, const SubspaceParts& subspace, OrbitLift& lift) {
   const auto samples = static_cast<int>(subspace.sampling.points.rows());
   const std::vector<int> sample = section.array<int>("samples");
   const std::size_t atoms = sample.size();
@@ -224,7 +226,7 @@ void get_lift(SectionReader section, const Subspace& subspace, OrbitLift& lift) 
   section.end();
 }
 
-void get_basis(SectionReader section, const Subspace& subspace, SymmetricBasis& basis) {
+void get_basis(SectionReader section, const SubspaceParts& subspace, SymmetricBasis& basis) {
   const auto rows = static_cast<int>(3 * subspace.sampling.points.rows());
   const auto columns =
       static_cast<int>(section.integer("degrees of freedom", 0, rows + 3 * subspace.regions->carriers()));
@@ -257,7 +259,8 @@ Subspace read_subspace(const std::filesystem::path& file, const Mesh& mesh, cons
                        const RunContext& context) {
   context.progress("reading the basis", 0);
   const SectionFile stored(file, kBasisFormat);
-  Subspace subspace;
+  const auto parts = std::make_shared<SubspaceParts>();
+  SubspaceParts& subspace = *parts;
   get_source(stored.section("source"), mesh, annotation, subspace);
   subspace.regions = std::make_shared<RegionMap>(mesh, annotation, context);
   get_sets(stored.section("sets"), *subspace.regions);
@@ -273,7 +276,7 @@ Subspace read_subspace(const std::filesystem::path& file, const Mesh& mesh, cons
   context.progress("reading the basis", 0.5);
   complete_rest_basis(subspace);
   context.progress("reading the basis", 1);
-  return subspace;
+  return Subspace(parts);
 }
 
 }  // namespace orbifit

@@ -4,7 +4,8 @@
 #include <bit>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
+
+#include "files/file.h"
 
 namespace orbifit {
 

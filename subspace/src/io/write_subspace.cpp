@@ -2,9 +2,10 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/model/file.h"
 #include "orbifit/subspace/subspace_io.h"
 
+#include "basis/subspace_parts.h"
+#include "files/file.h"
 #include "io/basis_format.h"
 
 namespace orbifit {
@@ -50,9 +51,9 @@ void put_source(SectionWriter& file, const Subspace& subspace, const Mesh& mesh,
   file.integer(static_cast<std::int64_t>(annotation.regions.size()));
   file.integer(static_cast<std::int64_t>(annotation.patterns.size()));
   file.integer(static_cast<std::int64_t>(annotation_checksum(annotation)));
-  file.integer(static_cast<int>(subspace.mode));
-  file.integer(static_cast<int>(subspace.lift_kind));
-  file.real(subspace.diagonal);
+  file.integer(static_cast<int>(subspace->mode));
+  file.integer(static_cast<int>(subspace->lift_kind));
+  file.real(subspace->diagonal);
 }
 
 void put_sets(SectionWriter& file, const RegionMap& regions) {
@@ -200,12 +201,12 @@ void write_subspace(const std::filesystem::path& file, const Subspace& subspace,
                     const SymmetryAnnotation& annotation) {
   SectionWriter writer(kBasisFormat, kBasisSections);
   put_source(writer, subspace, mesh, annotation);
-  put_sets(writer, *subspace.regions);
-  put_words(writer, *subspace.words);
-  put_sampling(writer, subspace.sampling);
-  put_orbits(writer, subspace.orbits);
-  put_lift(writer, subspace.lift);
-  put_basis(writer, subspace.basis);
+  put_sets(writer, *subspace->regions);
+  put_words(writer, *subspace->words);
+  put_sampling(writer, subspace->sampling);
+  put_orbits(writer, subspace->orbits);
+  put_lift(writer, subspace->lift);
+  put_basis(writer, subspace->basis);
   write_file(file, std::move(writer).finish());
 }
 

@@ -9,9 +9,9 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/moving_surface.h"
 
 #include "rest_shape/vertex_matching.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 

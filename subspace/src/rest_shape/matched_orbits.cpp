@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/topology.h"
+#include "geometry/point_index.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "orbifit/model/vertex_sets.h"
+#include "domains/vertex_sets.h"
 
 namespace orbifit {
 

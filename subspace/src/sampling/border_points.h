@@ -5,7 +5,8 @@
 #include <Eigen/Core>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/subspace/region_map.h"
+
+#include "symmetry/region_map.h"
 
 namespace orbifit {
 

@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/point_index.h"
-#include "orbifit/model/surface_index.h"
+
+#include "geometry/point_index.h"
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/sharp_features.h"
+#include "sampling/sharp_features.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/topology.h"
+
+#include "geometry/topology.h"
 
 namespace orbifit {
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "orbifit/subspace/symmetric_sampling.h"
-
 #include "sampling/border_points.h"
+#include "sampling/symmetric_sampling.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/symmetric_sampling.h"
+#include "sampling/symmetric_sampling.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include <Eigen/Geometry>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
 #include "sampling/symmetric_sampler.h"
 
 namespace orbifit {

@@ -1,4 +1,4 @@
-#include "orbifit/subspace/group_words.h"
+#include "symmetry/group_words.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit {
 

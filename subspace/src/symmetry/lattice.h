@@ -4,7 +4,8 @@
 
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
-#include "orbifit/subspace/region_map.h"
+
+#include "symmetry/region_map.h"
 
 namespace orbifit {
 

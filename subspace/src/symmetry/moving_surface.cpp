@@ -1,4 +1,4 @@
-#include "orbifit/subspace/moving_surface.h"
+#include "symmetry/moving_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,13 @@
-#include "orbifit/subspace/orbit.h"
+#include "symmetry/orbit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <unordered_map>
 
-#include "orbifit/model/dense.h"
 #include "orbifit/model/errors.h"
+
+#include "base/dense.h"
 
 namespace orbifit {
 

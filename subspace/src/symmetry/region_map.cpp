@@ -1,4 +1,4 @@
-#include "orbifit/subspace/region_map.h"
+#include "symmetry/region_map.h"
 
 #include <algorithm>
 #include <limits>

@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "orbifit/model/point_index.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "basis/subspace_parts.h"
 #include "subject.h"
 
 namespace orbifit::benchmarks {
@@ -34,8 +35,8 @@ class SoftSymmetryOn : public testing::TestWithParam<SoftCase> {
 
   // The minimum of the same energy among the displacements that are symmetric exactly: u = U q.
   Points constrained(int iterations) const {
-    const Corotation laplace = corotation(subspace_.sampling.points, 2 * subspace_.sampling.radius);
-    const Eigen::MatrixXd u = subspace_.basis.columns;
+    const Corotation laplace = corotation(subspace_->sampling.points, 2 * subspace_->sampling.radius);
+    const Eigen::MatrixXd u = subspace_->basis.columns;
     const Eigen::MatrixXd weighted = handles_.weights.asDiagonal() * Eigen::MatrixXd(handles_.rows);
     const Eigen::MatrixXd scalar = Eigen::MatrixXd(laplace.laplacian.transpose() * laplace.laplacian) +
                                    kAlpha * handles_.rows.transpose() * weighted;

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "orbifit/datasets_tools/detection_score.h"
-#include "orbifit/datasets_tools/orbit_model.h"
+
+#include "models/orbit_model.h"
 
 namespace orbifit::scored {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
-#include "orbifit/model/surface_index.h"
-#include "orbifit/model/topology.h"
+#include "base/random.h"
+#include "geometry/sampling.h"
+#include "geometry/surface_index.h"
+#include "geometry/topology.h"
 
 namespace orbifit::test {
 

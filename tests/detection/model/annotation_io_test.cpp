@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/random.h"
 
+#include "base/random.h"
+#include "files/file.h"
 #include "mesh_samples.h"
 #include "temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "closed_sets.h"
+#include "domains/closed_sets.h"
 
 #include <vector>
 

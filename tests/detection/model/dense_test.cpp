@@ -1,8 +1,8 @@
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

@@ -1,11 +1,11 @@
-#include "orbifit/model/fitted_plane.h"
+#include "geometry/fitted_plane.h"
 
 #include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
+#include "files/file.h"
 #include "mesh_samples.h"
 #include "temporary_folder.h"
 

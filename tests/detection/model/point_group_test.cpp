@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

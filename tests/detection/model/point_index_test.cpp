@@ -1,11 +1,11 @@
-#include "orbifit/model/point_index.h"
+#include "geometry/point_index.h"
 
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

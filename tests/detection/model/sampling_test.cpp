@@ -1,4 +1,4 @@
-#include "orbifit/model/sampling.h"
+#include "geometry/sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/surface_index.h"
+
+#include "geometry/surface_index.h"
 
 namespace orbifit {
 namespace {

@@ -1,4 +1,4 @@
-#include "orbifit/model/surface_index.h"
+#include "geometry/surface_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
-#include "orbifit/model/space_order.h"
+#include "base/random.h"
+#include "geometry/space_order.h"
 
 namespace orbifit {
 namespace {

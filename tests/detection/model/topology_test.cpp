@@ -1,4 +1,4 @@
-#include "orbifit/model/topology.h"
+#include "geometry/topology.h"
 
 #include <algorithm>
 #include <numeric>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

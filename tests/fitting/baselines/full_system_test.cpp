@@ -8,6 +8,7 @@
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/subspace/deformer.h"
 
+#include "basis/subspace_parts.h"
 #include "random_pulls.h"
 #include "solver/fit_system.h"
 
@@ -42,8 +43,9 @@ class FullSampling : public testing::TestWithParam<ModelCase> {
   Points solved(FullSymmetry symmetry, double weight = 1, double damping = kDamping) const {
     FullSystem system(subspace_, model_.mesh, 0.3, symmetry, weight);
     VectorXd around = VectorXd::Zero(system.unknowns());
-    around.head(subspace_.basis.columns.rows()) = subspace_.basis.columns * around_;
-    if (symmetry != FullSymmetry::none) around.tail(subspace_.basis.carried.rows()) = subspace_.basis.carried * around_;
+    around.head(subspace_->basis.columns.rows()) = subspace_->basis.columns * around_;
+    if (symmetry != FullSymmetry::none)
+      around.tail(subspace_->basis.carried.rows()) = subspace_->basis.carried * around_;
     system.rotate(around);
     return system.samples_at(
         system.solve(data_.pairs, 0.4, data_.points, data_.pulls, {0.3, damping, around}, context_).q);
@@ -133,7 +135,7 @@ TEST_P(FullSampling, FitsAreTheSameWithTwoThreadsAndKeepWhatTheyShall) {
     FullSamplingOptions options;
     options.fit.subspace = plain_options(GetParam().mode);
     options.fit.levels = 3;
-    options.fit.most_iterations = 10;
+    options.fit.max_iterations = 10;
     options.fit.scan_points = 500;
     options.symmetry = symmetry;
     const FitResult result = fit_full_sampling(input, options, context_);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 namespace {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 
+#include "base/random.h"
+#include "geometry/sampling.h"
 #include "kurz_ceres.h"
 #include "kurz_normal.h"
 #include "thin_plate.h"

@@ -173,7 +173,7 @@ TEST_F(KurzOfScan, ExplainsItAndEndsAtRest) {
   options.smooth_iterations = 0;
   const FitResult result = fitted(options);
   EXPECT_TRUE(result.converged);
-  EXPECT_GT(result.inlier_fraction, 0.95);
+  EXPECT_GT(result.inlier_ratio, 0.95);
   EXPECT_EQ(result.stopped_because.substr(0, 7), "settled") << result.stopped_because;
   EXPECT_EQ(result.iterations_in_all, static_cast<int>(result.iterations.size()));
   EXPECT_EQ(result.annotation.regions.size(), template_.truth.regions.size());
@@ -198,11 +198,11 @@ TEST_F(KurzOfScan, SymmetriesThatMayNotBeCarriedHinderIt) {
   KurzOptions options = coarse();
   options.smooth_iterations = 0;
   options.symmetry_weight = 1000;
-  const double moving = fitted(options).inlier_fraction;
+  const double moving = fitted(options).inlier_ratio;
   options.mode = GroupMode::floating;
-  const double floating = fitted(options).inlier_fraction;
+  const double floating = fitted(options).inlier_ratio;
   options.mode = GroupMode::fixed;
-  const double fixed = fitted(options).inlier_fraction;
+  const double fixed = fitted(options).inlier_ratio;
   EXPECT_GT(moving, 0.95);
   EXPECT_GT(floating, 0.95);
   EXPECT_LT(fixed, 0.8);

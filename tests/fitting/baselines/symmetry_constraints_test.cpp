@@ -7,8 +7,9 @@
 
 #include "orbifit/baselines/svd_nullspace.h"
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/model/dense.h"
 
+#include "base/dense.h"
+#include "basis/subspace_parts.h"
 #include "random_pulls.h"
 
 namespace orbifit {
@@ -34,7 +35,7 @@ TEST_P(Constraints, HoldForTheBasis) {
     const Eigen::SparseMatrix<double> constraints = symmetry_constraints(subspace);
     ASSERT_GT(constraints.rows(), 0);
     MatrixXd basis(constraints.cols(), subspace.degrees_of_freedom());
-    basis << MatrixXd(subspace.basis.columns), subspace.basis.carried;
+    basis << MatrixXd(subspace->basis.columns), subspace->basis.carried;
     EXPECT_LT((constraints * basis).cwiseAbs().maxCoeff(), 1e-12);
   }
 }

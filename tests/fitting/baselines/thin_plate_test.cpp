@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "orbifit/model/dense.h"
+#include "base/dense.h"
 
 namespace orbifit {
 namespace {

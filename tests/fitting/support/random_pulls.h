@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "orbifit/datasets_tools/generate.h"
-#include "orbifit/fitting/correspondences.h"
-#include "orbifit/model/random.h"
-#include "orbifit/model/sampling.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "base/random.h"
+#include "geometry/sampling.h"
+#include "registration/correspondences.h"
 #include "solver/pulls.h"
 
 namespace orbifit {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "orbifit/model/random.h"
+#include "base/random.h"
 
 namespace orbifit {
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <memory>
 
-#include "orbifit/model/random.h"
-#include "orbifit/subspace/carried_regions.h"
 #include "orbifit/subspace/displacement_field.h"
+
+#include "base/random.h"
+#include "basis/carried_regions.h"
+#include "basis/subspace_parts.h"
 
 namespace orbifit {
 
@@ -20,14 +22,14 @@ Subspace subspace_of(const GeneratedModel& model, GroupMode mode, double relativ
 SubspaceState random_state(const Subspace& subspace, double size, double turn) {
   Random random(11, "coordinates");
   SubspaceState state;
-  if (subspace.mode == GroupMode::moving) {
+  if (subspace->mode == GroupMode::moving) {
     const CarriedRegions regions(subspace);
     const auto angle = [&] { return turn * random.normal(); };
     const CarriedRegions::Turns turns =
         regions.turned(regions.rest(), Eigen::VectorXd::NullaryExpr(regions.freedom(), angle));
-    state.basis = std::make_shared<const CarriedBasis>(carried_basis(subspace, regions.rotations(turns)));
+    state.basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace, regions.rotations(turns)));
   }
-  const auto coordinate = [&] { return size * subspace.diagonal * random.normal(); };
+  const auto coordinate = [&] { return size * subspace->diagonal * random.normal(); };
   state.q = Eigen::VectorXd::NullaryExpr(basis_of(subspace, state).degrees_of_freedom(), coordinate);
   return state;
 }

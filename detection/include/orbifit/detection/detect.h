@@ -14,9 +14,9 @@ struct DetectOptions {
   int samples = 4000;  // >= 100
   /// Meshes of at least as many faces are looked at by a coarser stand-in, where the tolerance allows one of at most
   /// half the faces, and what is found there is carried back, refined and verified on the mesh itself; 0: none are.
-  int stand_in_from = 60000;  // >= 0
+  int simplify_above_faces = 60000;  // >= 0
   /// Stop after this many seconds and return what is verified by then.
-  double max_seconds = 0;  // >= 0; 0: no limit
+  double time_budget = 0;  // >= 0; 0: no limit
   /// Where to note what each stage kept and dropped; null: nowhere.
   Explanation* explanation = nullptr;
 

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
-#include "binary.h"
-#include "gltf.h"
-#include "text.h"
+#include "files/binary.h"
+#include "files/file.h"
+#include "files/gltf.h"
+#include "files/text.h"
 
 namespace orbifit {
 

@@ -1,8 +1,8 @@
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 #include "orbifit/model/mesh_io.h"
 
-#include "mesh_formats.h"
+#include "files/file.h"
+#include "files/mesh_formats.h"
 #include "rewrite/companions.h"
 #include "rewrite/rewriters.h"
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/file.h"
 
-#include "binary.h"
-#include "gltf.h"
+#include "files/binary.h"
+#include "files/file.h"
+#include "files/gltf.h"
 
 namespace orbifit {
 

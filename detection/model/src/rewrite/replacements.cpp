@@ -1,6 +1,6 @@
 #include "rewrite/replacements.h"
 
-#include "text.h"
+#include "files/text.h"
 
 namespace orbifit {
 

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "gltf.h"
-#include "mesh_formats.h"
+#include "files/gltf.h"
+#include "files/mesh_formats.h"
 #include "rewrite/gltf_file.h"
 #include "rewrite/rewriters.h"
 #include "rewrite/turned_normals.h"

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "files/text.h"
 #include "rewrite/replacements.h"
 #include "rewrite/rewriters.h"
 #include "rewrite/turned_normals.h"
-#include "text.h"
 
 namespace orbifit {
 

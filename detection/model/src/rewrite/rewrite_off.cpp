@@ -1,7 +1,7 @@
+#include "files/text.h"
 #include "rewrite/replacements.h"
 #include "rewrite/rewriters.h"
 #include "rewrite/turned_normals.h"
-#include "text.h"
 
 namespace orbifit {
 

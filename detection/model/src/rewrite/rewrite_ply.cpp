@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "binary.h"
-#include "mesh_formats.h"
-#include "ply.h"
+#include "files/binary.h"
+#include "files/mesh_formats.h"
+#include "files/ply.h"
+#include "files/text.h"
 #include "rewrite/replacements.h"
 #include "rewrite/rewriters.h"
 #include "rewrite/turned_normals.h"
-#include "text.h"
 
 namespace orbifit {
 

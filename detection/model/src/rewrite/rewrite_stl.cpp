@@ -1,12 +1,12 @@
 #include <cstdint>
 
-#include "binary.h"
-#include "mesh_formats.h"
+#include "files/binary.h"
+#include "files/mesh_formats.h"
+#include "files/stl.h"
+#include "files/text.h"
 #include "rewrite/replacements.h"
 #include "rewrite/rewriters.h"
 #include "rewrite/turned_normals.h"
-#include "stl.h"
-#include "text.h"
 
 namespace orbifit {
 

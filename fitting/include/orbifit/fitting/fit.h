@@ -20,7 +20,7 @@ struct FitOptions {
   SubspaceOptions subspace;
   int levels = 12;                ///< of stiffness, from stiff to soft, >= 1
   int iterations = 3;             ///< at each level, >= 1
-  int most_iterations = 80;       ///< in all, >= levels * iterations
+  int max_iterations = 80;        ///< in all, >= levels * iterations
   double first_stiffness = 10;    ///< Laplace energy against data, > last_stiffness
   double last_stiffness = 0.01;   ///< of a scan without noise; noisier ones are followed less closely, > 0
   double stretch = 0.3;           ///< weight of the stretching energy within the Laplace energy, >= 0
@@ -28,16 +28,16 @@ struct FitOptions {
   int scan_points = 4000;         ///< points of the scan used, >= 10
   double landmark_weight = 10;    ///< of one landmark or handle, against one sample's share of the data, > 0
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
-  double least_inliers = 0.5;     ///< explained share of the whole scan below which a fit failed, in [0, 1]
+  double min_inlier_ratio = 0.5;  ///< explained share of the whole scan below which a fit failed, in [0, 1]
   bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
   PlacementOptions placement;
-  double tie = 0.8;    ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
-  int most_tried = 8;  ///< of those, by their score: where there are more than `most_tied` short fits choose among them
-  int most_tied = 3;   ///< placements fitted in full, >= 1, <= most_tried
-  bool judge_groups = false;  ///< compare with a fit without groups: see group_agreement(); takes as long again
+  double tie = 0.8;   ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
+  int max_tried = 8;  ///< of those, by their score: where there are more than `max_tied` short fits choose among them
+  int max_tied = 3;   ///< placements fitted in full, >= 1, <= max_tried
+  bool judge_groups = false;  ///< compare with a fit without groups: see GroupAgreement; takes as long again
   /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
-  bool relax = false;
-  bool contacts = true;    ///< parts of the template that touch are to touch afterwards: see find_contacts()
+  bool drop_unsupported = false;
+  bool contacts = true;    ///< parts of the template that touch are to touch afterwards: held together at their joints
   bool condition = false;  ///< estimate the condition number of the last linear system
   bool align = true;       ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
 
@@ -67,28 +67,28 @@ struct FitResult {
   std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
   Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
-  std::shared_ptr<const CarriedBasis> basis;
+  std::shared_ptr<const ConjugatedBasis> basis;
   int samples = 0, degrees_of_freedom = 0;
   double condition = 0;  ///< of the last linear system, where FitOptions::condition asked for it
   std::vector<FitIteration> iterations;
   int iterations_in_all = 0;  ///< with those from other placements, which were not kept
   bool converged = false;
   std::string stopped_because;
-  double used_fraction = 1;    ///< share of the scan taken for the template's; the rest was left out as other things
-  double torn_off = 0;         ///< share left out though it hangs together with that, and so may be the template's
-  double inlier_fraction = 0;  ///< of the scan points used, within inlier_distance of the fitted surface
-  double rms = 0;              ///< of those, fraction of the fitted mesh's diagonal
-  double covered = 1;          ///< of the fitted surface that the viewpoints should have seen, the share that they saw
+  double overlap = 1;           ///< share of the scan taken for the template's; the rest was left out as other things
+  double torn_off = 0;          ///< share left out though it hangs together with that, and so may be the template's
+  double inlier_ratio = 0;      ///< of the scan points used, within inlier_distance of the fitted surface
+  double rms = 0;               ///< of those, fraction of the fitted mesh's diagonal
+  double visible_coverage = 1;  ///< of the fitted surface that the viewpoints should have seen, the share that they saw
   /// Of the fitted surface that the viewpoints have before them the share where they have nothing, neither it nor
-  /// anything behind, where that is so much that points have been cut off the scan; not in `covered`.
+  /// anything behind, where that is so much that points have been cut off the scan; not in `visible_coverage`.
   double cut_off = 0;
-  double confidence = 0;               ///< inlier_fraction * covered, less what was torn off, in [0, 1]
+  double confidence = 0;               ///< inlier_ratio * visible_coverage, less what was torn off, in [0, 1]
   double landmark_rms = 0;             ///< of landmarks and handles, fraction of the fitted mesh's diagonal
   std::vector<char> seen;              ///< #V: a scan point lies near the fitted vertex
   double hidden_fraction = 0;          ///< share of the fitted area around vertices not seen
   double field_residual = 0;           ///< worst of the regions: see orbifit::field_residual
   std::vector<GroupAgreement> groups;  ///< what the scan says of the regions' groups, where that was asked
-  std::vector<int> relaxed;            ///< ids of regions that were left out since the scan has not their symmetry
+  std::vector<int> dropped;            ///< ids of regions that were left out since the scan has not their symmetry
   std::vector<StageTime> times;
 };
 

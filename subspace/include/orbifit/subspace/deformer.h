@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -8,13 +12,21 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
-#include "orbifit/subspace/contacts.h"
-#include "orbifit/subspace/corotation.h"
+#include "orbifit/subspace/deformer.h"
 #include "orbifit/subspace/handles.h"
-#include "orbifit/subspace/laplacian_kind.h"
 #include "orbifit/subspace/subspace.h"
 
 namespace orbifit {
+
+/// The Laplacians of the samples to choose from (method notes, section 3).
+enum class LaplacianKind {
+  graph,      ///< degree less adjacency of neighbouring samples (the paper)
+  cotangent,  ///< the surface's, restricted to the samples (Huang et al. 2006)
+  point       ///< of the samples as a point cloud (Liu, Prabhakaran and Guo 2012)
+};
+
+std::string to_string(LaplacianKind kind);  ///< "graph", "cotangent", "point"
+std::optional<LaplacianKind> parse_laplacian_kind(std::string_view text);
 
 /// What a solve did.
 struct Deformation {
@@ -26,12 +38,10 @@ struct Deformation {
 
 struct DeformerOptions {
   LaplacianKind laplacian = LaplacianKind::graph;
-  /// Parts that touch at rest are to touch afterwards: see find_contacts(). Not in mode fixed, which locks parts in
-  /// place.
+  /// Parts that touch at rest are to touch afterwards: kept together by springs at their joints. Not in mode fixed,
+  /// which locks parts in place.
   bool contacts = true;
 };
-
-class Quotient;
 
 /// Iterative co-rotated Laplace editing in the symmetric subspace (paper, section 6). Factorise once for a set of
 /// handles, solve many times for where they go. All of it happens in the quotient: one rotation and one Laplace row for
@@ -54,10 +64,8 @@ class Deformer {
   /// \param start state to start from (its rotations are used), or none for the rest pose
   Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start = {}) const;
 
-  const Corotation& energy() const;
-
-  /// What is kept touching.
-  const std::vector<Contact>& contacts() const;
+  /// How many joints between parts that touch at rest are kept touching.
+  std::size_t contacts() const;
 
  private:
   struct Implementation;

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "orbifit/model/mesh.h"
-#include "orbifit/model/random.h"
+
+#include "base/random.h"
 
 namespace orbifit {
 

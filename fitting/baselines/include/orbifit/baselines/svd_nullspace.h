@@ -16,7 +16,7 @@ Eigen::MatrixXd svd_nullspace(const Eigen::SparseMatrix<double>& constraints);
 
 /// A subspace whose basis is dense, from svd_nullspace() of its symmetry_constraints(): of the null space what moves
 /// samples. \pre no groups are turned, the lift is the paper's
-Subspace with_svd_basis(Subspace subspace);
+Subspace with_svd_basis(const Subspace& subspace);
 
 struct SvdNullspaceOptions {
   FitOptions fit;            ///< its subspace's lift is taken to be the paper's

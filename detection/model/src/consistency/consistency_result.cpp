@@ -1,0 +1,154 @@
+// What is left of a consistency search: verified once more, its shapes made clean.
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include "consistency/consistency_search.h"
+
+namespace orbifit {
+
+// A last look at all pairs. \return whether anything had to go
+bool ConsistencySearch::drop_contradictions() {
+  for (const Move& move : moves_) {
+    context_.check();
+    for (std::size_t j = 0; j < regions_.size(); ++j) {
+      const KnownRegion& known = regions_[j];
+      if (known.state != State::placed || !shapes_.touch(known.shape, move.domain)) continue;
+      const bool meets = shapes_.meet(known.shape, move.domain);
+      if (!meets && move.turning && !known.place->group.continuous()) continue;
+      if (meets && shapes_.within(move.domain, known.shape) && !shapes_.within(known.shape, move.domain)) continue;
+      bool has_image = false;
+      if (move.turning) {
+        const GroupPlace turning = turning_part(*regions_[static_cast<std::size_t>(move.region)].place);
+        has_image = std::ranges::all_of(marks(*known.place), [&](const Motion& mark) {
+          return group_distance(turning, mark, turning, extent(j)) <= 10 * rounding_;
+        });
+      }
+      for (std::size_t k = 0; k < regions_.size() && !has_image && !move.turning; ++k) {
+        const KnownRegion& other = regions_[k];
+        if (other.state != State::placed || !shapes_.touch(other.shape, move.arrival)) continue;
+        if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;
+        const RegionShapes::Match match =
+            meets ? shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival)
+                  : shapes_.match(known.shape, known.shape, move.motion, other.shape, other.shape);
+        has_image = match.share >= 0.5;
+      }
+      if (has_image) continue;
+      const bool mover_is_smaller = shapes_.area(move.domain) < shapes_.area(known.shape);
+      const std::string reason = "it overlaps " + (mover_is_smaller ? label(j) : name_of(move)) +
+                                 ", and the one's group has no image of the other";
+      const Claim mover = mover_of(move);
+      const Claim loser = mover_is_smaller ? mover : Claim{false, j};
+      if (!loser.pattern && regions_[loser.number].source >= 0) {
+        regions_[loser.number].state = State::out;
+      } else {
+        refuse({loser}, {reason, {mover_is_smaller ? Claim{false, j} : mover}});
+      }
+      return true;
+    }
+  }
+  return false;
+}
+
+// Whether the groups around leave a pattern where it is.
+bool ConsistencySearch::stands(const KnownPattern& known) const {
+  KnownPattern fitted = known;
+  if (known.shapes.size() < 2 || fit_pattern(fitted)) return false;
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  for (std::size_t t = 0; t < known.shapes.size(); ++t) {
+    const Motion& before = known.pattern.instances[t].motion;
+    const Motion& now = fitted.pattern.instances[t].motion;
+    if (motion_distance(before, now, extent.centre, extent.reach) > rounding_) return false;
+  }
+  return true;
+}
+
+bool ConsistencySearch::agrees() {
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    KnownRegion& known = regions_[i];
+    if (!known.place || !stands_at(known.region, *known.place, extent(i), rounding_)) return false;
+    known.state = State::placed;
+    add_moves_of_region(i);
+  }
+  for (const KnownPattern& known : patterns_) {
+    if (!stands(known)) return false;
+  }
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    patterns_[i].state = State::placed;
+    add_moves_of_pattern(i);
+  }
+  return !drop_contradictions();
+}
+
+// Of two that overlap by a sliver the smaller loses it, and what it has outside of one that holds all but a sliver of
+// it: then each pair is disjoint, nested, or overlaps as the search has seen it.
+void ConsistencySearch::trim_slivers() {
+  struct Part {
+    std::vector<int>* faces;
+    double area;
+  };
+  const Eigen::VectorXd areas = face_areas(mesh_);
+  const auto area_of = [&](const std::vector<int>& faces) {
+    double sum = 0;
+    for (const int face : faces) sum += areas[face];
+    return sum;
+  };
+  std::vector<Part> parts;
+  for (KnownRegion& known : regions_) {
+    if (known.state == State::placed) parts.push_back({&known.region.faces, area_of(known.region.faces)});
+  }
+  for (KnownPattern& known : patterns_) {
+    if (known.state != State::placed) continue;
+    for (PatternInstance& instance : known.pattern.instances) {
+      parts.push_back({&instance.faces, area_of(instance.faces)});
+    }
+  }
+  std::ranges::stable_sort(parts, std::greater<>(), &Part::area);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    context_.check();
+    for (std::size_t j = i + 1; j < parts.size(); ++j) {
+      std::vector<int> common;
+      std::ranges::set_intersection(*parts[i].faces, *parts[j].faces, std::back_inserter(common));
+      if (common.empty() || common.size() == parts[j].faces->size()) continue;
+      const double shared = area_of(common);
+      if (shared <= RegionShapes::kSliver * parts[j].area) {
+        std::vector<int> rest;
+        std::ranges::set_difference(*parts[j].faces, common, std::back_inserter(rest));
+        *parts[j].faces = std::move(rest);
+      } else if (shared >= (1 - RegionShapes::kSliver) * parts[j].area) {
+        *parts[j].faces = std::move(common);
+      }
+    }
+  }
+}
+
+ConsistentAnnotation ConsistencySearch::result() {
+  trim_slivers();
+  ConsistentAnnotation result;
+  result.annotation = annotation_;
+  result.annotation.regions.clear();
+  result.annotation.patterns.clear();
+  int next_id = 0;
+  for (const KnownRegion& known : regions_) {
+    if (known.source < 0) next_id = std::max(next_id, known.region.id + 1);
+  }
+  for (KnownRegion& known : regions_) {
+    if (known.state != State::placed) continue;
+    if (known.source >= 0) {
+      known.region.id = next_id++;
+      ++result.added;
+    }
+    result.annotation.regions.push_back(known.region);
+  }
+  for (const KnownPattern& known : patterns_) {
+    if (known.state == State::placed) result.annotation.patterns.push_back(known.pattern);
+  }
+  set_parents(result.annotation.regions);
+  result.left_out = std::move(left_out_);
+  result.largest_movement = largest_movement_ / diagonal_;
+  return result;
+}
+
+}  // namespace orbifit

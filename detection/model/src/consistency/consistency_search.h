@@ -1,0 +1,198 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "orbifit/model/consistent_annotation.h"
+
+#include "consistency/group_place.h"
+#include "consistency/region_shapes.h"
+#include "domains/closed_sets.h"
+
+namespace orbifit {
+
+/// Thresholds of consistent_annotation(). Lengths count in the annotation's tolerance.
+struct ConsistencyPolicy {
+  /// How far the image of a region's surface may lie from the surface that it stands for: the region that is moved, the
+  /// group that moves it and the other region are each that far off, rarely all in one direction.
+  double reach = 2.5;
+  /// How far the image of a group may be from the group that it stands for, on the region's extent.
+  double same_group = 4;
+  /// How far a group may be moved on its region.
+  double movement = 2;
+  /// Share of a region's samples that must arrive for two regions to be images of one another: borders of regions are
+  /// drawn face by face, and detection ends them within a few tolerances.
+  double arrived = 0.6;
+  /// Share of the samples of an added image that its group must keep, and of its source's area that it must have.
+  double kept = 0.85;
+  /// A pattern whose residual is below this share of a region's is right about directions.
+  double far_more_exact = 0.1;
+  /// Share of its area that a region must keep where it gives up what another takes of it.
+  double left = 0.5;
+  /// To what positions are told, as a fraction of the diagonal: what files of single precision hold.
+  double told = 1e-6;
+  /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.
+  double exact = 1e-13;
+  /// Searches at most for what to keep of claims that contradict one another, times regions, times faces: what takes
+  /// about two seconds.
+  double work = 4e6;
+};
+
+/// What need not be told once a region, or a pattern, is kept: the area that follows from the rest, of a region all but
+/// the share that its group repeats, of a pattern all instances but the largest, times the bits of each position that
+/// follow, which are the fewer the larger the residual is.
+double saving_of(double area, const PointGroup& group, const Residual& residual);
+double saving_of(const std::vector<double>& areas, const Residual& residual);
+
+/// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
+struct Refused {
+  std::vector<Claim> claims;  ///< not empty
+  std::string reason;
+  double saving = 0;                        ///< what they would have saved
+  std::vector<std::vector<Claim>> against;  ///< families that are in the way, of which leaving out one may do
+};
+
+/// What one search keeps.
+struct ConsistencyOutcome {
+  ConsistentAnnotation kept;
+  double saving = 0;  ///< of all that is kept
+  std::vector<Refused> refused;
+
+  double refused_saving() const {
+    double sum = 0;
+    for (const Refused& each : refused) sum += each.saving;
+    return sum;
+  }
+};
+
+/// Whether the region's elements are, to `tolerance`, those of its group at `place`.
+bool stands_at(const Region& region, const GroupPlace& place, const Extent& extent, double tolerance);
+
+/// Regions and patterns on the way to a consistent annotation, largest first. See consistent_annotation().
+class ConsistencySearch {
+ public:
+  /// \param shapes  of the regions' faces, then of the patterns' instances' (shapes_of()); more are added
+  /// \param excluded  what is left out from the start, and why
+  ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, RegionShapes& shapes,
+                    const std::map<Claim, std::string>& excluded, const RunContext& context);
+  ~ConsistencySearch();
+  ConsistencySearch(const ConsistencySearch&) = delete;
+  ConsistencySearch& operator=(const ConsistencySearch&) = delete;
+
+  static RegionShapes shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation);
+
+  /// Whether all regions and patterns agree as they are, to rounding: nothing is to be done then.
+  bool agrees();
+
+  /// \param wanted  the search ends early, with an outcome that holds what was refused until then, when this is refused
+  ConsistencyOutcome run(std::optional<Claim> wanted = {});
+
+  /// See saving_of().
+  double saving(const Claim& claim) const;
+
+ private:
+  enum class State { waiting, placed, out };
+  struct KnownRegion {
+    Region region;
+    int shape = -1;
+    std::optional<GroupPlace> place;
+    State state = State::waiting;
+    int source = -1;         // of an added image: number of the region it is the image of
+    std::size_t family = 0;  // number of the family's first
+  };
+  struct KnownPattern {
+    Pattern pattern;
+    std::vector<int> shapes;  // of the instances
+    State state = State::waiting;
+  };
+  // A motion that takes what lies in one shape to another.
+  struct Move {
+    int domain, arrival;
+    Motion motion;
+    int region, pattern;   // whose it is; -1
+    bool turning = false;  // stands for all rotations of a continuous group
+  };
+  struct Member {
+    std::size_t region;
+    Motion way;  // from the family's first
+  };
+  // Regions that the moves so far take to one another, and what they ask of the first.
+  struct Family {
+    std::vector<Member> members;
+    std::vector<Tie> ties;
+    std::vector<std::size_t> replaced;  // waiting regions whose place added images take
+    std::vector<Claim> asking;          // whose motions the ties are of
+  };
+  // Why something cannot be placed, and what is in its way.
+  struct Refusal {
+    std::string reason;
+    std::vector<Claim> by;
+    std::optional<std::size_t> across{};  // the region that overlaps `shape`, where neither holds the other
+    int shape = -1;
+  };
+  using Verdict = std::optional<Refusal>;  // nothing: it can
+
+  double length(double tolerances) const { return tolerances * tolerance_; }
+  const Extent& extent(std::size_t region) const { return shapes_.extent(regions_[region].shape); }
+  std::string name_of(const Move& move) const;
+  std::string label(std::size_t region) const;
+
+  void place_family(std::size_t first);
+  bool trim(std::size_t region, int other);
+  bool trim_alike(const Family& family);
+  Verdict gather(std::size_t first, Family& family);
+  Verdict follow(const Move& move, std::size_t from, Family& family);
+  Verdict turn_with(const Move& move, std::size_t at, Family& family) const;
+  Verdict add_image(const Move& move, std::size_t at, Family& family);
+  Verdict ask_of_overlaps(Family& family);
+  std::optional<std::size_t> image_region(std::size_t region, int domain, const Motion& motion, int arrival) const;
+  std::optional<std::size_t> nearest_image(std::size_t region, int domain, const Motion& motion, int arrival) const;
+  std::vector<Eigen::Vector3d> exact_steps(std::size_t region) const;
+  Verdict accept_family(const Family& family);
+  void leave_out_region(std::size_t region, const std::string& reason);
+  void refuse(std::vector<Claim> claims, const Refusal& refusal);
+  std::vector<Claim> family_of(const Claim& claim) const;
+  bool is_everything(const Claim& claim) const;
+  double saving(std::size_t region) const;
+  Claim mover_of(const Move& move) const;
+
+  void place_pattern(std::size_t number);
+  Verdict fit_pattern(KnownPattern& known) const;
+  std::optional<std::string> fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
+                                        const std::vector<int>& roots,
+                                        const std::vector<std::vector<Motion>>& stabilisers) const;
+  std::optional<std::string> fit_lattice(KnownPattern& known, const std::vector<Motion>& normalisers) const;
+  Motion with_told_directions(const KnownPattern& known, const Motion& motion) const;
+  bool symmetry_of_instance(const KnownPattern& known, const Motion& motion) const;
+  void leave_out_pattern(std::size_t number, const std::string& reason);
+  bool stands(const KnownPattern& known) const;
+
+  void add_moves_of_region(std::size_t region);
+  void add_moves_of_pattern(std::size_t pattern);
+  bool drop_contradictions();
+  void trim_slivers();
+  ConsistentAnnotation result();
+  double total_saving() const;
+
+  const Mesh& mesh_;
+  const SymmetryAnnotation& annotation_;
+  const RunContext& context_;
+  ConsistencyPolicy policy_;
+  double diagonal_;
+  double tolerance_;  // mesh units
+  double rounding_;   // mesh units
+  RegionShapes& shapes_;
+  int given_shapes_;
+  std::vector<KnownRegion> regions_;
+  std::vector<KnownPattern> patterns_;
+  std::vector<Move> moves_;
+  std::vector<LeftOut> left_out_;
+  std::vector<Refused> refused_;
+  double largest_movement_ = 0;  // mesh units
+};
+
+}  // namespace orbifit

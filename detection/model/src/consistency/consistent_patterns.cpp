@@ -1,0 +1,337 @@
+// Patterns in a consistent annotation.
+
+#include <algorithm>
+#include <cmath>
+
+#include "consistency/consistency_search.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr std::size_t kMostStabilisers = 120;
+
+double distance(const Motion& a, const Motion& b, const Extent& extent) {
+  return motion_distance(a, b, extent.centre, extent.reach);
+}
+
+void add_rows(const Motion& a, const Motion& b, const Extent& extent, std::vector<double>& rows) {
+  const Eigen::Matrix3d linear = extent.reach * (a.linear - b.linear);
+  const Vector3d moved = a(extent.centre) - b(extent.centre);
+  rows.insert(rows.end(), linear.data(), linear.data() + 9);
+  rows.insert(rows.end(), moved.data(), moved.data() + 3);
+}
+
+VectorXd as_vector(const std::vector<double>& rows) {
+  return Eigen::Map<const VectorXd>(rows.data(), static_cast<Index>(rows.size()));
+}
+
+// All products, as far as they are few.
+std::vector<Motion> closure(const std::vector<Motion>& generators, const Extent& extent, double same) {
+  std::vector<Motion> result{Motion{}};
+  for (std::size_t head = 0; head < result.size() && result.size() < kMostStabilisers; ++head) {
+    for (const Motion& generator : generators) {
+      const Motion product = generator * result[head];
+      if (std::ranges::none_of(result, [&](const Motion& m) { return distance(m, product, extent) <= same; })) {
+        result.push_back(product);
+      }
+    }
+  }
+  return result;
+}
+
+// A turn by x / reach about the extent's centre, then a shift.
+Motion small_motion(const VectorXd& x, const Extent& extent) {
+  const Vector3d turn = x.head<3>() / extent.reach;
+  const double angle = turn.norm();
+  Motion result;
+  if (angle > 0) result = Motion::rotation(turn / angle, angle, extent.centre);
+  result.translation += x.tail<3>();
+  return result;
+}
+
+// generator^count.
+Motion power(const Motion& generator, int count) {
+  const Motion step = count < 0 ? inverse(generator) : generator;
+  Motion result;
+  for (int k = 0; k < std::abs(count); ++k) result = step * result;
+  return result;
+}
+
+}  // namespace
+
+// Whether it is, to rounding, an element of a region that holds the first instance.
+bool ConsistencySearch::symmetry_of_instance(const KnownPattern& known, const Motion& motion) const {
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  if (distance(motion, Motion{}, extent) <= rounding_) return true;
+  return std::ranges::any_of(regions_, [&](const KnownRegion& region) {
+    return region.state != State::out && shapes_.same(known.shapes[0], region.shape) &&
+           std::ranges::any_of(region.region.elements,
+                               [&](const Motion& element) { return distance(motion, element, extent) <= rounding_; });
+  });
+}
+
+// Copies whose directions differ by less than what positions are told to are as the groups around have it, or alike:
+// where copies touch, going round them would turn a point by that little.
+Motion ConsistencySearch::with_told_directions(const KnownPattern& known, const Motion& motion) const {
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  const auto alike = [&](const Eigen::Matrix3d& linear) {
+    return extent.reach * (motion.linear - linear).norm() <= policy_.told * diagonal_;
+  };
+  const auto turned = [&](const Eigen::Matrix3d& linear) {
+    return Motion{linear, motion(extent.centre) - linear * extent.centre};
+  };
+  if (alike(Eigen::Matrix3d::Identity())) return turned(Eigen::Matrix3d::Identity());
+  for (const KnownRegion& region : regions_) {
+    if (region.state != State::placed || !shapes_.within(known.shapes[0], region.shape)) continue;
+    for (const Motion& element : region.region.elements) {
+      if (alike(element.linear)) return turned(element.linear);
+    }
+  }
+  return motion;
+}
+
+// Copies that the groups around take to one another stand where those take them; between others the motion takes what
+// keeps the one to what keeps the other.
+std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
+                                                         const std::vector<int>& roots,
+                                                         const std::vector<std::vector<Motion>>& stabilisers) const {
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  const double near = length(policy_.same_group);
+  const std::vector<Motion> own = closure(stabilisers[0], extent, near);
+  for (std::size_t t = 1; t < known.shapes.size(); ++t) {
+    Motion& motion = known.pattern.instances[t].motion;
+    const auto root = static_cast<std::size_t>(roots[t]);
+    if (root != t) {
+      const Motion due = ways[t] * known.pattern.instances[root].motion;
+      if (!symmetry_of_instance(known, inverse(due) * motion)) motion = due;
+      continue;
+    }
+    motion = with_told_directions(known, motion);
+    struct Pair {
+      Motion there, here;
+    };
+    std::vector<Pair> pairs;
+    const std::vector<Motion> others = closure(stabilisers[t], shapes_.extent(known.shapes[t]), near);
+    const auto pair_up = [&](const std::vector<Motion>& from, const std::vector<Motion>& to, bool forth) {
+      return std::ranges::all_of(from, [&](const Motion& stabiliser) {
+        const Motion seen = conjugate(forth ? motion : inverse(motion), stabiliser);
+        const Extent& on = forth ? shapes_.extent(known.shapes[t]) : extent;
+        const auto nearest = std::ranges::min_element(to, {}, [&](const Motion& m) { return distance(m, seen, on); });
+        if (distance(*nearest, seen, on) > near) return false;
+        pairs.push_back(forth ? Pair{*nearest, stabiliser} : Pair{stabiliser, *nearest});
+        return true;
+      });
+    };
+    if (!pair_up(own, others, true) || !pair_up(others, own, false)) {
+      return "the groups around it keep one of its instances and not the others";
+    }
+    const Motion before = motion;
+    const auto hard = [&](const VectorXd& x) {
+      std::vector<double> rows;
+      const Motion now = small_motion(x, shapes_.extent(known.shapes[t])) * before;
+      for (const Pair& pair : pairs) add_rows(pair.there * now, now * pair.here, extent, rows);
+      return as_vector(rows);
+    };
+    const VectorXd missed = hard(VectorXd::Zero(6));
+    if (missed.size() == 0 || missed.cwiseAbs().maxCoeff() <= rounding_) continue;
+    const auto soft = [&](const VectorXd& x) { return x; };
+    const VectorXd x = nearest_solution(6, hard, soft, extent.reach);
+    motion = small_motion(x, shapes_.extent(known.shapes[t])) * before;
+    if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its motions cannot agree with the groups around it";
+    if (distance(motion, before, extent) > length(policy_.movement)) {
+      return "to agree with the groups around it its motions would have to change by more than the tolerance";
+    }
+  }
+  return std::nullopt;
+}
+
+// What takes the instances to one another takes steps to steps, forward or back.
+std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
+                                                          const std::vector<Motion>& normalisers) const {
+  Pattern& pattern = known.pattern;
+  const Extent& extent = shapes_.extent(known.shapes[0]);
+  const double near = length(policy_.same_group);
+  const auto count = static_cast<Index>(pattern.generators.size());
+  const bool translations = std::ranges::all_of(
+      pattern.generators, [](const Motion& g) { return (g.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9; });
+  const auto at = [&](const VectorXd& x) {
+    std::vector<Motion> result = pattern.generators;
+    for (Index g = 0; g < count; ++g) {
+      Motion& step = result[static_cast<std::size_t>(g)];
+      if (translations) {
+        step.linear.setIdentity();
+        step.translation += x.segment<3>(3 * g);
+      } else {
+        step = conjugate(small_motion(x.segment<6>(0), extent), step);
+      }
+    }
+    return result;
+  };
+  struct Asked {
+    std::size_t normaliser, from;
+    std::vector<int> counts;  // of each generator
+  };
+  std::vector<Asked> asked;
+  const auto product = [&](const std::vector<Motion>& steps, const std::vector<int>& counts) {
+    Motion result;
+    for (std::size_t g = 0; g < steps.size(); ++g) result = result * power(steps[g], counts[g]);
+    return result;
+  };
+  std::vector<std::vector<int>> candidates;
+  for (int a = -1; a <= 1; ++a) {
+    for (int b = count > 1 ? -1 : 0; b <= (count > 1 ? 1 : 0); ++b) {
+      for (int c = count > 2 ? -1 : 0; c <= (count > 2 ? 1 : 0); ++c) {
+        std::vector<int> counts{a, b, c};
+        counts.resize(static_cast<std::size_t>(count));
+        candidates.push_back(counts);
+      }
+    }
+  }
+  for (std::size_t n = 0; n < normalisers.size(); ++n) {
+    for (std::size_t g = 0; g < pattern.generators.size(); ++g) {
+      const Motion image = conjugate(normalisers[n], pattern.generators[g]);
+      const auto best = std::ranges::min_element(candidates, {}, [&](const std::vector<int>& counts) {
+        return distance(product(pattern.generators, counts), image, extent);
+      });
+      if (distance(product(pattern.generators, *best), image, extent) > near) {
+        return "the groups around it do not keep its steps";
+      }
+      asked.push_back({n, g, *best});
+    }
+  }
+  const auto hard = [&](const VectorXd& x) {
+    std::vector<double> rows;
+    const std::vector<Motion> steps = at(x);
+    for (const Asked& each : asked) {
+      add_rows(conjugate(normalisers[each.normaliser], steps[each.from]), product(steps, each.counts), extent, rows);
+    }
+    return as_vector(rows);
+  };
+  const Index unknowns = translations ? 3 * count : 6;
+  const VectorXd missed = hard(VectorXd::Zero(unknowns));
+  if (missed.size() == 0 || missed.cwiseAbs().maxCoeff() <= rounding_) return std::nullopt;
+  const auto soft = [](const VectorXd& x) { return x; };
+  const VectorXd x = nearest_solution(unknowns, hard, soft, extent.reach);
+  if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its steps cannot agree with the groups around it";
+  const std::vector<Motion> before = pattern.generators;
+  const std::vector<Motion> steps = at(x);
+  // Instances are products of steps: counted with the steps as they were, put together of the new ones.
+  for (PatternInstance& instance : pattern.instances) {
+    const int most = static_cast<int>(pattern.instances.size());
+    std::vector<int> best_counts(before.size(), 0);
+    if (translations) {
+      Eigen::MatrixXd columns(3, count);
+      for (Index g = 0; g < count; ++g) columns.col(g) = before[static_cast<std::size_t>(g)].translation;
+      const VectorXd counts = columns.colPivHouseholderQr().solve(instance.motion.translation);
+      for (Index g = 0; g < count; ++g)
+        best_counts[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
+    } else {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int k = -most; k <= most; ++k) {
+        const double d = distance(power(before[0], k), instance.motion, extent);
+        if (d < nearest) {
+          nearest = d;
+          best_counts[0] = k;
+        }
+      }
+    }
+    const Motion moved = product(steps, best_counts);
+    if (distance(moved, instance.motion, extent) > length(policy_.movement)) {
+      return "to agree with the groups around it its steps would have to change by more than the tolerance";
+    }
+    instance.motion = moved;
+  }
+  pattern.generators = steps;
+  return std::nullopt;
+}
+
+ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
+  std::vector<Claim> asking;
+  const std::size_t count = known.shapes.size();
+  std::vector<Motion> ways(count);
+  std::vector<int> roots(count, -1);
+  std::vector<std::vector<Motion>> stabilisers(count);  // of the roots
+  std::vector<Motion> normalisers;
+  struct Edge {
+    std::size_t from, to;
+    Motion motion;
+  };
+  std::vector<Edge> edges;
+  for (std::size_t root = 0; root < count; ++root) {
+    if (roots[root] >= 0) continue;
+    roots[root] = static_cast<int>(root);
+    std::vector<std::size_t> queue{root};
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      const std::size_t t = queue[head];
+      for (const Move& move : moves_) {
+        const bool meets = shapes_.meet(known.shapes[t], move.domain);
+        // What merely touches it need not come along, but where it does the two agree.
+        if (!meets && (move.turning || !shapes_.touch(known.shapes[t], move.domain))) continue;
+        if (move.turning && shapes_.same(known.shapes[t], move.domain)) continue;
+        if (shapes_.within(move.domain, known.shapes[t]) && !shapes_.within(known.shapes[t], move.domain)) continue;
+        std::size_t to = count;
+        double best = std::numeric_limits<double>::infinity();
+        for (std::size_t s = 0; s < count; ++s) {
+          if (!(meets ? shapes_.meet(known.shapes[s], move.arrival) : shapes_.touch(known.shapes[s], move.arrival)))
+            continue;
+          const int domain = meets ? move.domain : known.shapes[t];
+          const int arrival = meets ? move.arrival : known.shapes[s];
+          const auto match = shapes_.match(known.shapes[t], domain, move.motion, known.shapes[s], arrival);
+          if (match.share < policy_.arrived || match.distance >= best) continue;
+          best = match.distance;
+          to = s;
+        }
+        if (to == count && !meets) continue;
+        if (to == count) {
+          return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
+        }
+        if (std::ranges::find(asking, mover_of(move)) == asking.end()) asking.push_back(mover_of(move));
+        if (move.region >= 0) normalisers.push_back(move.motion);
+        edges.push_back({t, to, move.motion});
+        if (roots[to] < 0) {
+          roots[to] = static_cast<int>(root);
+          ways[to] = move.motion * ways[t];
+          queue.push_back(to);
+        } else {
+          const Motion stabiliser = inverse(ways[to]) * move.motion * ways[t];
+          const Extent& extent = shapes_.extent(known.shapes[root]);
+          if (distance(stabiliser, Motion{}, extent) > rounding_) stabilisers[root].push_back(stabiliser);
+        }
+      }
+    }
+  }
+  const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
+  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers)) {
+    return Refusal{*reason, asking};
+  }
+  // To go by the groups around and come back by the steps keeps the first instance: in finitely many ways.
+  std::vector<Motion> returns;
+  const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };
+  for (const Edge& edge : edges) returns.push_back(inverse(place(edge.to)) * edge.motion * place(edge.from));
+  const Extent& first = shapes_.extent(known.shapes[0]);
+  if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMostStabilisers) {
+    return Refusal{"its steps and the groups around it do not close", asking};
+  }
+  return std::nullopt;
+}
+
+void ConsistencySearch::place_pattern(std::size_t number) {
+  KnownPattern fitted = patterns_[number];
+  Verdict refusal;
+  if (fitted.shapes.size() < 2) refusal = Refusal{"it has fewer than two instances", {}};
+  if (!refusal) refusal = fit_pattern(fitted);
+  if (refusal) {
+    refuse({{true, number}}, *refusal);
+    return;
+  }
+  patterns_[number] = std::move(fitted);
+  patterns_[number].state = State::placed;
+  add_moves_of_pattern(number);
+}
+
+}  // namespace orbifit

@@ -1,0 +1,316 @@
+#include "consistency/region_shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "base/disjoint_sets.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kSamples = 64;  // of a shape: shares to two per cent
+
+// A number for each vertex; the same for those at one position whose faces meet in an edge of two faces.
+std::vector<int> numbered_points(const Mesh& mesh) {
+  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int v) {
+    return std::array<double, 3>{mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
+  };
+  std::ranges::sort(order, {}, key);
+  std::vector<int> position(count);
+  int number = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && key(order[i]) != key(order[i - 1])) ++number;
+    position[static_cast<std::size_t>(order[i])] = number;
+  }
+  struct Side {
+    std::array<int, 2> ends, vertices;
+  };
+  std::vector<Side> sides;
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (int k = 0; k < 3; ++k) {
+      std::array<int, 2> vertices{mesh.faces(face, k), mesh.faces(face, (k + 1) % 3)};
+      std::array<int, 2> ends{position[static_cast<std::size_t>(vertices[0])],
+                              position[static_cast<std::size_t>(vertices[1])]};
+      if (ends[0] > ends[1]) {
+        std::swap(ends[0], ends[1]);
+        std::swap(vertices[0], vertices[1]);
+      }
+      if (ends[0] != ends[1]) sides.push_back({ends, vertices});
+    }
+  }
+  std::ranges::sort(sides, {}, &Side::ends);
+  DisjointSets sets(count);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    for (std::size_t k = 0; end == i + 2 && k < 2; ++k) {
+      sets.unite(sides[i].vertices[k], sides[i + 1].vertices[k]);
+    }
+    i = end;
+  }
+  std::vector<int> result(count);
+  for (std::size_t v = 0; v < count; ++v) result[v] = sets.root(static_cast<int>(v));
+  return result;
+}
+
+// Whether some element turns the axis over.
+bool swaps_ends(const PointGroup& group) {
+  using Family = PointGroup::Family;
+  return group.family == Family::Cinfh || group.family == Family::Dinf || group.family == Family::Dinfh;
+}
+
+// The van der Corput sequence: evenly spread numbers in [0, 1).
+double spread(int number, int base) {
+  double result = 0;
+  double digit = 1;
+  for (int n = number; n > 0; n /= base) {
+    digit /= base;
+    result += digit * (n % base);
+  }
+  return result;
+}
+
+}  // namespace
+
+RegionShapes::RegionShapes(const Mesh& mesh, double near)
+    : mesh_(mesh),
+      near_(near),
+      diagonal_(diagonal(mesh.vertices)),
+      origin_(bounding_box_centre(mesh.vertices)),
+      point_of_vertex_(numbered_points(mesh)),
+      areas_(face_areas(mesh)),
+      centroids_(face_centroids(mesh)) {}
+
+int RegionShapes::add(const std::vector<int>& faces) {
+  Shape shape;
+  shape.faces = faces;
+  shape.holds.assign(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  Vector3d sum = Vector3d::Zero();
+  for (const int face : faces) {
+    shape.holds[static_cast<std::size_t>(face)] = 1;
+    shape.area += areas_[face];
+    sum += areas_[face] * centroids_.row(face).transpose();
+    for (const int vertex : mesh_.faces.row(face)) {
+      shape.box.extend(mesh_.vertices.row(vertex).transpose());
+      shape.points.push_back(point_of_vertex_[static_cast<std::size_t>(vertex)]);
+    }
+  }
+  std::ranges::sort(shape.points);
+  shape.points.erase(std::unique(shape.points.begin(), shape.points.end()), shape.points.end());
+  if (faces.empty()) {
+    shape.extent = {Vector3d::Zero(), diagonal_};
+  } else {
+    shape.extent.centre = shape.area > 0 ? Vector3d(sum / shape.area) : shape.box.center();
+    for (const int face : faces) {
+      for (const int vertex : mesh_.faces.row(face)) {
+        const double reach = (mesh_.vertices.row(vertex).transpose() - shape.extent.centre).norm();
+        shape.extent.reach = std::max(shape.extent.reach, reach);
+      }
+    }
+    shape.extent.reach = std::max(shape.extent.reach, 1e-9 * diagonal_);
+  }
+  shape.moments = moments_of_faces(mesh_, faces, origin_);
+  sample(shape);
+  shapes_.push_back(std::move(shape));
+  return count() - 1;
+}
+
+// One sample in each of as many parts of equal area.
+void RegionShapes::sample(Shape& shape) const {
+  if (!(shape.area > 0)) return;
+  shape.samples.resize(kSamples, 3);
+  double before = 0;
+  std::size_t at = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const double due = (k + 0.5) / kSamples * shape.area;
+    while (at + 1 < shape.faces.size() && before + areas_[shape.faces[at]] < due) before += areas_[shape.faces[at++]];
+    const int face = shape.faces[at];
+    const double root = std::sqrt(spread(k + 1, 2));
+    const double side = spread(k + 1, 3);
+    const auto corner = [&](int c) { return Vector3d(mesh_.vertices.row(mesh_.faces(face, c)).transpose()); };
+    shape.samples.row(k) =
+        ((1 - root) * corner(0) + root * (1 - side) * corner(1) + root * side * corner(2)).transpose();
+    shape.sample_faces.push_back(face);
+  }
+}
+
+const SurfaceIndex& RegionShapes::index(int shape) const {
+  const Shape& known = at(shape);
+  if (!known.index) known.index = std::make_unique<SurfaceIndex>(mesh_, known.faces);
+  return *known.index;
+}
+
+double RegionShapes::common_area(int a, int b) const {
+  const Shape& later = at(std::max(a, b));
+  const auto other = static_cast<std::size_t>(std::min(a, b));
+  if (later.common.size() <= other) later.common.resize(static_cast<std::size_t>(std::max(a, b)) + 1, -1);
+  double& known = later.common[other];
+  if (known >= 0) return known;
+  const bool first = at(a).faces.size() < at(b).faces.size();
+  const Shape& few = first ? at(a) : at(b);
+  const Shape& many = first ? at(b) : at(a);
+  known = 0;
+  for (const int face : few.faces) {
+    if (many.holds[static_cast<std::size_t>(face)] != 0) known += areas_[face];
+  }
+  return known;
+}
+
+PieceMoments RegionShapes::common_moments(int a, int b) const {
+  if (at(b).faces.size() == static_cast<std::size_t>(mesh_.faces.rows())) return at(a).moments;
+  std::vector<int> common;
+  for (const int face : at(a).faces) {
+    if (at(b).holds[static_cast<std::size_t>(face)] != 0) common.push_back(face);
+  }
+  return common.size() == at(a).faces.size() ? at(a).moments : moments_of_faces(mesh_, common, origin_);
+}
+
+bool RegionShapes::meet(int a, int b) const {
+  return common_area(a, b) > kSliver * std::min(area(a), area(b));
+}
+
+bool RegionShapes::touch(int a, int b) const {
+  if (meet(a, b)) return true;
+  const std::vector<int>& here = at(a).points;
+  const std::vector<int>& there = at(b).points;
+  auto i = here.begin();
+  auto j = there.begin();
+  while (i != here.end() && j != there.end()) {
+    if (*i == *j) return true;
+    *i < *j ? ++i : ++j;
+  }
+  return false;
+}
+
+std::vector<int> RegionShapes::faces_at(int a, int b) const {
+  const std::vector<int>& points = at(b).points;
+  std::vector<int> result;
+  for (const int face : at(a).faces) {
+    const auto shared = [&](int vertex) {
+      return std::ranges::binary_search(points, point_of_vertex_[static_cast<std::size_t>(vertex)]);
+    };
+    if (std::ranges::any_of(mesh_.faces.row(face), shared)) result.push_back(face);
+  }
+  return result;
+}
+
+bool RegionShapes::within(int inner, int outer) const {
+  return common_area(inner, outer) >= (1 - kSliver) * area(inner);
+}
+
+RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& motion, int to, int arrival) const {
+  const auto arriving = [&](int shape, int within, const Motion& way, int target) {
+    const Shape& source = at(shape);
+    const std::vector<char>& holds = at(within).holds;
+    const auto taken = std::ranges::count_if(source.sample_faces,
+                                             [&](int face) { return holds[static_cast<std::size_t>(face)] != 0; });
+    if (taken == 0) return 0.0;
+    std::ptrdiff_t missed = 0;
+    for (std::size_t k = 0; k < source.sample_faces.size() && 2 * missed <= taken; ++k) {
+      if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
+      const Vector3d image = way(source.samples.row(static_cast<Eigen::Index>(k)).transpose());
+      const bool arrived = at(target).box.exteriorDistance(image) <= near_ && index(target).within(image, near_);
+      missed += arrived ? 0 : 1;
+    }
+    return 1 - static_cast<double>(missed) / static_cast<double>(taken);  // or hopeless
+  };
+  Match result;
+  result.share = arriving(from, domain, motion, to);
+  if (result.share < 0.5) return result;
+  result.share = std::min(result.share, arriving(to, arrival, inverse(motion), from));
+  const Motion told{Eigen::Matrix3d::Identity(), -origin_};
+  result.distance =
+      separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival), diagonal_);
+  return result;
+}
+
+std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
+  const Motion back = inverse(motion);
+  std::vector<int> result;
+  for (const int face : at(arrival).faces) {
+    const Vector3d origin = back(centroids_.row(face).transpose());
+    if (at(from).box.exteriorDistance(origin) > near_) continue;
+    const auto nearest = index(domain).nearest(origin, near_);
+    if (nearest.face >= 0 && at(from).holds[static_cast<std::size_t>(nearest.face)] != 0) result.push_back(face);
+  }
+  return result;
+}
+
+std::vector<int> RegionShapes::without_orbit(int shape, const std::vector<int>& taken, const GroupPlace& place) {
+  std::vector<char> gone(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  for (const int face : taken) gone[static_cast<std::size_t>(face)] = 1;
+  if (place.group.continuous()) {
+    // Those as far from the axis, and along it, as one that is taken.
+    const Vector3d axis = place.frame.col(2);
+    using Cell = std::pair<long, long>;
+    const auto cell_of = [&](int face) {
+      const Vector3d offset = centroids_.row(face).transpose() - place.centre;
+      if (!place.group.has_axis()) return Cell(std::lround(offset.norm() / near_), 0);
+      const double along = offset.dot(axis);
+      return Cell(std::lround((offset - along * axis).norm() / near_), std::lround(along / near_));
+    };
+    std::set<Cell> cells;
+    for (const int face : taken) {
+      const Cell cell = cell_of(face);
+      for (long r = -1; r <= 1; ++r) {
+        for (long z = -1; z <= 1; ++z) {
+          cells.emplace(cell.first + r, cell.second + z);
+          if (swaps_ends(place.group)) cells.emplace(cell.first + r, -cell.second + z);
+        }
+      }
+    }
+    for (const int face : at(shape).faces) {
+      if (cells.contains(cell_of(face))) gone[static_cast<std::size_t>(face)] = 1;
+    }
+  } else {
+    const int away = add(taken);
+    for (const Motion& motion : members(place)) {
+      for (const int face : image_faces(away, shape, motion, shape)) gone[static_cast<std::size_t>(face)] = 1;
+    }
+    keep(away);
+  }
+  std::vector<int> result;
+  for (const int face : at(shape).faces) {
+    if (gone[static_cast<std::size_t>(face)] == 0) result.push_back(face);
+  }
+  return result;
+}
+
+double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double near) const {
+  const Shape& known = at(shape);
+  if (known.sample_faces.empty()) return 0;
+  int all = 0;
+  for (Eigen::Index k = 0; k < known.samples.rows(); ++k) {
+    const Vector3d sample = known.samples.row(k).transpose();
+    if (std::ranges::all_of(motions, [&](const Motion& motion) { return index(shape).within(motion(sample), near); }))
+      ++all;
+  }
+  return static_cast<double>(all) / static_cast<double>(known.samples.rows());
+}
+
+Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) const {
+  Residual result;
+  double count = 0;
+  for (const Motion& motion : motions) {
+    for (Eigen::Index k = 0; k < at(shape).samples.rows(); ++k) {
+      const double distance = index(shape).nearest(motion(at(shape).samples.row(k).transpose())).distance / diagonal_;
+      result.rms += distance * distance;
+      result.max = std::max(result.max, distance);
+      ++count;
+    }
+  }
+  if (count > 0) result.rms = std::sqrt(result.rms / count);
+  return result;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "orbifit/model/annotation.h"
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+
+#include "consistency/group_place.h"
+#include "domains/piece_moments.h"
+#include "geometry/surface_index.h"
+
+namespace orbifit {
+
+/// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by
+/// less than a fiftieth of the smaller one's area is a sliver: borders drawn face by face overlap by that much by
+/// chance.
+class RegionShapes {
+ public:
+  /// \param near how far an image may lie from the surface, mesh units
+  RegionShapes(const Mesh& mesh, double near);
+
+  /// \return the number of the new shape
+  int add(const std::vector<int>& faces);
+  /// Takes away the shapes from number `count` on.
+  void keep(int count) { shapes_.resize(static_cast<std::size_t>(count)); }
+  int count() const { return static_cast<int>(shapes_.size()); }
+
+  static constexpr double kSliver = 0.02;
+
+  const std::vector<int>& faces(int shape) const { return at(shape).faces; }
+  double area(int shape) const { return at(shape).area; }
+  const Extent& extent(int shape) const { return at(shape).extent; }
+  double near() const { return near_; }
+
+  /// Area of the faces that both hold; kept, since it is asked for often.
+  double common_area(int a, int b) const;
+
+  /// Whether they share more than a sliver.
+  bool meet(int a, int b) const;
+  /// Whether they meet, or share a vertex: of soups, vertices at one position whose faces have an edge in common there.
+  bool touch(int a, int b) const;
+  /// The faces of `a` that `b` holds or has a vertex of.
+  std::vector<int> faces_at(int a, int b) const;
+  /// Whether `outer` holds all of `inner` but a sliver, or everything.
+  bool within(int inner, int outer) const;
+  bool same(int a, int b) const { return within(a, b) && within(b, a); }
+
+  struct Match {
+    double share = 0;     ///< of the samples that arrive, there or back, whichever are fewer
+    double distance = 0;  ///< separation() of the two pieces: of several that match, the least is the image
+  };
+
+  /// How well `motion` takes the part of `from` within `domain` to the part of `to` within `arrival`.
+  Match match(int from, int domain, const Motion& motion, int to, int arrival) const;
+
+  /// The faces of `arrival` that `motion` brings from faces of `from`: each whose centroid, taken back, has a face of
+  /// `from` as its nearest of `domain`.
+  std::vector<int> image_faces(int from, int domain, const Motion& motion, int arrival) const;
+
+  /// The faces of a shape that the group takes to none of `taken` (ascending): what is left keeps the group where the
+  /// shape does.
+  std::vector<int> without_orbit(int shape, const std::vector<int>& taken, const GroupPlace& place);
+
+  /// Share of the shape's samples that all the motions keep within `near` of it.
+  double kept(int shape, const std::vector<Motion>& motions, double near) const;
+
+  /// Distances of the samples' images from the shape, root mean square and largest, fractions of the diagonal.
+  Residual residual(int shape, const std::vector<Motion>& motions) const;
+
+ private:
+  struct Shape {
+    std::vector<int> faces;  // ascending
+    std::vector<char> holds;
+    std::vector<int> points;  // numbers of the vertices' positions, ascending
+    double area = 0;
+    Extent extent;
+    Eigen::AlignedBox3d box;
+    PieceMoments moments;
+    Points samples;
+    std::vector<int> sample_faces;
+    mutable std::unique_ptr<SurfaceIndex> index;
+    mutable std::vector<double> common;  // with the shapes before it, -1: not known
+  };
+  const Shape& at(int shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
+  const SurfaceIndex& index(int shape) const;
+  PieceMoments common_moments(int a, int b) const;
+  void sample(Shape& shape) const;
+
+  const Mesh& mesh_;
+  double near_;
+  double diagonal_;
+  Eigen::Vector3d origin_;  // of the moments
+  std::vector<int> point_of_vertex_;
+  Eigen::VectorXd areas_;
+  Points centroids_;
+  std::vector<Shape> shapes_;
+};
+
+}  // namespace orbifit

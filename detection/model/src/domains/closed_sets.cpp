@@ -1,0 +1,138 @@
+#include "domains/closed_sets.h"
+
+#include <algorithm>
+#include <set>
+
+#include "domains/domain_map.h"
+#include "domains/vertex_sets.h"
+
+namespace orbifit {
+
+namespace {
+
+// Sets that the motions reach: where they are more, the groups do not close, which is found as soon as an orbit is
+// made.
+constexpr std::size_t kMaxSets = 20000;
+// Elements that differ by less are one, in entries of their matrices: the next are farther apart by far.
+constexpr double kSameElement = 1e-6;
+
+std::vector<std::vector<Motion>> motions_of(const SymmetryAnnotation& annotation) {
+  std::vector<std::vector<Motion>> result;
+  for (const Pattern& pattern : annotation.patterns) {
+    result.emplace_back();
+    for (const PatternInstance& instance : pattern.instances) result.back().push_back(instance.motion);
+  }
+  return result;
+}
+
+int element_like(const std::vector<Motion>& elements, const Motion& motion) {
+  const auto found = std::ranges::find_if(
+      elements, [&](const Motion& m) { return (m.linear - motion.linear).cwiseAbs().maxCoeff() < kSameElement; });
+  return found == elements.end() ? -1 : static_cast<int>(found - elements.begin());
+}
+
+class Check {
+ public:
+  Check(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+      : annotation_(annotation), context_(context), domains_(mesh, annotation, motions_of(annotation)) {
+    for (std::size_t r = 0; r < annotation.regions.size(); ++r) claims_.push_back({false, r});
+    for (std::size_t p = 0; p < annotation.patterns.size(); ++p) {
+      claims_.insert(claims_.end(), annotation.patterns[p].instances.size(), {true, p});
+    }
+    products_.resize(static_cast<std::size_t>(domains_.count()));
+    for (const int set : sets_of_vertices(mesh, domains_)) reach(set);
+    for (int face = 0; face < mesh.faces.rows(); ++face) reach(domains_.set_of_face(face));
+  }
+
+  Disagreements run() {
+    for (std::size_t head = 0; head < queue_.size() && queue_.size() < kMaxSets; ++head) {
+      context_.check();
+      const int set = queue_[head];
+      const std::vector<int> places = domains_.set_places(set);
+      for (const int place : places) {
+        for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
+          follow(set, places, place, element);
+        }
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Product {
+    int first, second, both;  // elements: second after first
+  };
+
+  void reach(int set) {
+    if (reached_.insert(set).second) queue_.push_back(set);
+  }
+
+  void follow(int set, const std::vector<int>& places, int place, int element) {
+    const int there = domains_.carried_set(set, place, element);
+    reach(there);
+    for (const int other : places) {
+      if (other != place && domains_.images_of(other, place, element).empty()) blame(other, place);
+    }
+    const int arrival = domains_.arrival(place, element);
+    expect(domains_.carried_set(there, arrival, domains_.inverse_element(place, element)), set, place);
+    if (place < domains_.count()) {
+      for (const Product& product : products(place)) {
+        if (product.first != element) continue;
+        expect(domains_.carried_set(there, place, product.second), domains_.carried_set(set, place, product.both),
+               place);
+      }
+    } else {  // to any instance by the first
+      const int first = domains_.first_of_same_pattern(place);
+      expect(domains_.carried_set(domains_.carried_set(set, place, 0), first, element), there, place);
+    }
+  }
+
+  // The elements of a finite group after which one of its generators goes, and what comes of it.
+  const std::vector<Product>& products(int region) {
+    const auto r = static_cast<std::size_t>(region);
+    std::vector<Product>& known = products_[r];
+    if (!known.empty() || domains_.continuum(region) != nullptr) return known;
+    const std::vector<Motion>& elements = domains_.elements(region);
+    for (const Motion& generator : annotation_.regions[r].generators) {
+      const int second = element_like(elements, generator);
+      if (second < 0) continue;
+      for (int first = 0; first < static_cast<int>(elements.size()); ++first) {
+        const int both = element_like(elements, generator * elements[static_cast<std::size_t>(first)]);
+        if (both >= 0) known.push_back({first, second, both});
+      }
+    }
+    return known;
+  }
+
+  void expect(int set, int due, int place) {
+    if (set == due) return;
+    for (const int other : domains_.set_places(set)) {
+      if (!domains_.holds(due, other)) blame(other, place);
+    }
+    for (const int other : domains_.set_places(due)) {
+      if (!domains_.holds(set, other)) blame(other, place);
+    }
+  }
+
+  void blame(int a, int b) {
+    const auto pair = std::minmax(claims_[static_cast<std::size_t>(a)], claims_[static_cast<std::size_t>(b)]);
+    ++result_[{pair.first, pair.second}];
+  }
+
+  const SymmetryAnnotation& annotation_;
+  const RunContext& context_;
+  DomainMap domains_;
+  std::vector<Claim> claims_;  // by place
+  std::vector<std::vector<Product>> products_;
+  std::set<int> reached_;
+  std::vector<int> queue_;
+  Disagreements result_;
+};
+
+}  // namespace
+
+Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
+  return Check(mesh, annotation, context).run();
+}
+
+}  // namespace orbifit

@@ -1,0 +1,196 @@
+// Where the motions of places take other places.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "domains/domain_map.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kSamePiece = 0.0125;  // of the diagonal: 2.5 usual tolerances, as consistency's `reach`
+constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
+
+// Places that have no image yet, and those that are no image.
+struct Unpaired {
+  std::vector<int> from, to;
+};
+
+// One for each of those that are less than infinitely far apart, nearest pairs first.
+template <class Distance>
+void pair_nearest(Unpaired& open, std::vector<std::pair<int, int>>& pairs, const Distance& distance) {
+  struct Candidate {
+    double off;
+    int from, to;
+  };
+  std::vector<Candidate> candidates;
+  for (const int p : open.from) {
+    for (const int q : open.to) {
+      const double off = distance(p, q);
+      if (off < kFar) candidates.push_back({off, p, q});
+    }
+  }
+  std::ranges::stable_sort(candidates, {}, &Candidate::off);
+  for (const Candidate& pair : candidates) {
+    const auto from = std::ranges::find(open.from, pair.from);
+    const auto to = std::ranges::find(open.to, pair.to);
+    if (from == open.from.end() || to == open.to.end()) continue;
+    pairs.emplace_back(pair.from, pair.to);
+    open.from.erase(from);
+    open.to.erase(to);
+  }
+}
+
+bool is_identity(const Motion& motion) {
+  return motion.linear.isIdentity(0) && motion.translation.isZero(0);
+}
+
+}  // namespace
+
+PieceMoments DomainMap::common_faces(int a, int b) const {
+  PieceMoments result;
+  for (std::size_t set = 0; set < moments_.size(); ++set) {
+    if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
+  }
+  return result;
+}
+
+// Of the faces that both places hold; of all of the second where they merely touch.
+PieceMoments DomainMap::common_moments(int a, int b) const {
+  PieceMoments result = common_faces(a, b);
+  if (result.area > 0) return result;
+  for (std::size_t set = 0; set < moments_.size(); ++set) {
+    if (holds(static_cast<int>(set), b)) result += moments_[set];
+  }
+  return result;
+}
+
+// Of the faces that both places hold; where they merely touch, of the vertices that both have.
+PieceMoments DomainMap::common_piece(int a, int b) const {
+  PieceMoments result = common_faces(a, b);
+  if (result.area > 0) return result;
+  for (const auto& [set, moments] : point_moments_) {
+    if (holds(set, a) && holds(set, b)) result += moments;
+  }
+  return result;
+}
+
+bool DomainMap::around(int outer, int inner) const {
+  for (std::size_t set = 0; set < moments_.size(); ++set) {
+    if (holds(static_cast<int>(set), inner) && !holds(static_cast<int>(set), outer)) return false;
+  }
+  return true;
+}
+
+// As the moments have it.
+Motion DomainMap::told_from_origin(const Motion& motion) const {
+  return Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
+}
+
+// Whether the motion takes the group of one region, placed, to that of another.
+bool DomainMap::group_goes_to(int from, const Motion& motion, int to) const {
+  const Place& a = at(from);
+  const Place& b = at(to);
+  if (a.motions.size() != b.motions.size() || a.continuum.has_value() != b.continuum.has_value()) return false;
+  if (a.continuum) {
+    if (a.continuum->spherical != b.continuum->spherical) return false;
+    const double off = b.continuum->distance(motion(a.continuum->foot(a.centre)));
+    if (off > kSameGroup * size_) return false;
+    return a.continuum->spherical || b.continuum->axis.cross(motion.linear * a.continuum->axis).norm() < kSameGroup;
+  }
+  return std::ranges::all_of(a.motions, [&](const Motion& element) {
+    const Motion image = conjugate(motion, element);
+    return std::ranges::any_of(b.motions, [&](const Motion& other) {
+      return (other.linear - image.linear).cwiseAbs().maxCoeff() < kSameGroup &&
+             (other(b.centre) - image(b.centre)).norm() < kSameGroup * size_;
+    });
+  });
+}
+
+// Where a motion takes the places that meet its own: first to those of which it takes the group to the group, wherever
+// they are; then to those of which it takes the common piece to the common piece.
+DomainMap::Images DomainMap::find_images(int place, int element) const {
+  Images result;
+  const int arrival = this->arrival(place, element);
+  const Motion& motion = at(place).motions[static_cast<std::size_t>(element)];
+  const std::vector<int>& here = meeting_[static_cast<std::size_t>(place)];
+  if (is_identity(motion)) {
+    for (const int p : here) result.pairs.emplace_back(p, p);
+    return result;
+  }
+  const Motion told = told_from_origin(motion);
+  Unpaired open{{}, meeting_[static_cast<std::size_t>(arrival)]};
+  for (const int p : here) {
+    // A place all around, or the place itself, stays.
+    if (p == place || (std::ranges::binary_search(open.to, p) && around(p, place) && around(p, arrival))) {
+      result.pairs.emplace_back(p, p == place ? arrival : p);
+    } else {
+      open.from.push_back(p);
+    }
+  }
+  const auto same_kind = [&](int p, int q) { return (p < count()) == (q < count()); };
+  pair_nearest(open, result.pairs, [&](int p, int q) {  // instances of patterns have no group
+    if (!same_kind(p, q) || (p < count() && !group_goes_to(p, motion, q))) return kFar;
+    return separation(common_moments(place, p), told, common_moments(arrival, q), size_);
+  });
+  pair_nearest(open, result.pairs, [&](int p, int q) {
+    if (!same_kind(p, q)) return kFar;
+    const double off = separation(common_piece(place, p), told, common_piece(arrival, q), size_);
+    return off <= kSamePiece ? off : kFar;
+  });
+  std::ranges::sort(result.pairs);
+  return result;
+}
+
+DomainMap::Images& DomainMap::images(int place, int element) const {
+  auto& images = images_[static_cast<std::size_t>(place)];
+  if (images.empty()) images.resize(elements(place).size());
+  auto& entry = images[static_cast<std::size_t>(element)];
+  if (!entry) entry = std::make_unique<Images>(find_images(place, element));
+  return *entry;
+}
+
+std::vector<int> DomainMap::exact_images(int place, int element) const {
+  constexpr double kExact = 1e-9;  // of the diagonal, and of the area
+  constexpr int kNone = -1;
+  std::vector<int> result(static_cast<std::size_t>(places()), kNone);
+  if (element < 0) return result;
+  const Motion told = told_from_origin(at(place).motions[static_cast<std::size_t>(element)]);
+  for (const auto& [from, to] : images(place, element).pairs) {
+    if (!around(place, from) || !around(arrival(place, element), to)) continue;
+    const PieceMoments here = common_moments(place, from);
+    const PieceMoments there = common_moments(arrival(place, element), to);
+    if (std::abs(here.area - there.area) > kExact * here.area || separation(here, told, there, size_) > kExact)
+      continue;
+    result[static_cast<std::size_t>(from)] = to;
+  }
+  return result;
+}
+
+std::vector<int> DomainMap::images_of(int other, int place, int element) const {
+  std::vector<int> result;
+  for (const auto& [from, to] : images(place, element).pairs) {
+    if (from == other) result.push_back(to);
+  }
+  return result;
+}
+
+int DomainMap::carried_set(int set, int place, int element) const {
+  Images& known = images(place, element);
+  const auto [entry, added] = known.sets.try_emplace(set, -1);
+  if (added) {
+    std::vector<int> members{arrival(place, element)};
+    for (const auto& [from, to] : known.pairs) {
+      if (holds(set, from)) members.push_back(to);
+    }
+    std::ranges::sort(members);
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    entry->second = intern(members);
+  }
+  return entry->second;
+}
+
+}  // namespace orbifit

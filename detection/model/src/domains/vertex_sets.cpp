@@ -1,0 +1,198 @@
+#include "domains/vertex_sets.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kWeld = 1e-9;  // of the diagonal
+
+int root(std::vector<int>& parents, int v) {
+  while (parents[static_cast<std::size_t>(v)] != v) {
+    int& parent = parents[static_cast<std::size_t>(v)];
+    parent = parents[static_cast<std::size_t>(parent)];
+    v = parent;
+  }
+  return v;
+}
+
+// A side of a face: the welded ends, ascending, and the vertices there.
+struct Side {
+  std::array<int, 2> ends;
+  std::array<int, 2> vertices;
+};
+
+// Joins vertices at one position whose faces meet in an edge of two faces.
+std::vector<int> linked(const Mesh& mesh, const std::vector<int>& weld) {
+  std::vector<Side> sides;
+  sides.reserve(static_cast<std::size_t>(3 * mesh.faces.rows()));
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (int k = 0; k < 3; ++k) {
+      std::array<int, 2> vertices{mesh.faces(face, k), mesh.faces(face, (k + 1) % 3)};
+      std::array<int, 2> ends{weld[static_cast<std::size_t>(vertices[0])], weld[static_cast<std::size_t>(vertices[1])]};
+      if (ends[0] == ends[1]) continue;
+      if (ends[0] > ends[1]) {
+        std::swap(ends[0], ends[1]);
+        std::swap(vertices[0], vertices[1]);
+      }
+      sides.push_back({ends, vertices});
+    }
+  }
+  std::ranges::sort(sides, {}, &Side::ends);
+  std::vector<int> parents(weld.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
+    if (end == i + 2) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const int a = root(parents, sides[i].vertices[k]);
+        const int b = root(parents, sides[i + 1].vertices[k]);
+        parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      }
+    }
+    i = end;
+  }
+  return parents;
+}
+
+}  // namespace
+
+std::vector<int> welded_vertices(const Points& vertices) {
+  const double tolerance = kWeld * diagonal(vertices);
+  std::vector<int> result(static_cast<std::size_t>(vertices.rows()));
+  std::iota(result.begin(), result.end(), 0);
+  if (!(tolerance > 0)) return result;
+  const VertexGrid grid(vertices, tolerance);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    grid.visit(vertices.row(static_cast<Eigen::Index>(v)).transpose(),
+               [&](int other) { result[v] = std::min(result[v], other); });
+  }
+  return result;
+}
+
+namespace {
+
+// Sets of places by group of vertices that are one point of one part: those of all faces around.
+struct PointSets {
+  std::vector<int> root;  // of each vertex, the vertex that stands for its point
+  std::vector<int> sets;  // of each root
+};
+
+PointSets point_sets(const Mesh& mesh, const DomainMap& domains) {
+  PointSets result;
+  result.sets.assign(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  result.root.resize(result.sets.size());
+  std::iota(result.root.begin(), result.root.end(), 0);
+  if (domains.places() > 0) {
+    const std::vector<int> weld = welded_vertices(mesh.vertices);
+    bool doubled = false;
+    for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
+    if (doubled) {
+      std::vector<int> parents = linked(mesh, weld);
+      for (int v = 0; v < static_cast<int>(weld.size()); ++v)
+        result.root[static_cast<std::size_t>(v)] = root(parents, v);
+    }
+  }
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    for (const int vertex : mesh.faces.row(face)) {
+      int& here = result.sets[static_cast<std::size_t>(result.root[static_cast<std::size_t>(vertex)])];
+      const int set = domains.set_of_face(static_cast<int>(face));
+      if (here != set) here = domains.joined(here, set);
+    }
+  }
+  return result;
+}
+
+std::vector<int> by_vertex(const PointSets& points) {
+  std::vector<int> result;
+  result.reserve(points.root.size());
+  for (const int root : points.root) result.push_back(points.sets[static_cast<std::size_t>(root)]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains) {
+  return by_vertex(point_sets(mesh, domains));
+}
+
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid) {
+  PointSets points = point_sets(mesh, domains);
+  bool partial = false;
+  for (int place = 0; place < domains.places(); ++place) partial = partial || !domains.whole(place);
+  if (!partial) return by_vertex(points);
+  // Parts that touch have vertices at one place; their surfaces face different ways there.
+  constexpr double kSameSide = 0.7;  // cosine: the corners of a part and of what it stands on are farther apart
+  const Points normals = vertex_normals(mesh);
+  std::vector<int> queue;
+  std::vector<char> queued(points.root.size(), 0);
+  for (std::size_t v = 0; v < points.root.size(); ++v) {
+    if (points.root[v] != static_cast<int>(v)) continue;
+    queue.push_back(static_cast<int>(v));
+    queued[v] = 1;
+  }
+  const auto set_of = [&](int vertex) -> int& {
+    return points.sets[static_cast<std::size_t>(points.root[static_cast<std::size_t>(vertex)])];
+  };
+  const auto join = [&](int vertex, int set) {
+    const int joined = domains.joined(set_of(vertex), set);
+    if (joined == set_of(vertex)) return;
+    set_of(vertex) = joined;
+    const int root = points.root[static_cast<std::size_t>(vertex)];
+    if (queued[static_cast<std::size_t>(root)] != 0) return;
+    queued[static_cast<std::size_t>(root)] = 1;
+    queue.push_back(root);
+  };
+  // Where a place has one point alone at a position, that is meant, whichever way the surface faces there.
+  const auto lone_point = [&](const Eigen::Vector3d& position, int place) {
+    constexpr int kNone = -1;
+    constexpr int kSeveral = -2;
+    int found = kNone;
+    grid.visit(position, [&](int other) {
+      const int root = points.root[static_cast<std::size_t>(other)];
+      if (found == root || !domains.holds(set_of(other), place)) return;
+      found = found == kNone ? root : kSeveral;
+    });
+    return found >= 0;
+  };
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const int vertex = queue[head];
+    queued[static_cast<std::size_t>(vertex)] = 0;
+    const Eigen::Vector3d position = mesh.vertices.row(vertex).transpose();
+    const Eigen::Vector3d normal = normals.row(vertex).transpose();
+    const std::vector<int> places = domains.set_places(set_of(vertex));
+    for (const int place : places) {
+      const bool alone_here = lone_point(position, place);
+      for (int element = 0; element < static_cast<int>(domains.elements(place).size()); ++element) {
+        const int arrival = domains.arrival(place, element);
+        const int carried = domains.carried_set(set_of(vertex), place, element);
+        const Motion& motion = domains.elements(place)[static_cast<std::size_t>(element)];
+        const Eigen::Vector3d image = motion(position);
+        const Eigen::Vector3d turned = motion.linear * normal;
+        bool same = false;
+        std::vector<int> met;
+        const bool alone = alone_here && lone_point(image, arrival);
+        grid.visit(image, [&](int other) {
+          same = same || set_of(other) == carried;
+          const bool meant =
+              alone ? domains.holds(set_of(other), arrival) : turned.dot(normals.row(other).transpose()) > kSameSide;
+          if (meant && domains.comparable(set_of(other), carried)) met.push_back(other);
+        });
+        if (same) continue;
+        for (const int other : met) {
+          join(other, carried);
+          // The two are images of one another, also where the other's image has more vertices than this one.
+          join(vertex, domains.carried_set(set_of(other), arrival, domains.inverse_element(place, element)));
+        }
+      }
+    }
+  }
+  return by_vertex(points);
+}
+
+}  // namespace orbifit

@@ -1,0 +1,133 @@
+#include "files/file.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "orbifit/model/errors.h"
+
+namespace orbifit {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A file descriptor that closes itself; errors of the last write show only at close().
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
+
+  int number() const { return number_; }
+  bool close() {
+    const int number = number_;
+    number_ = -1;
+    return ::close(number) == 0;
+  }
+
+ private:
+  int number_;
+};
+
+std::string system_reason(int code) {
+  return std::generic_category().message(code);
+}
+
+bool write_all(int descriptor, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t count = ::write(descriptor, content.data(), content.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    content.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+[[noreturn]] void refuse_writing(const fs::path& file, const std::string& reason) {
+  throw InputError(file.string(), "", "cannot be written: " + reason);
+}
+
+void write_directly(const fs::path& file, std::string_view content) {
+  Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+  if (descriptor.number() < 0 || !write_all(descriptor.number(), content) || !descriptor.close()) {
+    refuse_writing(file, system_reason(errno));
+  }
+}
+
+fs::path temporary_name(const fs::path& file) {
+  static std::atomic<unsigned> counter{0};
+  return file.parent_path() /
+         ("." + file.filename().string() + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file) {
+  std::error_code code;
+  const fs::file_status status = fs::status(file, code);
+  if (status.type() == fs::file_type::not_found) throw InputError(file.string(), "", "no such file");
+  if (fs::is_directory(status)) throw InputError(file.string(), "", "is a folder, not a file");
+  Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (descriptor.number() < 0) throw InputError(file.string(), "", "cannot be read: " + system_reason(errno));
+  if (!fs::is_regular_file(status)) throw InputError(file.string(), "", "is not a regular file");
+  const std::uintmax_t size = fs::file_size(file, code);
+  std::string content(code ? 0 : size, '\0');
+  std::size_t filled = 0;
+  // Files of /proc and files that grow meanwhile hold more than their size says; read to the end whatever it is.
+  while (true) {
+    if (filled == content.size()) content.resize(content.size() + 4096);
+    const ssize_t count = ::read(descriptor.number(), content.data() + filled, content.size() - filled);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw InputError(file.string(), "", "cannot be read: " + system_reason(errno));
+    if (count == 0) break;
+    filled += static_cast<std::size_t>(count);
+  }
+  content.resize(filled);
+  if (content.empty()) throw InputError(file.string(), "", "is empty");
+  return content;
+}
+
+void write_file(const fs::path& file, std::string_view content) {
+  std::error_code code;
+  const fs::file_status status = fs::status(file, code);
+  if (fs::is_directory(status)) refuse_writing(file, "it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) return write_directly(file, content);  // /dev/stdout, a pipe
+
+  // A link stays a link: what it points to is replaced.
+  const fs::path target = fs::is_symlink(fs::symlink_status(file, code)) ? fs::weakly_canonical(file, code) : file;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, code)) refuse_writing(file, "the folder " + folder.string() + " does not exist");
+
+  const fs::path temporary = temporary_name(target);
+  Descriptor descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (descriptor.number() < 0) refuse_writing(file, system_reason(errno));
+  if (!write_all(descriptor.number(), content) || !descriptor.close()) {
+    const int error = errno;
+    ::unlink(temporary.c_str());
+    refuse_writing(file, system_reason(error));
+  }
+  fs::rename(temporary, target, code);
+  if (code) {
+    ::unlink(temporary.c_str());
+    refuse_writing(file, code.message());
+  }
+}
+
+std::string lower_extension(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return ending;
+}
+
+}  // namespace orbifit
