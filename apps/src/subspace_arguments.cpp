@@ -13,6 +13,8 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/radius_field.h"
 
+#include "command.h"
+
 namespace orbifit {
 
 namespace {
@@ -59,11 +61,7 @@ void add_without_option(CLI::App& app, std::vector<int>& ids) {
 
 SymmetryAnnotation without(const std::vector<int>& ids, SymmetryAnnotation annotation) {
   if (ids.empty()) return annotation;
-  for (const int id : ids) {
-    if (std::ranges::find(annotation.regions, id, &Region::id) == annotation.regions.end()) {
-      throw UsageError("--without: the annotation has no region " + std::to_string(id));
-    }
-  }
+  for (const int id : ids) require_region("--without", id, annotation);
   return without_regions(std::move(annotation), ids);
 }
 

@@ -232,8 +232,8 @@ CommandBody annotate(CLI::App& app) {
     if (!adds) {
       if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
       if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-      print(context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
-                         : edits_text(changes, annotation, mesh, arguments->list));
+      print(context, context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
+                                  : edits_text(changes, annotation, mesh, arguments->list));
       return kDone;
     }
     GuidedRegion found = guided_region(mesh, hint, options, context.run);
@@ -255,11 +255,11 @@ CommandBody annotate(CLI::App& app) {
       nlohmann::ordered_json result = to_json(region, addition, found, mesh, count);
       if (!changes.empty()) result["changes"] = changes;
       if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
-      print(result.dump(2) + "\n");
+      print(context, result.dump(2) + "\n");
       return kDone;
     }
-    print(lines(changes) + to_text(region, addition, found, mesh, count) +
-          (arguments->list ? annotation_table(annotation, mesh) : ""));
+    print(context, lines(changes) + to_text(region, addition, found, mesh, count) +
+                       (arguments->list ? annotation_table(annotation, mesh) : ""));
     return kDone;
   };
 }

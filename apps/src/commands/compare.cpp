@@ -12,6 +12,7 @@
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
+#include "../picture_options.h"
 #include "../subspace_arguments.h"
 #include "comparison.h"
 #include "comparison_report.h"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct CompareArguments {
   std::string mesh, scan, annotation, truth, handles, folder;
-  std::vector<double> up{0, 0, 1};
+  std::vector<double> up;
   bool aligned = false;
   bool brief = false;
   ComparisonOptions options;
@@ -68,7 +69,7 @@ CommandBody compare(CLI::App& app) {
       ->type_name("N,...");
   app.add_flag("--brief", arguments->brief, "Only the table: no sweep of weights, no timing against sizes");
   app.add_flag("--aligned", arguments->aligned, "The scan is in the template's frame");
-  app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
+  add_up_option(app, arguments->up, "Upward direction of the pictures");
   add_subspace_options(app, arguments->subspace);
   return [arguments](CommandContext& context) {
     ComparisonOptions& options = arguments->options;
@@ -76,7 +77,7 @@ CommandBody compare(CLI::App& app) {
     if (arguments->scan.empty() && !arguments->truth.empty()) throw UsageError("--truth needs a scan");
     options.fit.subspace = arguments->subspace.options;
     options.validate();
-    const Eigen::Vector3d up = to_direction("--up", arguments->up);
+    if (!arguments->up.empty()) to_direction("--up", arguments->up);
     const Mesh mesh = read_mesh(arguments->mesh);
     SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     options.fit.subspace = subspace_options(arguments->subspace, mesh, context.run);
@@ -91,6 +92,7 @@ CommandBody compare(CLI::App& app) {
       truth->mesh = read_mesh(arguments->truth);
       truth->visible = visible_vertices(truth->mesh, scan.points);
     }
+    const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
     const fs::path folder = arguments->folder;
     make_folder(folder);
     Similarity pose;
@@ -110,7 +112,7 @@ CommandBody compare(CLI::App& app) {
     for (const MethodRun& run : comparison.runs) {
       if (run.failure.empty()) write_mesh(folder / (run.method + ".ply"), run.result.fitted);
     }
-    print(context.json ? comparison_json(comparison) : comparison_text(comparison));
+    print(context, context.json ? comparison_json(comparison) : comparison_text(comparison));
     return kDone;
   };
 }

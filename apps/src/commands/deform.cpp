@@ -135,17 +135,18 @@ CommandBody deform(CLI::App& app) {
                                              {"prefactor", milliseconds(with_subspace, factorised)},
                                              {"solve", milliseconds(factorised, solved)},
                                              {"lift", milliseconds(solved, lifted)}}}};
-      print(summary.dump(2) + "\n");
+      print(context, summary.dump(2) + "\n");
       if (!within) throw NoResultError(refusal);
       return kDone;
     }
-    print(arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
-          count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", " +
-          exactness(worst_field) + ", handles missed by " + short_number(100 * missed, 3) + " % of the diagonal\n" +
-          (loads ? "basis loaded " : "subspace ") + short_number(milliseconds(start, with_subspace), 3) +
-          " ms, prefactor " + short_number(milliseconds(with_subspace, factorised), 3) + " ms, " +
-          count_of(set.iterations, "iteration") + " " + short_number(milliseconds(factorised, solved), 3) +
-          " ms, lift " + short_number(milliseconds(solved, lifted), 3) + " ms\n");
+    print(context, arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
+                       count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", " +
+                       exactness(worst_field) + ", handles missed by " + short_number(100 * missed, 3) +
+                       " % of the diagonal\n" + (loads ? "basis loaded " : "subspace ") +
+                       short_number(milliseconds(start, with_subspace), 3) + " ms, prefactor " +
+                       short_number(milliseconds(with_subspace, factorised), 3) + " ms, " +
+                       count_of(set.iterations, "iteration") + " " + short_number(milliseconds(factorised, solved), 3) +
+                       " ms, lift " + short_number(milliseconds(solved, lifted), 3) + " ms\n");
     return kDone;
   };
 }

@@ -10,7 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/apps/render.h"
+#include "orbifit/apps/annotation_pictures.h"
+#include "orbifit/apps/report.h"
 #include "orbifit/detection/detect_points.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
@@ -18,18 +19,16 @@
 #include "orbifit/model/scan_io.h"
 
 #include "../commands.h"
+#include "../picture_options.h"
 #include "files/file.h"
 
 namespace orbifit::commands {
 
 namespace {
 
-constexpr std::size_t kMostPictures = 24;  // in one preview
-constexpr std::size_t kManyPictures = 8;   // beyond them fewer rays a pixel: nobody waits for smooth lines
-
 struct DetectArguments {
   std::string mesh, output, preview, colour, explain;
-  std::vector<double> up{0, 0, 1};
+  std::vector<double> up;
   bool points = false;
   DetectOptions options;
 };
@@ -106,39 +105,27 @@ Points region_colours(const Mesh& mesh, const std::vector<Region>& regions) {
 
 void write_preview(const DetectArguments& arguments, const Mesh& mesh, const SymmetryAnnotation& found,
                    const RunContext& run) {
+  constexpr int kColumns = 4;
   ViewOptions view;
   view.width = 480;
   view.height = 360;
-  view.up = to_direction("--up", arguments.up);
-  const std::size_t total = found.regions.size() + found.patterns.size();
-  if (total > kManyPictures) view.samples = 4;
-  std::vector<Image> images;
-  std::vector<std::string> captions;
-  const auto add = [&](const Scene& scene, const std::string& caption) {
-    if (images.size() >= kMostPictures) return;
-    images.push_back(orbifit::render(scene, view, run));
-    captions.push_back(caption);
-  };
-  for (const Region& region : found.regions) {
-    if (images.size() >= kMostPictures) break;
-    add(visible_region_scene(mesh, region, view, run),
-        "region " + std::to_string(region.id) + ": " + region.group.symbol());
+  view.up = picture_up(arguments.up, mesh, arguments.mesh, &found);
+  const std::vector<AnnotationPicture> pictures = annotation_pictures(mesh, found, view, run);
+  if (lower_extension(arguments.preview) == ".png") {
+    write_png(arguments.preview, contact_sheet(pictures, kColumns));
+    return;
   }
-  for (const Pattern& pattern : found.patterns) {
-    if (images.size() >= kMostPictures) break;
-    add(visible_pattern_scene(mesh, pattern, view, run),
-        "pattern " + std::to_string(pattern.id) + ": " + to_string(pattern.kind));
+  Report report;
+  report.title = std::filesystem::path(arguments.mesh).filename().string();
+  report.sections.push_back({count_of(static_cast<long long>(found.regions.size()), "region") + ", " +
+                                 count_of(static_cast<long long>(found.patterns.size()), "pattern"),
+                             "",
+                             {},
+                             {}});
+  for (const AnnotationPicture& picture : pictures) {
+    report.sections.back().pictures.push_back({encode_png(picture.image), picture.title + "\n" + picture.detail});
   }
-  if (images.empty()) {
-    Scene plain;
-    plain.surfaces.emplace_back().mesh = mesh;
-    add(plain, "no symmetry found");
-  }
-  if (total > images.size()) {
-    run.message("the preview shows the first " + std::to_string(images.size()) + " of " + std::to_string(total) +
-                " regions and patterns");
-  }
-  write_png(arguments.preview, contact_sheet(images, captions, std::min<int>(static_cast<int>(images.size()), 4)));
+  write_file(arguments.preview, to_html(report));
 }
 
 // One line a judgement, columns apart by tabs.
@@ -226,7 +213,7 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
   const SymmetryAnnotation found = detect_points(scan, chosen, context.run);
   if (!arguments.explain.empty()) write_explanation(arguments.explain, explanation);
   if (!arguments.output.empty()) write_annotation(arguments.output, found);
-  print(context.json ? points_json(found).dump(2) + "\n" : points_text(found));
+  print(context, context.json ? points_json(found).dump(2) + "\n" : points_text(found));
   return kDone;
 }
 
@@ -249,20 +236,19 @@ CommandBody detect(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--samples", options.samples, "Surface samples on which a whole mesh is verified")
       ->capture_default_str();
-  app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
+  app.add_option("--preview", arguments->preview,
+                 "Pictures of every region and pattern: one sheet (.png) or a page (.html)")
+      ->type_name("FILE");
   app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
   app.add_option("--explain", arguments->explain,
                  "Folder for what each stage kept and dropped, why, and how long it took (created)")
       ->type_name("DIR");
-  app.add_option("--up", arguments->up, "Upward direction of the preview")
-      ->type_size(3)
-      ->expected(1)
-      ->type_name("X Y Z");
+  add_up_option(app, arguments->up, "Upward direction, drawn in the preview and kept in the annotation");
   return [arguments](CommandContext& context) {
     arguments->options.validate();
-    to_direction("--up", arguments->up);
+    if (!arguments->up.empty()) to_direction("--up", arguments->up);
     if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
-    if (!arguments->preview.empty()) check_output(arguments->preview, {".png"}, {arguments->mesh});
+    if (!arguments->preview.empty()) check_output(arguments->preview, {".png", ".html"}, {arguments->mesh});
     if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
     if (arguments->points) return detect_in_points(*arguments, context);
     const Mesh mesh = read_mesh(arguments->mesh);
@@ -275,7 +261,8 @@ CommandBody detect(CLI::App& app) {
       chosen.explanation = &explanation;
       times.emplace(run);
     }
-    const SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
+    SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
+    if (!arguments->up.empty()) found.up = to_direction("--up", arguments->up);
     if (times) {
       write_explanation(arguments->explain, explanation);
       times->write(arguments->explain);
@@ -283,7 +270,7 @@ CommandBody detect(CLI::App& app) {
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
     if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
-    print(context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
+    print(context, context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
     return kDone;
   };
 }

@@ -18,6 +18,7 @@
 #include "../commands.h"
 #include "../edit_warnings.h"
 #include "../fit_report.h"
+#include "../picture_options.h"
 #include "../subspace_arguments.h"
 #include "files/file.h"
 
@@ -27,7 +28,7 @@ namespace {
 
 struct FitArguments {
   std::string mesh, scan, annotation, output, report, html, landmarks, handles, annotation_output;
-  std::vector<double> up{0, 0, 1};
+  std::vector<double> up;
   std::vector<double> viewpoint;
   bool aligned = false;
   bool no_contacts = false;
@@ -53,16 +54,17 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
                      percent(arguments.options.inlier_distance) + " of the diagonal (rms " + percent(result.rms) +
                      "), " + percent(result.hidden_fraction) + " of the surface not seen; " +
                      exactness(result.field_residual) + "\n";
-  text += "symmetry residual added to the mesh " + short_number(symmetry.worst_excess, 3) + "\n";
+  text +=
+      "symmetry residual added to the mesh: " + short_number(100 * symmetry.worst_excess, 3) + " % of the diagonal\n";
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
           count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;
     const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
-    text += "region " + std::to_string(group.region) + ": the scan is off its symmetry by " +
+    text += "region " + std::to_string(group.region) + ": an unconstrained fit contradicts its symmetry by " +
             percent(group.disagreement) + " of the diagonal (rms " + percent(group.held) + ", without the group " +
-            percent(group.free) + (left_out ? "); left out\n" : ")\n");
+            percent(group.free) + (left_out ? "); dropped\n" : ")\n");
   }
   return text;
 }
@@ -94,13 +96,13 @@ CommandBody fit(CLI::App& app) {
                  "Write no mesh and exit with 1 where the fit is less symmetric than this fraction of the diagonal")
       ->type_name("R");
   add_without_option(app, arguments->without);
-  app.add_flag("--auto-relax", options.drop_unsupported,
-               "Do not keep the groups that the scan has not, as a fit without shows");
+  app.add_flag("--drop-unsupported", options.drop_unsupported, "Drop groups that an unconstrained fit contradicts");
+  app.add_flag("--auto-relax", options.drop_unsupported)->group("");  // its former name
   app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
   app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
       ->capture_default_str();
   app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
-  app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
+  add_up_option(app, arguments->up, "Upward direction of the pictures");
   add_subspace_options(app, arguments->subspace);
   return [arguments, &app](CommandContext& context) {
     FitOptions& chosen = arguments->options;
@@ -113,7 +115,7 @@ CommandBody fit(CLI::App& app) {
     chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();
-    const Eigen::Vector3d up = to_direction("--up", arguments->up);
+    if (!arguments->up.empty()) to_direction("--up", arguments->up);
     check_outputs(*arguments);
     const Mesh mesh = read_mesh(arguments->mesh);
     chosen.subspace = subspace_options(arguments->subspace, mesh, context.run);
@@ -147,6 +149,7 @@ CommandBody fit(CLI::App& app) {
     // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
     if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");
     if (!arguments->html.empty()) {
+      const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
       write_file(arguments->html, fit_to_html(mesh, scan, result, symmetry, up, context.run));
     }
     if (!result.converged) {
@@ -162,7 +165,7 @@ CommandBody fit(CLI::App& app) {
     }
     write_edited(arguments->output, arguments->mesh, result.fitted, context.run);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
-    print(context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
+    print(context, context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
     return kDone;
   };
 }

@@ -57,13 +57,13 @@ CommandBody scan(CLI::App& app) {
     context.run.check();
     write_scan(arguments->output, points);
     const auto count = points.points.rows();
-    print(context.json ? nlohmann::ordered_json{{"scan", arguments->output},
-                                                {"points", count},
-                                                {"views", arguments->options.views}}
-                                 .dump(2) +
-                             "\n"
-                       : arguments->output + ": " + count_of(count, "point") + " from " +
-                             count_of(arguments->options.views, "view") + "\n");
+    print(context, context.json ? nlohmann::ordered_json{{"scan", arguments->output},
+                                                         {"points", count},
+                                                         {"views", arguments->options.views}}
+                                          .dump(2) +
+                                      "\n"
+                                : arguments->output + ": " + count_of(count, "point") + " from " +
+                                      count_of(arguments->options.views, "view") + "\n");
     return kDone;
   };
 }

@@ -73,18 +73,18 @@ nlohmann::ordered_json to_json(const SymmetryAnnotation& annotation, const std::
 
 std::string to_table(const SymmetryAnnotation& annotation, const std::vector<LiftResiduals>& residuals) {
   std::vector<std::string> header{"region", "group"};
-  for (const LiftResiduals& one : residuals) header.push_back(to_string(one.lift) + " lift");
+  for (const LiftResiduals& one : residuals) header.push_back(to_string(one.lift) + " lift %");
   header.emplace_back("name");
   TextTable table(header);
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     const Region& region = annotation.regions[i];
     std::vector<std::string> row{std::to_string(region.id), region.group.symbol()};
-    for (const LiftResiduals& one : residuals) row.push_back(short_number(one.regions[i].max, 3));
+    for (const LiftResiduals& one : residuals) row.push_back(short_number(100 * one.regions[i].max, 3));
     row.push_back(region.name);
     table.add(row);
   }
   return table.text() +
-         "Residuals are of a random displacement, at the images of each region's vertices, as fractions of the "
+         "Residuals are of a random displacement, at the images of each region's vertices, in percent of the "
          "diagonal.\n";
 }
 
@@ -132,7 +132,7 @@ CommandBody subspace(CLI::App& app) {
                                      {"build_seconds", seconds},
                                      {"regions", to_json(annotation, residuals)}};
       if (stores) summary["basis"] = arguments->output;
-      print(summary.dump(2) + "\n");
+      print(context, summary.dump(2) + "\n");
       return kDone;
     }
     std::string text = "mode                " + to_string(built.mode()) + "\n";
@@ -146,7 +146,7 @@ CommandBody subspace(CLI::App& app) {
     text += "time                " + short_number(seconds, 3) + " s\n";
     if (stores) text += "basis               " + arguments->output + "\n";
     if (!annotation.regions.empty()) text += to_table(annotation, residuals);
-    print(text);
+    print(context, text);
     return kDone;
   };
 }

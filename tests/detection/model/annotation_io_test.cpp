@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
@@ -77,6 +78,20 @@ TEST(Annotation, GivesBackEveryBit) {
   expect_equal(read.patterns[0].generators, written.patterns[0].generators);
   EXPECT_EQ(read.patterns[0].instances[1].faces, written.patterns[0].instances[1].faces);
   EXPECT_EQ(to_json(read), to_json(written));
+}
+
+TEST(Annotation, KnowsWhereUpIsIfSomebodySaidSo) {
+  const Mesh mesh = polygon_mesh();
+  SymmetryAnnotation annotation = sample_annotation(mesh);
+  EXPECT_EQ(to_json(annotation).find("\"up\""), std::string::npos);
+  annotation.up = -Eigen::Vector3d::UnitY();
+  const std::string text = to_json(annotation);
+  EXPECT_EQ(annotation_from_json(text, mesh, "a.json").up, annotation.up);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_LT((*transformed(annotation, {2, turn, {1, 2, 3}}).up + Eigen::Vector3d::UnitZ()).norm(), 1e-15);
+  std::string spoilt = text;
+  spoilt.replace(spoilt.find("[0, -1, 0]"), 10, "[0, 0, 0]");
+  EXPECT_THROW(annotation_from_json(spoilt, mesh, "a.json"), InputError);
 }
 
 TEST(Annotation, WritesRunsThatDoNotTouch) {

@@ -55,6 +55,8 @@ struct ViewOptions {
   /// Points that the picture frames, #P by 3, or two opposite corners of a box; empty: the scene's own. Set it to keep
   /// two pictures at one scale; its diagonal then is the scene's.
   Points frame;
+  /// The part of the picture that is drawn, as if enlarged: left, top, width and height as fractions of the whole.
+  Eigen::Vector4d window{0, 0, 1, 1};
   Colour background{1, 1, 1};
 };
 
@@ -86,7 +88,8 @@ Scene pattern_scene(const Mesh& mesh, const Pattern& pattern, bool see_through =
 Scene visible_pattern_scene(const Mesh& mesh, const Pattern& pattern, const ViewOptions& view,
                             const RunContext& context);
 
-/// Small pictures side by side with a caption each, in rows. Captions are ASCII; long ones are cut.
+/// Small pictures side by side, in rows, with a caption each below: its first line is a title, further lines say more;
+/// what is wider than the picture is cut.
 /// \throw UsageError for another number of captions than images, fewer than one column, or an ill-formed image
 Image contact_sheet(const std::vector<Image>& images, const std::vector<std::string>& captions, int columns);
 

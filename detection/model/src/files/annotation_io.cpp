@@ -68,6 +68,7 @@ class AnnotationReader {
     read_mesh_counts(member(root, "mesh", ""), annotation);
     annotation.tolerance = number(root, "tolerance", "");
     if (annotation.tolerance < 0) refuse("tolerance", "must not be negative");
+    if (root.contains("up")) annotation.up = direction(root["up"], "up");
     const Json& regions = list(root, "regions", "");
     for (std::size_t r = 0; r < regions.size(); ++r)
       annotation.regions.push_back(region(regions[r], item("regions", r)));
@@ -154,6 +155,13 @@ class AnnotationReader {
     Eigen::Vector3d result;
     for (std::size_t k = 0; k < 3; ++k) result[static_cast<Eigen::Index>(k)] = finite(value[k], item(where, k));
     return result;
+  }
+
+  Eigen::Vector3d direction(const Json& value, const std::string& where) const {
+    const Eigen::Vector3d result = vector(value, where);
+    const double length = result.stableNorm();
+    if (!(length > 0)) refuse(where, "must not be all 0");
+    return result / length;
   }
 
   Motion motion(const Json& value, const std::string& where) const {

@@ -20,6 +20,7 @@ class AnnotationWriter {
     text_ += std::to_string(annotation.mesh_vertices) + ", \"faces\": " + std::to_string(annotation.mesh_faces);
     text_ +=
         ", \"diagonal\": " + number(annotation.mesh_diagonal) + " },\n  \"tolerance\": " + number(annotation.tolerance);
+    if (annotation.up) text_ += ",\n  \"up\": " + vector(*annotation.up);
     text_ += ",\n  \"regions\": [";
     for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
       text_ += r == 0 ? "\n" : ",\n";
