@@ -166,7 +166,8 @@ CommandBody detection(CLI::App& app) {
   app.add_flag("--cut", options->cut, "Each form also without a fifth of its area");
   app.add_option("--tolerance", options->detect.tolerance, "The detector's, a fraction of the diagonal")
       ->capture_default_str();
-  app.add_option("--max-seconds", options->detect.time_budget, "The detector's time for a mesh; 0: no limit")
+  app.add_option("--max-seconds", options->detect.time_budget)->group("");  // what --time-budget was called
+  app.add_option("--time-budget", options->detect.time_budget, "Seconds of detection for each mesh; 0: no limit")
       ->capture_default_str();
   add_stage_run(app, options->stages, "poses, noise, cuts and the detector");
   app.add_option("--write", options->folder,

@@ -35,6 +35,14 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark baselines\n"
             "orbifit-benchmark baselines --families armchair --sizes 1 --json baselines.json",
             benchmarks::baselines},
+    Command{"moving", "Our boxes around a mesh that moves, beside Embree's refitted tree.",
+            "orbifit-benchmark moving\n"
+            "orbifit-benchmark moving --models car,plane --threads 2",
+            benchmarks::moving},
+    Command{"proxies", "The coarse meshes on which detection works for fine ones, beside OpenMesh's Decimater.",
+            "orbifit-benchmark proxies\n"
+            "orbifit-benchmark proxies fine.ply --tolerance 0.002 --json proxies.json",
+            benchmarks::proxies},
     Command{"real", "Meshes of any kind, from detection to an edit in every mode: what builds, how fast, how exactly.",
             "orbifit-benchmark real meshes\n"
             "orbifit-benchmark real meshes --annotations detected --csv real.csv\n"

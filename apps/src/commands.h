@@ -25,7 +25,7 @@ CommandBody symmetrize(CLI::App& app);
 /// orbifit starts it; the function above stands in that program alone, which links what is under the GPL.
 inline constexpr Command kCompare{
     "compare",
-    "Fit by ours and by least-squares methods, and set their figures side by side.",
+    "Compare with least-squares baselines: the same fit by several methods, side by side.",
     "orbifit compare fan.ply scan.ply --annotation fan.json -o comparison\n"
     "orbifit compare chair.ply scan.ply --annotation chair.json --truth chair_true.ply --aligned -o comparison\n"
     "orbifit compare chair.ply scan.ply --annotation chair.json --methods ours,kurz --brief -o comparison",

@@ -39,15 +39,15 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
   const std::string group = "Common options";
   app.add_flag("--json", options.json, "Print one JSON object on standard output")->group(group);
   app.add_flag("--quiet", options.quiet, "Print nothing but errors (and what --json asks for)")->group(group);
-  app.add_option("--seed", options.seed, "Seed of all random numbers")
+  app.add_option("--seed", options.seed, "Seed of the random numbers")
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--threads", options.threads, "Threads to use; the result does not depend on it")
+  app.add_option("--threads", options.threads, "Number of threads; the result does not depend on it")
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--timeout", options.timeout, "Give up after so many seconds (exit code 4)")
+  app.add_option("--timeout", options.timeout, "Stop without a result after so many seconds (exit code 4)")
       ->type_name("SECONDS")
       ->group(group);
   app.add_option("--output-format", options.output_format,
@@ -230,7 +230,7 @@ int run_program(std::span<const Command> commands, int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "'orbifit COMMAND --help' shows a command's examples and options.\n"
-      "Exit codes: 0 done, 1 no result, 2 wrong call, 3 bad input, 4 timeout, 130 interrupted.");
+      "Exit codes: 0 success, 1 no result, 2 wrong usage, 3 bad input, 4 timeout, 130 interrupted.");
   CommonOptions options;
   std::vector<CommandBody> bodies(commands.size());
   for (std::size_t c = 0; c < commands.size(); ++c) {

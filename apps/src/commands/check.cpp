@@ -121,14 +121,17 @@ CommandBody check(CLI::App& app) {
   const auto arguments = std::make_shared<CheckArguments>();
   app.add_option("MESH", arguments->mesh, "Mesh at rest")->required()->type_name("FILE");
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required()->type_name("FILE");
-  app.add_option("--deformed", arguments->deformed, "The same mesh after a deformation")->type_name("FILE");
-  app.add_option("--mode", arguments->mode,
-                 "How the groups may move along: fixed, posed (one rigid motion for all), floating (also a translation "
-                 "each) or moving (a rigid motion each)")
+  app.add_option("--deformed", arguments->deformed, "The same mesh, deformed")->type_name("FILE");
+  app.add_option(
+         "--mode", arguments->mode,
+         "How the groups may have moved: fixed (not at all), posed (by one common rigid motion), floating (also by a "
+         "translation each) or moving (by a rigid motion each)")
       ->type_name("MODE")
       ->capture_default_str();
-  app.add_option("--max-residual", arguments->max_residual,
-                 "Exit with 1 above this fraction of the diagonal (0.01 is 1 %); with --deformed, of the excess");
+  app.add_option(
+      "--max-residual", arguments->max_residual,
+      "Exit with 1 if the residual (with --deformed its excess) exceeds this fraction of the diagonal (0.01 is "
+      "1 %)");
   return [arguments, &app](CommandContext& context) {
     const bool limited = app.count("--max-residual") > 0;
     if (limited && !(arguments->max_residual >= 0)) {

@@ -50,21 +50,23 @@ void place(const Mesh& mesh, const SymmetryAnnotation& annotation, const FitOpti
 CommandBody compare(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>();
   app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to; without it handles alone edit the template");
-  app.add_option("--annotation", arguments->annotation, "The template's symmetries")->required()->type_name("FILE");
-  app.add_option("--truth", arguments->truth, "All of the shape that was scanned, in the scan's frame")
+  app.add_option("SCAN", arguments->scan, "Points to fit it to; without them the handles alone edit the template");
+  app.add_option("--annotation", arguments->annotation, "Annotation of the template (.json)")
+      ->required()
       ->type_name("FILE");
-  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
+  app.add_option("--truth", arguments->truth, "Mesh of the whole shape that was scanned, in the scan's frame")
+      ->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
   app.add_option("-o,--output", arguments->folder, "Folder for the table, the page and the fitted meshes")
       ->required()
       ->type_name("DIR");
-  app.add_option("--methods", arguments->options.methods, "Only these methods")
+  app.add_option("--methods", arguments->options.methods, "Methods to compare; without it all of them")
       ->delimiter(',')
       ->type_name("METHOD,...");
-  app.add_option("--weights", arguments->options.weights, "Of the symmetry penalty, swept")
+  app.add_option("--weights", arguments->options.weights, "Weights of the symmetry penalty to sweep over")
       ->delimiter(',')
       ->type_name("W,...");
-  app.add_option("--sizes", arguments->options.samples, "Samples of the surface, to time against")
+  app.add_option("--sizes", arguments->options.samples, "Numbers of surface samples to measure the time for")
       ->delimiter(',')
       ->type_name("N,...");
   app.add_flag("--brief", arguments->brief, "Only the table: no sweep of weights, no timing against sizes");

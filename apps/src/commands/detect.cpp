@@ -222,26 +222,36 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
 CommandBody detect(CLI::App& app) {
   const auto arguments = std::make_shared<DetectArguments>();
   DetectOptions& options = arguments->options;
-  app.add_option("MESH", arguments->mesh, "Mesh to look at; with --points a scan")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it only the list is printed")
+  app.add_option("MESH", arguments->mesh, "Mesh whose symmetries are sought; with --points, a scan")
+      ->required()
       ->type_name("FILE");
-  app.add_option("--tolerance", options.tolerance,
-                 "Largest distance that counts as symmetric, as a fraction of the diagonal")
+  app.add_option("-o,--output", arguments->output,
+                 "Annotation to write (.json); without it the regions are only listed")
+      ->type_name("FILE");
+  app.add_option(
+         "--tolerance", options.tolerance,
+         "Largest distance between the surface and its image that still counts as symmetric, as a fraction of the "
+         "diagonal of the mesh's bounding box")
       ->capture_default_str();
   app.add_flag(
       "--points", arguments->points,
-      "The file is a scan (PLY, PCD, XYZ, PTS), perhaps seen from one side only: the annotation's face numbers "
-      "are point numbers, and its counts of vertices and of faces are both the number of points");
-  app.add_option("--max-seconds", options.time_budget, "Stop then and keep what is verified; 0: no limit")
-      ->capture_default_str();
-  app.add_option("--samples", options.samples, "Surface samples on which a whole mesh is verified")
+      "The file is a scan (PLY, PCD, XYZ, PTS), which may have been taken from one side only. In the annotation, face "
+      "numbers are then point numbers, and the numbers of vertices and of faces are both the number of points");
+  app.add_option("--time-budget", options.time_budget,
+                 "Stop searching after so many seconds and keep what is verified by then; 0: no limit")
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  app.add_option("--max-seconds", options.time_budget)->group("");  // what --time-budget was called
+  app.add_option("--samples", options.samples,
+                 "Number of surface samples on which symmetries of the whole mesh are verified")
       ->capture_default_str();
   app.add_option("--preview", arguments->preview,
-                 "Pictures of every region and pattern: one sheet (.png) or a page (.html)")
+                 "Pictures of all regions and patterns to write: one sheet (.png) or a page (.html)")
       ->type_name("FILE");
-  app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
-  app.add_option("--explain", arguments->explain,
-                 "Folder for what each stage kept and dropped, why, and how long it took (created)")
+  app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region to write (.ply)")->type_name("FILE");
+  app.add_option(
+         "--explain", arguments->explain,
+         "Folder to write what each stage kept and dropped, for which reason, and how long it took; created if missing")
       ->type_name("DIR");
   add_up_option(app, arguments->up, "Upward direction, drawn in the preview and kept in the annotation");
   return [arguments](CommandContext& context) {

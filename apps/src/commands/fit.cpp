@@ -74,34 +74,40 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
 CommandBody fit(CLI::App& app) {
   const auto arguments = std::make_shared<FitArguments>();
   FitOptions& options = arguments->options;
-  app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to, anywhere, at any scale")->required();
-  app.add_option("--annotation", arguments->annotation, "The template's annotation; without it, it is detected")
+  app.add_option("TEMPLATE", arguments->mesh, "Mesh to deform and place so that it fits the scan")->required();
+  app.add_option("SCAN", arguments->scan, "Points to fit it to, in any position and at any scale")->required();
+  app.add_option("--annotation", arguments->annotation,
+                 "The template's annotation; without it, the symmetries are detected")
       ->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Fitted mesh to write")->required()->type_name("FILE");
-  app.add_option("--report", arguments->report, "All figures (.json)")->type_name("FILE");
-  app.add_option("--html", arguments->html, "Page with pictures (.html)")->type_name("FILE");
-  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the fitted mesh (.json)")
+  app.add_option("--report", arguments->report, "Report with all figures to write (.json)")->type_name("FILE");
+  app.add_option("--html", arguments->html, "Page with figures and pictures to write (.html)")->type_name("FILE");
+  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the fitted mesh to write (.json)")
       ->type_name("FILE");
-  app.add_option("--landmarks", arguments->landmarks, "Vertices and their places in the scan (.json)")
+  app.add_option("--landmarks", arguments->landmarks,
+                 "Vertices of the template and their positions in the scan (.json)")
       ->type_name("FILE");
-  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
   app.add_flag("--aligned", arguments->aligned,
-               "The scan is in the template's frame: neither find nor refine its pose");
-  app.add_option("--viewpoint", arguments->viewpoint,
-                 "From where all of the scan was seen, where its file does not say: 0 0 0 in a camera's frame")
+               "The scan is in the template's frame: the pose is neither sought nor refined");
+  app.add_option(
+         "--viewpoint", arguments->viewpoint,
+         "Point from which all of the scan was taken, if its file does not say; 0 0 0 for a scan in the camera's frame")
       ->expected(3)
       ->type_name("X Y Z");
-  app.add_option("--max-residual", arguments->max_residual,
-                 "Write no mesh and exit with 1 where the fit is less symmetric than this fraction of the diagonal")
+  app.add_option(
+         "--max-residual", arguments->max_residual,
+         "Write no mesh and exit with 1 if the symmetry residual of the fit exceeds this fraction of the diagonal")
       ->type_name("R");
   add_without_option(app, arguments->without);
-  app.add_flag("--drop-unsupported", options.drop_unsupported, "Drop groups that an unconstrained fit contradicts");
-  app.add_flag("--auto-relax", options.drop_unsupported)->group("");  // its former name
-  app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
-  app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
+  app.add_flag("--drop-unsupported", options.drop_unsupported,
+               "Drop the groups that an unconstrained fit to the scan contradicts");
+  app.add_flag("--auto-relax", options.drop_unsupported)->group("");  // what --drop-unsupported was called
+  app.add_flag("--no-contacts", arguments->no_contacts, "Allow parts of the template that touch to come apart");
+  app.add_option("--stiffness", options.last_stiffness,
+                 "Stiffness in the last iterations; a smaller value follows the scan more closely")
       ->capture_default_str();
-  app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
+  app.add_option("--scan-points", options.scan_points, "Number of scan points used")->capture_default_str();
   add_up_option(app, arguments->up, "Upward direction of the pictures");
   add_subspace_options(app, arguments->subspace);
   return [arguments, &app](CommandContext& context) {

@@ -84,7 +84,7 @@ CommandBody generate(CLI::App& app) {
       ->type_name("NAME=NUMBER")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("-o,--output", arguments->folder, "Folder for NAME.ply and NAME.annotation.json; made if missing")
+  app.add_option("-o,--output", arguments->folder, "Folder for NAME.ply and NAME.annotation.json; created if missing")
       ->type_name("FOLDER");
   app.add_flag("--list", arguments->list, "List the models and their parameters");
   return [arguments](CommandContext& context) -> int {

@@ -50,7 +50,8 @@ CommandBody render(CLI::App& app) {
   ViewOptions& view = arguments->view;
   app.add_option("MESH", arguments->mesh, "Mesh to draw")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Picture to write (.png)")->required()->type_name("FILE");
-  app.add_option("--annotation", arguments->annotation, "Draw its regions and patterns, one picture each")
+  app.add_option("--annotation", arguments->annotation,
+                 "Annotation whose regions and patterns are drawn, one picture each")
       ->type_name("FILE");
   app.add_option("--region", arguments->region, "Only the region of this id")->type_name("ID");
   app.add_option("--points", arguments->points, "Scan to draw over the mesh")->type_name("FILE");
@@ -58,12 +59,14 @@ CommandBody render(CLI::App& app) {
       ->type_name("FILE");
   app.add_flag("--edges", arguments->edges, "Draw the edges of the triangles");
   add_up_option(app, arguments->up, "Upward direction");
-  app.add_option("--azimuth", view.azimuth, "Degrees about the upward direction")->capture_default_str();
-  app.add_option("--elevation", view.elevation, "Degrees above the horizon")->capture_default_str();
-  app.add_option("--width", view.width, "Pixels of one picture (480 where there are several)")
+  app.add_option("--azimuth", view.azimuth, "Direction of view, degrees about the upward direction")
+      ->capture_default_str();
+  app.add_option("--elevation", view.elevation, "Height of the camera, degrees above the horizon")
+      ->capture_default_str();
+  app.add_option("--width", view.width, "Width of one picture, pixels (480 if there are several)")
       ->capture_default_str()
       ->check(CLI::Range(16, 8192));
-  app.add_option("--height", view.height, "Pixels of one picture (360 where there are several)")
+  app.add_option("--height", view.height, "Height of one picture, pixels (360 if there are several)")
       ->capture_default_str()
       ->check(CLI::Range(16, 8192));
   return [arguments, &app](CommandContext& context) {

@@ -96,12 +96,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 CommandBody subspace(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
-  app.add_option("MESH", arguments->mesh, "Mesh")->required();
+  app.add_option("MESH", arguments->mesh, "Mesh to build the subspace of")->required();
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required();
-  app.add_option("-o,--output", arguments->output, "Basis to write, for deform --basis")->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Basis to write, for 'orbifit deform --basis'")->type_name("FILE");
   add_without_option(app, arguments->without);
   add_subspace_options(app, arguments->subspace);
-  app.add_flag("--compare-lifts", arguments->compare_lifts, "Report the residuals of the other lift as well");
+  app.add_flag("--compare-lifts", arguments->compare_lifts, "Report the residuals of the other lift too");
   return [arguments](CommandContext& context) {
     arguments->subspace.options.validate();
     const bool stores = !arguments->output.empty();
@@ -142,7 +142,7 @@ CommandBody subspace(CLI::App& app) {
     text += "samples             " + std::to_string(built.samples().rows()) + " in " +
             count_of(built->sampling.orbits(), "orbit") + "\n";
     text += "degrees of freedom  " + std::to_string(built.degrees_of_freedom()) + "\n";
-    text += "samples a vertex    " + short_number(neighbours, 3) + "\n";
+    text += "samples per vertex  " + short_number(neighbours, 3) + "\n";
     text += "time                " + short_number(seconds, 3) + " s\n";
     if (stores) text += "basis               " + arguments->output + "\n";
     if (!annotation.regions.empty()) text += to_table(annotation, residuals);

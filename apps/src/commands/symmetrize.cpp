@@ -63,8 +63,9 @@ std::string to_text(const std::string& output, const SymmetrizeReport& report, c
   return output + ": vertices moved by " + percent(report.largest_movement) + " at most, " +
          percent(report.rms_movement) + " rms; " + std::to_string(report.mapped) + " of " +
          count_of(report.in_regions, "vertex", "vertices") + " in regions exactly symmetric" +
-         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, lest a region get worse" : "") +
-         (report.unclosed > 0 ? ", groups disagree about " + std::to_string(report.unclosed) : "") + "\n" +
+         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, since a region would get worse"
+                          : "") +
+         (report.unclosed > 0 ? ", groups contradict one another at " + std::to_string(report.unclosed) : "") + "\n" +
          (report.regions.empty() ? "" : table.text()) + "Lengths are in percent of the diagonal.\n";
 }
 
