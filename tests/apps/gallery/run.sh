@@ -37,7 +37,8 @@ sed 's|</body>|<script src="checks.js"></script></body>|' results/gallery/index.
 options=(--headless=new --no-sandbox --disable-gpu --hide-scrollbars --window-size=1100,800 "--user-data-dir=$folder/profile")
 timeout 100 "$browser" "${options[@]}" --virtual-time-budget=60000 --dump-dom "file://$folder/results/gallery/checked.html" >dom 2>browser.log ||
   { cat browser.log; exit 1; }
-said=$(grep -o '<pre id="checks">[^<]*' dom | sed 's/<pre id="checks">//') || { tail -5 browser.log; echo "the checks did not end"; exit 1; }
+said=$(sed -n '/<pre id="checks">/,/<\/pre>/p' dom | sed 's/.*<pre id="checks">//; s/<\/pre>.*//')
+[ -n "$said" ] || { tail -5 browser.log; echo "the checks did not end"; exit 1; }
 echo "$said"
 [ "${2:-}" = "" ] || timeout 60 "$browser" "${options[@]}" "--screenshot=$2" "file://$folder/results/gallery/index.html" >/dev/null 2>&1
 case $said in *FAILED*) exit 1 ;; esac
