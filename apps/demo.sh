@@ -103,6 +103,8 @@ section "Chair: deform" "Three handles: the seat up, one foot out, the crest up.
   picture chair_edited.png "before and after" file chair_handles.json file chair_edited.ply file chair_edited.json
 run chair_recheck check models/chair.ply chair.json --deformed chair_edited.ply --mode moving
 section "Chair: check the edit" "Every region is still exactly symmetric, to rounding errors; each group may have moved rigidly (mode moving)." chair_recheck
+run chair_edit edit models/chair.ply chair.json -o editor.html
+section "Chair: the editor" "The chair in a page of its own: drag it, and every symmetric part follows." chair_edit file editor.html
 run chair_scan scan chair_edited.ply --views 1 --azimuth 40 --noise 0.001 -o scan.ply
 "$orbifit" render chair_edited.ply --points scan.ply --width 640 --height 520 --quiet -o scan.png
 section "Chair: scan" "The edited chair seen by one virtual depth camera." chair_scan picture scan.png "the scan" file scan.ply
@@ -120,4 +122,4 @@ printf '{"title":"Orbifit: detect, deform, fit","intro":"%s","sections":[%s]}\n'
   "$(IFS=,; echo "${sections[*]}")" >steps.json
 "$orbifit" report steps.json -o index.html --quiet
 echo
-echo "Pictures, figures and files: out/index.html"
+echo "Pictures, figures and files: out/index.html; the chair to be edited in a browser: out/editor.html"

@@ -3,5 +3,5 @@
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
 
 install_packages "${program_packages[@]}" "${test_packages[@]}"
-build_release -DORBIFIT_BUILD_TESTS=ON -DORBIFIT_BUILD_BASELINES=ON
+build_release -DORBIFIT_BUILD_TESTS=ON -DORBIFIT_BUILD_BASELINES=ON -DORBIFIT_BUILD_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)" "$@"

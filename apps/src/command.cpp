@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/model/mesh_io.h"
 
 #include "files/file.h"
 
@@ -60,6 +61,11 @@ void check_output(const fs::path& output, const std::vector<std::string>& ending
   if (::access(folder.c_str(), W_OK) != 0) {
     throw InputError(output.string(), "", "cannot be written: the folder " + folder.string() + " does not allow it");
   }
+}
+
+void write_edited(const std::filesystem::path& output, const std::filesystem::path& source, const Mesh& edited,
+                  const RunContext& run) {
+  for (const std::string& problem : write_edited_mesh(output, source, edited)) run.message("warning: " + problem);
 }
 
 void make_folder(const std::filesystem::path& folder) {

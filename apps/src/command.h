@@ -55,6 +55,11 @@ struct Command {
 void check_output(const std::filesystem::path& output, const std::vector<std::string>& endings = {},
                   const std::vector<std::filesystem::path>& inputs = {});
 
+/// Writes an edited mesh and keeps what else its source holds: see write_edited_mesh(). What could not be kept is told
+/// as warnings.
+void write_edited(const std::filesystem::path& output, const std::filesystem::path& source, const Mesh& edited,
+                  const RunContext& run);
+
 /// Makes a folder for outputs where there is none. \throw InputError where that cannot be
 void make_folder(const std::filesystem::path& folder);
 

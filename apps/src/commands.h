@@ -16,6 +16,7 @@ CommandBody compare(CLI::App& app);
 CommandBody convert(CLI::App& app);
 CommandBody deform(CLI::App& app);
 CommandBody detect(CLI::App& app);
+CommandBody edit(CLI::App& app);
 CommandBody fit(CLI::App& app);
 CommandBody generate(CLI::App& app);
 CommandBody info(CLI::App& app);

@@ -50,6 +50,11 @@ constexpr std::array kCommands{
             "orbifit deform chair.obj chair.json --handles handles.json -o edited.obj --annotation-out edited.json\n"
             "orbifit deform chair.obj chair.json --basis chair.basis --handles handles.json -o edited.obj",
             commands::deform},
+    Command{"edit", "Make a page in which one drags handles and the symmetries are kept.",
+            "orbifit edit chair.obj -o chair.html --open\n"
+            "orbifit edit chair.obj chair.json -o chair.html\n"
+            "orbifit edit chair.obj chair.json --mode moving -o chair.html",
+            commands::edit},
     Command{"fit", "Fit a template to a scan; its symmetries are kept and complete what the scan does not show.",
             "orbifit fit chair.obj scan.ply -o fitted.obj\n"
             "orbifit fit chair.obj scan.ply --annotation chair.json -o fitted.obj --report fit.json --html fit.html\n"

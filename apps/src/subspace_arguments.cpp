@@ -27,15 +27,19 @@ constexpr double kUsualSamples = 600;
 
 }  // namespace
 
-void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
-  SubspaceOptions& options = arguments.options;
+void add_mode_option(CLI::App& app, GroupMode& mode) {
   app.add_option(
-         "--mode", options.mode,
+         "--mode", mode,
          "How the regions' groups may move with the shape: fixed (not at all), floating (each by a translation) or "
          "moving (each by a rigid motion)")
       ->transform(CLI::CheckedTransformer(kModes).description(""))
       ->type_name("MODE")
       ->default_str("floating");
+}
+
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
+  SubspaceOptions& options = arguments.options;
+  add_mode_option(app, options.mode);
   app.add_option(
          "--lift", options.lift,
          "How the vertices follow the samples: orbit (exact in every region) or paper (not exact in partial regions)")

@@ -111,7 +111,7 @@ CommandBody deform(CLI::App& app) {
     const std::string refusal = "the edit is only " + exactness(worst_field) + ", above --max-residual " +
                                 short_number(arguments->max_residual) + "; nothing was written";
     if (!within && !context.json) throw NoResultError(refusal);
-    if (within) write_mesh(arguments->output, edited);
+    if (within) write_edited(arguments->output, arguments->mesh, edited, context.run);
     if (within && !arguments->annotation_output.empty()) {
       write_annotation(arguments->annotation_output, deformed_annotation(annotation, built, deformation.state, edited));
     }

@@ -169,7 +169,7 @@ CommandBody fit(CLI::App& app) {
     if (result.field_residual > kExactResidual) {
       context.run.message("warning: the fit is only " + exactness(result.field_residual));
     }
-    write_mesh(arguments->output, result.fitted);
+    write_edited(arguments->output, arguments->mesh, result.fitted, context.run);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
     print(context, context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
     return kDone;

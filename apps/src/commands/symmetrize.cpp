@@ -92,7 +92,7 @@ CommandBody symmetrize(CLI::App& app) {
     const Mesh result = symmetrized(mesh, annotation, context.run, &report);
     const SymmetryReport after = symmetry_residual(result, annotation, nullptr, CarriedMotions::fixed, context.run);
     context.run.check();
-    write_mesh(arguments->output, result);
+    write_edited(arguments->output, arguments->mesh, result, context.run);
     if (!arguments->annotation_output.empty()) {
       annotation.mesh_diagonal = diagonal(result.vertices);
       for (std::size_t r = 0; r < annotation.regions.size(); ++r) {

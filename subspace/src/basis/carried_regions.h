@@ -27,7 +27,7 @@ Eigen::MatrixXd applied(const LiftWeights& scalar, const Eigen::MatrixXd& stacke
 /// the same are found by trying them and given up, those of smaller regions first.
 class CarriedRegions {
  public:
-  explicit CarriedRegions(const Subspace& subspace);
+  explicit CarriedRegions(const Subspace& subspace, const RunContext& context = RunContext{});
 
   /// Number of ways in which families may turn: the length of the vectors below.
   int freedom() const { return freedom_; }
@@ -67,7 +67,7 @@ class CarriedRegions {
     std::vector<Member> members;
     Eigen::MatrixXd free;  ///< 3 by 0..3, orthonormal: the first member's rotation vectors
   };
-  void keep_agreeing();
+  void keep_agreeing(const RunContext& context);
   void gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
               std::vector<char>& taken);
   bool nested(int inner, int outer) const;

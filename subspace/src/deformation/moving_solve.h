@@ -19,10 +19,10 @@ class MovingSolve {
  public:
   /// \param contact_weight  see ContactEnergy
   MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
-              double contact_weight);
+              double contact_weight, const RunContext& context);
 
   Deformation solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions, int iterations,
-                    const SubspaceState& start) const;
+                    const SubspaceState& start, const RunContext& context) const;
 
  private:
   CarriedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;

@@ -49,6 +49,7 @@ struct DeformerOptions {
 class Deformer {
  public:
   /// \param subspace and mesh outlive the deformer
+  /// \param context  solve() asks it as well whether to stop; a copy is kept
   Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options = {},
            const RunContext& context = RunContext{});
   ~Deformer();
