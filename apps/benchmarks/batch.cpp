@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -43,7 +43,7 @@ struct Run {
   double seconds = 0;                      // wall-clock
   double processor = 0;                    // user and system, of all processes
   double item_seconds = 0;                 // of all items together
-  double parent_memory = 0;                // bytes
+  double parent_memory = 0;                // of the batch without its items, bytes
   double first_half = 0, second_half = 0;  // largest peak memory of an item, bytes
   std::size_t items = 0;
 
@@ -124,13 +124,19 @@ Run run_once(const fs::path& folder, const std::string& task, int jobs) {
   if (failure != 0) throw NoResultError(words[0] + " cannot be started: " + std::strerror(failure));
   rusage usage{};
   int status = 0;
-  ::wait4(child, &status, 0, &usage);
   Run run;
+  // What wait4 says of memory counts this process too, from which it was begun.
+  const std::string status_file = "/proc/" + std::to_string(child) + "/status";
+  while (::wait4(child, &status, WNOHANG, &usage) == 0) {
+    std::ifstream stream(status_file);
+    for (std::string line; std::getline(stream, line);) {
+      if (line.starts_with("VmHWM:")) run.parent_memory = 1024 * std::strtod(line.c_str() + 6, nullptr);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   run.jobs = jobs;
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   run.processor = to_seconds(usage.ru_utime) + to_seconds(usage.ru_stime);
-  // Of the batch alone: what its items had is in their records.
-  run.parent_memory = 1024.0 * static_cast<double>(usage.ru_maxrss);
   read_records(out / "results-1.jsonl", run);
   return run;
 }

@@ -110,8 +110,9 @@ nlohmann::ordered_json to_json(const batch::BatchCounts& counts) {
 
 int run_items(BatchArguments& arguments, CommandContext& context) {
   const batch::BatchOptions options = to_options(arguments, context);
+  std::error_code ignored;
   const batch::Manifest manifest =
-      fs::is_directory(arguments.source)
+      fs::is_directory(arguments.source, ignored)
           ? batch::Manifest::from_folder(arguments.source, arguments.glob, options.shard, options.out)
           : batch::Manifest::from_lines(arguments.source, options.shard);
   const BatchTask& task = arguments.task;

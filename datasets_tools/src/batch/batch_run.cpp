@@ -36,7 +36,11 @@ constexpr std::string_view kStem = "item";
 void make_folders(const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
-  if (!fs::is_directory(folder)) refuse(folder, code ? code : std::make_error_code(std::errc::not_a_directory));
+  std::error_code reason;
+  if (!fs::is_directory(folder, reason)) {
+    if (!code) code = reason ? reason : std::make_error_code(std::errc::not_a_directory);
+    refuse(folder, code);
+  }
   if (::access(folder.c_str(), W_OK) != 0) refuse(folder, std::make_error_code(std::errc::permission_denied));
 }
 

@@ -13,7 +13,8 @@ namespace orbifit::batch {
 namespace fs = std::filesystem;
 
 Collection::Collection(const fs::path& folder) : folder_(folder) {
-  if (!fs::is_directory(folder)) throw InputError(folder.string(), "", "is no folder of results");
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) throw InputError(folder.string(), "", "is no folder of results");
   shards_ = read_shard_notes(folder);
   for (const ShardNote& note : shards_) {
     const fs::path file = folder / ("results-" + std::to_string(note.shard.index) + ".jsonl");

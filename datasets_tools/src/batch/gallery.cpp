@@ -49,7 +49,7 @@ void write_gallery(const Collection& collection, const SameShapes& same, const f
                    const RunContext& context) {
   std::error_code code;
   fs::create_directories(folder, code);
-  if (!fs::is_directory(folder)) throw InputError(folder.string(), "", "is no folder and cannot be made");
+  if (!fs::is_directory(folder, code)) throw InputError(folder.string(), "", "is no folder and cannot be made");
   const fs::path base = fs::relative(collection.folder(), folder);
   // One array an item: the page's script names the places. A script, since pages on a disk may not load JSON.
   std::string items = "window.orbifitItems = [\n";

@@ -124,6 +124,12 @@ bool close(const std::array<double, 5>& a, const std::array<double, 5>& b, doubl
   return true;
 }
 
+// The first item of a set, to which each other one leads.
+std::size_t root_of(const std::vector<std::size_t>& firsts, std::size_t item) {
+  while (firsts[item] != item) item = firsts[item];
+  return item;
+}
+
 std::optional<Mesh> mesh_of(const Collection& collection, std::size_t item) {
   try {
     const auto summary = nlohmann::json::parse(collection.record(item).summary);
@@ -171,20 +177,18 @@ SameShapes find_same_shapes(const Collection& collection, double tolerance, cons
     std::optional<Mesh> mesh;
     for (std::size_t j = i; j-- > 0 && described[j].values[0] > one.values[0] * (1 - window);) {
       const Described& other = described[j];
-      if (result.same_shape[other.item] != other.item && result.same_shape[other.item] == result.same_shape[one.item])
-        continue;
       if (!close(one.values, other.values, window)) continue;
       if (!mesh) mesh = mesh_of(collection, one.item);
       const std::optional<Mesh> before = mesh ? mesh_of(collection, other.item) : std::nullopt;
       if (!before || !same_up_to_similarity(*mesh, *before, tolerance)) continue;
       // Both sets become one, named by its first item.
-      const std::size_t a = result.same_shape[one.item], b = result.same_shape[other.item];
-      for (std::size_t& name : result.same_shape) {
-        if (name == a || name == b) name = std::min(a, b);
-      }
+      const std::size_t one_root = root_of(result.same_shape, one.item);
+      const std::size_t other_root = root_of(result.same_shape, other.item);
+      result.same_shape[std::max(one_root, other_root)] = std::min(one_root, other_root);
       break;
     }
   }
+  for (std::size_t i = 0; i < collection.size(); ++i) result.same_shape[i] = root_of(result.same_shape, i);
   return result;
 }
 
