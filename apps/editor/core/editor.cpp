@@ -354,7 +354,7 @@ const char* editor_fit(EditorSession* session, const char* scan, int place, Edit
     session->text = nlohmann::ordered_json{{"converged", result.converged},
                                            {"stopped_because", result.stopped_because},
                                            {"rms", result.rms},
-                                           {"inlier_fraction", result.inlier_fraction},
+                                           {"inlier_ratio", result.inlier_ratio},
                                            {"confidence", result.confidence},
                                            {"field_residual", result.field_residual},
                                            {"iterations", result.iterations_in_all}}

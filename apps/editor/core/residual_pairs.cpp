@@ -10,7 +10,7 @@ namespace orbifit::editor {
 
 namespace {
 
-constexpr std::size_t kPairs = 1500;  // of a region, about
+constexpr std::size_t kPairs = 600;  // of a region, about
 
 }  // namespace
 
@@ -23,7 +23,7 @@ ResidualPairs::ResidualPairs(const Mesh& mesh, const SymmetryAnnotation& annotat
     const std::vector<Motion>& motions = images.motions(static_cast<int>(r));
     const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
     const SurfaceIndex surface = images.surface().part(region.faces);
-    parts_.push_back({pairs_.size(), true});
+    parts_.push_back({pairs_.size(), motions_.size(), true});
     const std::size_t all = motions.size() * vertices.size();
     const std::size_t step = std::max<std::size_t>(1, all / kPairs) | 1U;
     const std::size_t first = motions_.size();
@@ -52,7 +52,7 @@ ResidualPairs::ResidualPairs(const Mesh& mesh, const SymmetryAnnotation& annotat
       pairs_.push_back(pair);
     }
   }
-  parts_.push_back({pairs_.size(), true});
+  parts_.push_back({pairs_.size(), motions_.size(), true});
 }
 
 Eigen::Vector3d ResidualPairs::image(const Points& vertices, const Pair& pair) const {
@@ -89,8 +89,14 @@ std::vector<ResidualPairs::Answer> ResidualPairs::measure(const Difference& diff
 
 std::vector<ResidualPairs::Answer> ResidualPairs::of_deformation(const Points& vertices,
                                                                  const std::vector<Motion>& carried) const {
+  std::vector<Motion> motions = motions_;
+  for (std::size_t r = 0; r + 1 < parts_.size(); ++r) {
+    for (std::size_t m = parts_[r].first_motion; m < parts_[r + 1].first_motion; ++m) {
+      motions[m] = conjugate(carried[r], motions[m]);
+    }
+  }
   return measure([&](std::size_t r, const Pair& pair) -> Eigen::Vector3d {
-    const Motion motion = conjugate(carried[r], motions_[static_cast<std::size_t>(pair.motion)]);
+    const Motion& motion = motions[static_cast<std::size_t>(pair.motion)];
     const Eigen::Vector3d position = vertices.row(pair.vertex);
     return image(vertices, pair) - motion(position) - carried[r].linear * pair.offset;
   });

@@ -44,7 +44,8 @@ class ResidualPairs {
     Eigen::Vector3d offset;  // at rest, y(g p) - g y(p)
   };
   struct Part {
-    std::size_t first = 0;
+    std::size_t first = 0;         // of pairs_
+    std::size_t first_motion = 0;  // of motions_
     bool at_vertices = true;
   };
   Eigen::Vector3d image(const Points& vertices, const Pair& pair) const;

@@ -52,7 +52,7 @@ class Session {
   const SymmetryAnnotation& annotation() const { return annotation_; }
   bool has_basis() const { return symmetric_side_.subspace != nullptr; }
   const Subspace& subspace() const { return *symmetric_side_.subspace; }  ///< \pre has_basis()
-  std::size_t contacts() { return deformer(kSymmetric).contacts().size(); }
+  std::size_t contacts() { return deformer(kSymmetric).contacts(); }
 
   /// Handles of both sides. \throw InputError
   void set_handles(const std::string& file);

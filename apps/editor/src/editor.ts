@@ -23,7 +23,7 @@ export interface Snapshot {
 
 /** Rms and largest residual of a region, fractions of the diagonal, of the mesh as it is and of the symmetric one. */
 export interface SymmetryChange { id: number; before: [number, number]; after: [number, number] }
-export interface FitReport { converged: boolean; rms: number; stopped_because: string; inlier_fraction: number }
+export interface FitReport { converged: boolean; rms: number; stopped_because: string; inlier_ratio: number }
 
 interface Basis { bytes: Uint8Array; annotation: string }
 
@@ -206,7 +206,7 @@ export class Editor {
         this.bases.set(key, basis);
       } catch (error) {
         if (turn === this.rebuilding) this.setBusy("");
-        this.onError(error instanceof Error ? error.message : String(error));
+        this.failed(error);
         return;
       }
     }
@@ -218,6 +218,11 @@ export class Editor {
     this.info = this.core.info();
     if (this.comparing) this.core.compare(true);
     this.setBusy("");
+  }
+
+  private failed(error: unknown): void {
+    const message = error instanceof Error ? error.message : String(error);
+    if (message !== "stopped") this.onError(message);
   }
 
   private setBusy(what: string): void {
@@ -295,7 +300,7 @@ export class Editor {
     try {
       this.solve();
     } catch (error) {
-      this.onError(error instanceof Error ? error.message : String(error));
+      this.failed(error);
     }
   }
 
@@ -356,7 +361,7 @@ export class Editor {
         this.symmetryReport = (JSON.parse(answer.report) as { regions: SymmetryChange[] }).regions;
         this.symmetricReady = true;
       } catch (error) {
-        this.onError(error instanceof Error ? error.message : String(error));
+        this.failed(error);
         return;
       } finally {
         this.setBusy("");
@@ -419,7 +424,7 @@ export class Editor {
       this.fitReport = JSON.parse(answer.report) as FitReport;
       this.fitted = true;
     } catch (error) {
-      this.onError(error instanceof Error ? error.message : String(error));
+      this.failed(error);
     } finally {
       this.setBusy("");
     }

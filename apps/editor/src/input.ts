@@ -51,7 +51,7 @@ export class Input {
     this.pressed = { x: event.clientX, y: event.clientY, number };
     this.leave();
     if (number < 0) return;
-    event.stopPropagation();
+    event.stopImmediatePropagation();
     editor.select(number);
     this.attachGizmo();
     const handle = editor.state.handles[number]!;
@@ -64,7 +64,7 @@ export class Input {
   private move(event: PointerEvent): void {
     const { editor, drag } = this;
     if (drag) {
-      event.stopPropagation();
+      event.stopImmediatePropagation();
       if (!drag.moved && this.pressed && Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y) < 1) return;
       drag.moved = true;
       let way = sub(editor.view.onViewPlane(event.clientX, event.clientY, drag.through), drag.from);
@@ -148,7 +148,7 @@ export class Input {
   private wheel(event: WheelEvent): void {
     if (!event.altKey) return;
     event.preventDefault();
-    event.stopPropagation();
+    event.stopImmediatePropagation();
     const { editor } = this;
     editor.radius = Math.min(0.3, Math.max(0.01, editor.radius * (event.deltaY < 0 ? 1.12 : 1 / 1.12)));
     const handle = editor.state.handles[editor.selected];

@@ -247,7 +247,7 @@ export class Panel {
     const report = editor.fitReport;
     const last = editor.fitSteps.at(-1);
     element("fit-text").textContent = `${editor.scan.name}: ${editor.scan.points.toLocaleString("en")} points. ` +
-      (report ? `${report.converged ? "Fitted" : "Not converged"}: ${report.stopped_because}; ${share(report.rms)} rms, ${Math.round(100 * report.inlier_fraction)} % of the points within 1 %.`
+      (report ? `${report.converged ? "Fitted" : "Not converged"}: ${report.stopped_because}; ${share(report.rms)} rms, ${Math.round(100 * report.inlier_ratio)} % of the points within 1 %.`
         : last ? `Step ${last.step + 1}: ${share(last.rms)} rms.` : "");
     const curve = document.getElementById("fit-curve")! as unknown as SVGSVGElement;
     curve.toggleAttribute("hidden", editor.fitSteps.length < 2);
