@@ -5,9 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "orbifit/datasets_tools/spoil.h"
 #include "base/random.h"
-
+#include "cases/spoil.h"
 #include "detection.h"
 
 namespace orbifit::benchmarks {
