@@ -10,13 +10,17 @@ build=$root/build/release
 program_packages=( # to build orbifit and its libraries
   g++ cmake ninja-build
   libeigen3-dev libflann-dev liblz4-dev libembree-dev libtbb-dev
-  libcli11-dev nlohmann-json3-dev libstb-dev
+  libcli11-dev nlohmann-json3-dev libstb-dev libsqlite3-dev libxxhash-dev
 )
 test_packages=( # for the baselines, the adapters, the Python package, the tests and cpack besides
   libceres-dev libpcl-dev libopenmesh-dev libgtest-dev
   python3-dev pybind11-dev python3-numpy python3-pip
   python3-pytest python3-hypothesis python3-distributed mypy python3-sphinx furo
-  dpkg-dev file
+  parallel slurmctld slurmd slurm-client munge snakemake sqlite3 procps
+  doxygen dpkg-dev file
+)
+editor_packages=( # to build the editor's page anew, and to try it in a browser
+  emscripten libnanoflann-dev nodejs chromium
 )
 
 as_root=()

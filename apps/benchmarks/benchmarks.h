@@ -10,6 +10,9 @@ CommandBody scaling(CLI::App& app);
 CommandBody baselines(CLI::App& app);
 CommandBody detection(CLI::App& app);
 CommandBody fitting(CLI::App& app);
+CommandBody moving(CLI::App& app);
+CommandBody proxies(CLI::App& app);
 CommandBody real(CLI::App& app);
+CommandBody batch(CLI::App& app);
 
 }  // namespace orbifit::benchmarks

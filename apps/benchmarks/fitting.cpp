@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,8 @@
 
 #include "benchmarks.h"
 #include "files/file.h"
+#include "peers/pcl_pose.h"
+#include "registration/alignment.h"
 #include "scan/clutter.h"
 #include "stage_run.h"
 #include "stopwatch.h"
@@ -41,7 +44,7 @@ constexpr Level kLevels[] = {
     {"3views", FitLevel::three_views}, {"1view", FitLevel::one_view}, {"anywhere", FitLevel::anywhere}};
 
 constexpr double kSoftWeight = 100;  // of the symmetry's penalty against the data
-constexpr const char* kMethods[] = {"ours", "rigid", "free", "soft", "copied"};
+constexpr const char* kMethods[] = {"ours", "rigid", "free", "soft", "copied", "pcl"};
 
 // The scan without what is far from the template as it was found.
 PointCloud own_scan(const FitCase& each, const Similarity& pose, const RunContext& context) {
@@ -89,6 +92,19 @@ FitResult fitted_by(const std::string& method, const FitInput& input, const FitO
   return fit(input, options, context);
 }
 
+// The template as it is, where PCL finds it; its size is known.
+FitResult placed_by_pcl(const FitCase& each, const RunContext& context) {
+  const std::optional<Similarity> pose = pcl_pose(each.model.mesh, each.scan, each.pose.scale, context);
+  FitResult result;
+  result.converged = pose.has_value();
+  if (!pose) throw NoResultError("PCL found no pose");
+  result.pose = *pose;
+  result.fitted = each.model.mesh;
+  result.fitted.vertices = from_template(*pose, each.model.mesh.vertices);
+  result.degrees_of_freedom = 6;
+  return result;
+}
+
 FittingRow measure(const FitCase& each, const char* level, const std::string& method, const FittingOptions& options,
                    RunContext& context) {
   FittingRow row;
@@ -101,9 +117,10 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   const SymmetryAnnotation annotation = symmetric ? each.model.truth : without_symmetry(each.model);
   const double start = seconds_now();
   try {
-    // All methods find the pose in the same way, where it is not known.
+    // All but PCL find the pose in the same way, where it is not known.
+    const bool pcl = method == "pcl";
     Similarity pose = each.pose;
-    if (each.level == FitLevel::anywhere) {
+    if (each.level == FitLevel::anywhere && !pcl) {
       chosen.place = method == "ours" || method == "free";
       pose = Similarity{};
       if (!chosen.place) {
@@ -115,11 +132,12 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
     }
     PointCloud scan = each.scan;
     const bool searches = method == "ours" || method == "free";
-    if (each.level == FitLevel::anywhere && !searches) scan = own_scan(each, pose, context);
+    if (each.level == FitLevel::anywhere && !searches && !pcl) scan = own_scan(each, pose, context);
     if (method == "copied") scan = copied_scan(each, scan, pose);
     const FitInput input{each.model.mesh, annotation, scan, pose};
-    const FitResult result = fitted_by(method, input, chosen, context);
+    const FitResult result = pcl ? placed_by_pcl(each, context) : fitted_by(method, input, chosen, context);
     row.seconds = seconds_now() - start;
+    if (pcl) row.placing = row.seconds;
     row.fitted = result.converged;
     if (!result.converged) row.failure = result.stopped_because;
     row.degrees_of_freedom = result.degrees_of_freedom;
@@ -166,6 +184,7 @@ int run(const FittingOptions& options, const CommandContext& given) {
       const FitCase each = fit_case(family, level.level, context);
       for (const char* method : kMethods) {
         if (!asked(options.methods, method)) continue;
+        if (method == std::string("pcl") && level.level != FitLevel::anywhere) continue;  // the pose is known
         given.run.check();
         rows.push_back(measure(each, level.name, method, options, context));
         const FittingRow& row = rows.back();
@@ -192,7 +211,7 @@ CommandBody fitting(CLI::App& app) {
       ->type_name("LEVEL,...");
   app.add_option("--methods", options->methods, "Only these methods")
       ->delimiter(',')
-      ->check(CLI::IsMember({"ours", "rigid", "free", "soft", "copied"}))
+      ->check(CLI::IsMember({"ours", "rigid", "free", "soft", "copied", "pcl"}))
       ->type_name("METHOD,...");
   add_stage_run(app, options->stages, "poses, noise and the fit");
   app.add_option("--write", options->folder, "Write templates, scans, truths and fits into this folder")

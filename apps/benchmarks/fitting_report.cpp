@@ -98,7 +98,9 @@ std::string fitting_text(const std::vector<FittingRow>& rows) {
          "corr.: of the fitted hidden vertices from where they belong; percent of the diagonal. symmetry: worst "
          "residual\n"
          "that the fit added, a fraction of the diagonal. s: seconds in all, place s: until the pose is found.\n"
-         "In 'anywhere' all methods find the pose in the same way.\n\n"
+         "In 'anywhere' all methods find the pose in the same way, but for pcl, which places the template, of known "
+         "size, by\n"
+         "FPFH, SampleConsensusPrerejective and ICP and leaves it as it is.\n\n"
          "Means by level and method\n" +
          means.text();
 }

@@ -35,11 +35,23 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark baselines\n"
             "orbifit-benchmark baselines --families armchair --sizes 1 --json baselines.json",
             benchmarks::baselines},
+    Command{"moving", "Our boxes around a mesh that moves, beside Embree's refitted tree.",
+            "orbifit-benchmark moving\n"
+            "orbifit-benchmark moving --models car,plane --threads 2",
+            benchmarks::moving},
+    Command{"proxies", "The coarse meshes on which detection works for fine ones, beside OpenMesh's Decimater.",
+            "orbifit-benchmark proxies\n"
+            "orbifit-benchmark proxies fine.ply --tolerance 0.002 --json proxies.json",
+            benchmarks::proxies},
     Command{"real", "Meshes of any kind, from detection to an edit in every mode: what builds, how fast, how exactly.",
             "orbifit-benchmark real meshes\n"
             "orbifit-benchmark real meshes --annotations detected --csv real.csv\n"
             "orbifit-benchmark real chair.obj --modes moving --stage-limit 60",
             benchmarks::real},
+    Command{"batch", "How many items a second a batch does on one and on two processors, and what it costs beside them.",
+            "orbifit-benchmark batch\n"
+            "orbifit-benchmark batch --models 100 --task info --json batch.json",
+            benchmarks::batch},
 };
 
 int run(const CommandBody& body, bool quiet) {

@@ -145,7 +145,9 @@ const std::vector<Method>& methods() {
 void ComparisonOptions::validate() const {
   for (const std::string& name : methods) {
     if (std::ranges::find(orbifit::methods(), name, &Method::name) == orbifit::methods().end()) {
-      throw UsageError("methods has '" + name + "'; there is no such method");
+      std::string names;
+      for (const Method& method : orbifit::methods()) names += (names.empty() ? "" : ", ") + std::string(method.name);
+      throw UsageError("methods has '" + name + "'; there are " + names);
     }
   }
   for (const double weight : weights) {

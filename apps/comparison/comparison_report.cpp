@@ -33,27 +33,28 @@ std::optional<double> if_iterated(const MethodRun& run, double value) {
 }
 
 constexpr std::array kFigures{
-    Figure{"symmetry_residual", "symmetry residual", 1,
+    Figure{"symmetry_residual", "symmetry residual %", 100,
            [](const MethodRun& run) { return std::optional(run.symmetry); }},
-    Figure{"visible", "visible %", 100,
+    Figure{"visible", "visible error %", 100,
            [](const MethodRun& run) { return run.score ? std::optional(run.score->visible) : std::nullopt; }},
-    Figure{"hidden", "hidden %", 100,
+    Figure{"hidden", "hidden error %", 100,
            [](const MethodRun& run) { return run.score ? std::optional(run.score->hidden) : std::nullopt; }},
-    Figure{"hidden_correspondence", "hidden corr. %", 100,
+    Figure{"hidden_correspondence", "hidden correspondence error %", 100,
            [](const MethodRun& run) { return run.score ? run.score->correspondence : std::nullopt; }},
-    Figure{"inlier_fraction", "explained %", 100,
+    Figure{"inlier_fraction", "inlier ratio %", 100,
            [](const MethodRun& run) { return run.scanned ? std::optional(run.result.inlier_ratio) : std::nullopt; }},
-    Figure{"handle_error", "handles %", 100,
+    Figure{"handle_error", "handle error %", 100,
            [](const MethodRun& run) { return std::optional(run.result.landmark_rms); }},
-    Figure{"bending", "bending deg", kDegrees, [](const MethodRun& run) { return std::optional(run.bending.rms); }},
-    Figure{"seconds_to_prepare", "prepare s", 1, [](const MethodRun& run) { return std::optional(run.prepare); }},
-    Figure{"seconds_per_iteration", "iteration ms", 1000,
+    Figure{"bending", "bending, degrees", kDegrees,
+           [](const MethodRun& run) { return std::optional(run.bending.rms); }},
+    Figure{"seconds_to_prepare", "preparation, s", 1, [](const MethodRun& run) { return std::optional(run.prepare); }},
+    Figure{"seconds_per_iteration", "iteration, ms", 1000,
            [](const MethodRun& run) { return if_iterated(run, run.iteration); }},
     Figure{"iterations", "iterations", 1,
            [](const MethodRun& run) { return if_iterated(run, double(run.result.iterations_in_all)); }},
     Figure{"unknowns", "unknowns", 1,
            [](const MethodRun& run) { return std::optional(double(run.result.degrees_of_freedom)); }},
-    Figure{"condition", "condition", 1,
+    Figure{"condition", "condition number", 1,
            [](const MethodRun& run) {
              return run.result.condition > 0 ? std::optional(run.result.condition) : std::nullopt;
            }},
@@ -115,19 +116,19 @@ std::vector<Chart> charts(const Comparison& comparison) {
       conditions.push_back(
           {run.method, {{least.weight, run.result.condition}, {most.weight, run.result.condition}}, colour_of(run)});
     }
-    result.push_back({"Worst symmetry residual, of the diagonal, against the penalty's weight", "weight of symmetry",
-                      "symmetry residual", residuals});
-    result.push_back({"Condition number of the system against the penalty's weight", "weight of symmetry",
-                      "condition number", conditions});
+    result.push_back({"Largest symmetry residual against the weight of the symmetry penalty", "weight of the penalty",
+                      "symmetry residual, fraction of the diagonal", residuals});
+    result.push_back({"Condition number of the system against the weight of the symmetry penalty",
+                      "weight of the penalty", "condition number", conditions});
   }
   if (!comparison.samples.empty()) {
     result.push_back(
-        {"Time of an iteration against the samples of the surface", "samples", "milliseconds",
+        {"Time of an iteration against the number of surface samples", "samples", "milliseconds",
          curves(
              comparison.samples, [](const MethodRun& run) { return double(run.result.samples); }, milliseconds)});
   }
   if (!comparison.meshes.empty()) {
-    result.push_back({"Time of an iteration against the template's faces", "faces", "milliseconds",
+    result.push_back({"Time of an iteration against the number of the template's faces", "faces", "milliseconds",
                       curves(
                           comparison.meshes, [](const MethodRun& run) { return double(run.faces); }, milliseconds)});
   }
@@ -207,11 +208,12 @@ std::string comparison_html(const Comparison& comparison, const PointCloud& scan
   view.width = 560;
   view.height = 420;
   Report report;
-  report.title = "Ours beside least-squares methods";
+  report.title = "Compare with least-squares baselines";
   report.intro =
-      "The same template, scan or handles, and start for all. Lengths are of the diagonal; the symmetry residual is "
-      "the worst over "
-      "all regions, each with the rigid motion that suits it best.";
+      "All methods are given the same template, the same scan or handles, and the same start. Lengths are in percent "
+      "of "
+      "the diagonal. The symmetry residual is the largest over all regions, each region with the rigid motion of its "
+      "group that fits best.";
   ReportSection figures{"Figures", "", {}, {{headers(), {}}}};
   for (const MethodRun& run : comparison.runs) figures.tables.front().rows.push_back(cells(run));
   for (const Method& method : methods()) {
@@ -219,14 +221,10 @@ std::string comparison_html(const Comparison& comparison, const PointCloud& scan
     if (there) figures.notes.push_back(method.name + ": " + method.summary);
   }
   ReportSection pictures{"Fitted shapes", "", {}, {}};
-  ReportSection errors{"Where symmetry is lost",
-                       "White: symmetric to a millionth of the diagonal. Red: off by a hundredth or more.",
-                       {},
-                       {}};
-  ReportSection bends{"Where the template is bent",
-                      "By the change of the angle between neighbouring faces. White: none. Red: 8 degrees or more.",
-                      {},
-                      {}};
+  ReportSection errors{
+      "Symmetry residual on the surface", "White: at most 0.0001 % of the diagonal. Red: 1 % or more.", {}, {}};
+  ReportSection bends{
+      "Bending", "Change of the angle between neighbouring faces. White: none. Red: 8 degrees or more.", {}, {}};
   const auto coloured = [&](const MethodRun& run, const Eigen::VectorXd& values, Colour (*colour)(double)) {
     Scene scene;
     SurfaceLayer& layer = scene.surfaces.emplace_back();
@@ -240,8 +238,8 @@ std::string comparison_html(const Comparison& comparison, const PointCloud& scan
     fitted.surfaces.emplace_back().mesh = run.result.fitted;
     if (scan.points.rows() > 0) fitted.points.emplace_back().points = scan.points;
     pictures.pictures.push_back({encode_png(render(fitted, view, context)), run.method});
-    errors.pictures.push_back(
-        {coloured(run, run.vertex_excess, error_colour), run.method + ": at most " + short_number(run.symmetry, 2)});
+    errors.pictures.push_back({coloured(run, run.vertex_excess, error_colour),
+                               run.method + ": at most " + short_number(100 * run.symmetry, 2) + " % of the diagonal"});
     bends.pictures.push_back({coloured(run, run.bending.of_vertex, bending_colour),
                               run.method + ": " + short_number(kDegrees * run.bending.rms, 2) + " degrees"});
   }

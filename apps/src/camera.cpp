@@ -20,7 +20,9 @@ constexpr double kSteepest = 89.9;
 }  // namespace
 
 Ray Camera::ray(float x, float y) const {
-  const Eigen::Vector3f direction = (2 * x - 1) * half_width * right + (1 - 2 * y) * half_height * up - toward;
+  const float u = window[0] + x * window[2];
+  const float v = window[1] + y * window[3];
+  const Eigen::Vector3f direction = (2 * u - 1) * half_width * right + (1 - 2 * v) * half_height * up - toward;
   return {eye, direction.normalized()};
 }
 
@@ -58,6 +60,7 @@ Camera frame_points(const Points& points, const ViewOptions& view) {
   const double half_width = half_height * view.width / view.height;
   camera.half_height = static_cast<float>(half_height);
   camera.half_width = static_cast<float>(half_width);
+  camera.window = view.window.cast<float>();
 
   // From distance d a point at (x, y, z) in camera axes fits when |x - x_eye| <= (d - z) half_width, the same with y.
   const Eigen::ArrayXd x = points * right;

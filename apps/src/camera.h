@@ -12,8 +12,9 @@ namespace orbifit {
 struct Camera {
   Eigen::Vector3f eye, right, up, toward;
   float half_width = 0, half_height = 0;  ///< of the picture at distance 1
+  Eigen::Vector4f window{0, 0, 1, 1};     ///< ViewOptions::window
 
-  /// The ray through a place of the picture; (0, 0) is the top left corner, (1, 1) the bottom right.
+  /// The ray through a place of the window; (0, 0) is the top left corner, (1, 1) the bottom right.
   Ray ray(float x, float y) const;
 };
 

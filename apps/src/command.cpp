@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/model/mesh_io.h"
 
 #include "files/file.h"
 
@@ -16,18 +17,36 @@ namespace orbifit {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// ".obj, .off or .ply", each without its first `skip` letters.
+std::string alternatives(const std::vector<std::string>& endings, std::size_t skip = 0) {
+  std::string list;
+  for (std::size_t i = 0; i < endings.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 == endings.size() ? " or " : ", ") + endings[i].substr(skip);
+  }
+  return list;
+}
+
+}  // namespace
+
 void check_output(const fs::path& output, const std::vector<std::string>& endings,
                   const std::vector<fs::path>& inputs) {
   if (output.empty()) throw UsageError("the output's name is empty");
+  if (is_standard_stream(output)) {
+    const std::string ending = lower_extension(output);
+    // With one format there is nothing to choose.
+    if (endings.empty() ||
+        (ending.empty() ? endings.size() == 1 : std::ranges::find(endings, ending) != endings.end())) {
+      return;
+    }
+    throw UsageError("standard output needs a format: --output-format must be " + alternatives(endings, 1));
+  }
   std::error_code code;
   const fs::file_status status = fs::status(output, code);
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return;  // such as /dev/stdout
   if (!endings.empty() && std::ranges::find(endings, lower_extension(output)) == endings.end()) {
-    std::string list;
-    for (std::size_t i = 0; i < endings.size(); ++i) {
-      list += (i == 0 ? "" : i + 1 == endings.size() ? " or " : ", ") + endings[i];
-    }
-    throw UsageError(output.string() + ": the ending must be " + list);
+    throw UsageError(output.string() + ": the ending must be " + alternatives(endings));
   }
   if (fs::is_directory(status)) throw InputError(output.string(), "", "cannot be written: it is a folder");
   for (const fs::path& input : inputs) {
@@ -42,6 +61,11 @@ void check_output(const fs::path& output, const std::vector<std::string>& ending
   if (::access(folder.c_str(), W_OK) != 0) {
     throw InputError(output.string(), "", "cannot be written: the folder " + folder.string() + " does not allow it");
   }
+}
+
+void write_edited(const std::filesystem::path& output, const std::filesystem::path& source, const Mesh& edited,
+                  const RunContext& run) {
+  for (const std::string& problem : write_edited_mesh(output, source, edited)) run.message("warning: " + problem);
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -101,6 +125,23 @@ std::string TextTable::text() const {
     result += line + "\n";
   }
   return result;
+}
+
+void require_region(const std::string& option, int id, const SymmetryAnnotation& annotation) {
+  if (std::ranges::find(annotation.regions, id, &Region::id) != annotation.regions.end()) return;
+  std::string ids;
+  for (const Region& region : annotation.regions) {
+    ids +=
+        (ids.empty() ? "" : ", ") + std::to_string(region.id) + (region.name.empty() ? "" : " (" + region.name + ")");
+  }
+  throw UsageError(option + ": the annotation has no region " + std::to_string(id) +
+                   (ids.empty() ? "; it has none" : "; there are " + ids));
+}
+
+void print(CommandContext& context, const std::string& text) {
+  context.printed = true;
+  if (context.json || (!context.quiet && !context.data_on_output)) return print(text);
+  if (!context.quiet) std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 void print(const std::string& text) {

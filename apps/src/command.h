@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
@@ -27,9 +28,11 @@ enum ExitCode {
 
 /// What every command gets beside its own options.
 struct CommandContext {
-  RunContext run;      ///< seed, threads, deadline, interruption, progress
-  bool json = false;   ///< print one JSON object on stdout and nothing else
-  bool quiet = false;  ///< no progress, no notes on stderr
+  RunContext run;               ///< seed, threads, deadline, interruption, progress
+  bool json = false;            ///< print one JSON object on stdout and nothing else
+  bool quiet = false;           ///< print nothing but errors
+  bool data_on_output = false;  ///< standard output carries a file's content ("-")
+  bool printed = false;         ///< the command has printed what it found
 };
 
 /// Runs a command whose options have been parsed; returns its exit code. Failures are exceptions (errors.h).
@@ -52,8 +55,16 @@ struct Command {
 void check_output(const std::filesystem::path& output, const std::vector<std::string>& endings = {},
                   const std::vector<std::filesystem::path>& inputs = {});
 
+/// Writes an edited mesh and keeps what else its source holds: see write_edited_mesh(). What could not be kept is told
+/// as warnings.
+void write_edited(const std::filesystem::path& output, const std::filesystem::path& source, const Mesh& edited,
+                  const RunContext& run);
+
 /// Makes a folder for outputs where there is none. \throw InputError where that cannot be
 void make_folder(const std::filesystem::path& folder);
+
+/// \throw UsageError naming the option, the id and the ids that there are, where the annotation has no such region
+void require_region(const std::string& option, int id, const SymmetryAnnotation& annotation);
 
 /// "--up 0 0 1" as a unit vector. \throw UsageError unless three numbers that are not all 0
 Eigen::Vector3d to_direction(const std::string& option, const std::vector<double>& values);
@@ -81,6 +92,10 @@ class TextTable {
  private:
   std::vector<std::vector<std::string>> rows_;
 };
+
+/// Prints what a command found: JSON as it is; text, unless all is to be quiet, on stdout, or on stderr where stdout
+/// carries data. \throw InputError when it cannot be written
+void print(CommandContext& context, const std::string& text);
 
 /// Writes to stdout. \throw InputError when stdout cannot be written
 void print(const std::string& text);

@@ -225,7 +225,7 @@ bool only_moved(const Mesh& mesh, const Mesh& edited) {
 }  // namespace
 
 std::string exactness(double field_residual) {
-  return "symmetric to " + short_number(field_residual, 1) + " of the diagonal";
+  return "symmetric to " + short_number(100 * field_residual, 1) + " % of the diagonal";
 }
 
 std::vector<std::string> edit_warnings(const Mesh& mesh, const SymmetryAnnotation& annotation, const Subspace& subspace,

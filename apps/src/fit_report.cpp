@@ -25,15 +25,15 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"stopped because", result.stopped_because},
            {"iterations", std::to_string(result.iterations.size())},
            {"degrees of freedom", std::to_string(result.degrees_of_freedom)},
-           {"of the scan taken for the template's", percent(result.overlap)},
-           {"left out though it hangs together with that", percent(result.torn_off)},
-           {"of that explained (within 1 %)", percent(result.inlier_ratio)},
-           {"their rms distance, of the diagonal", percent(result.rms)},
-           {"of what the viewpoints should have seen, seen", percent(result.visible_coverage)},
-           {"where they have nothing, taken for cut off", percent(result.cut_off)},
-           {"confidence", short_number(result.confidence, 2)},
-           {"surface that the scan did not see", percent(result.hidden_fraction)},
-           {"worst symmetry residual added by the fit", short_number(symmetry.worst_excess, 3)}}};
+           {"overlap: share of the scan used as the template's", percent(result.overlap)},
+           {"share of the scan left out although connected to that", percent(result.torn_off)},
+           {"inlier ratio at 1 % of the diagonal", percent(result.inlier_ratio)},
+           {"rms distance of the inliers, of the diagonal", percent(result.rms)},
+           {"visible coverage: share of the surface in view that the scan has", percent(result.visible_coverage)},
+           {"share of the surface in view taken as cut off from the scan", percent(result.cut_off)},
+           {"confidence, from 0 to 1", short_number(result.confidence, 2)},
+           {"share of the surface that the scan did not see", percent(result.hidden_fraction)},
+           {"largest symmetry residual added by the fit, of the diagonal", percent(symmetry.worst_excess)}}};
 }
 
 nlohmann::ordered_json pose_to_json(const Similarity& pose) {
@@ -42,16 +42,16 @@ nlohmann::ordered_json pose_to_json(const Similarity& pose) {
           {"translation", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
 }
 
-// Which groups the scan supports; those that it says nothing of are left out.
+// Which groups the scan supports; those that it cannot judge are left out.
 ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry) {
-  ReportTable table{{"region", "group", "pairs", "differs by", "rms with it", "without", "the scan"}, {}};
+  ReportTable table{{"region", "group", "pairs", "disagreement", "rms with the group", "rms without", "the scan"}, {}};
   for (const GroupAgreement& group : result.groups) {
     if (group.pairs == 0) continue;
     const auto region = std::ranges::find(symmetry.regions, group.region, &RegionResidual::id);
     const bool known = region != symmetry.regions.end();
     const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
-    std::string verdict = "agrees";
-    if (group.disagrees) verdict = left_out ? "disagrees: left out" : "disagrees";
+    std::string verdict = "supports it";
+    if (group.disagrees) verdict = left_out ? "contradicts it: dropped" : "contradicts it";
     table.rows.push_back({known && !region->name.empty() ? region->name : std::to_string(group.region),
                           known ? region->group : "", std::to_string(group.pairs), percent(group.disagreement),
                           percent(group.held), percent(group.free), verdict});
@@ -60,11 +60,11 @@ ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry)
 }
 
 ReportTable placement_table(const FitResult& result) {
-  ReportTable table{{"placement", "scale", "explained", "covered", "score"}, {}};
+  ReportTable table{{"placement", "scale", "inlier ratio", "visible coverage", "score, from 0 to 1"}, {}};
   for (std::size_t i = 0; i < result.placements.size(); ++i) {
     const Placement& each = result.placements[i];
-    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), short_number(each.inlier_ratio, 3),
-                          short_number(each.visible_coverage, 3), short_number(each.score(), 3)});
+    table.rows.push_back({std::to_string(i + 1), short_number(each.pose.scale), percent(each.inlier_ratio),
+                          percent(each.visible_coverage), short_number(each.score(), 3)});
   }
   return table;
 }
@@ -136,15 +136,17 @@ std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResul
   report.title = "Template fitted to a scan";
   report.sections.push_back({"Fit", "", fit_pictures(mesh, scan, result, up, run), {figures(result, symmetry)}, {}});
   if (!result.groups.empty()) {
-    report.sections.push_back({"What the scan says of the groups",
-                               "Compared with a fit that keeps none: by how much it differs between places that the "
-                               "group takes to one another, of the diagonal.",
+    report.sections.push_back({"Symmetry groups and the scan",
+                               "Each group is compared with a fit that is not constrained by it. The disagreement is "
+                               "how far that fit is from symmetric under the group. With --drop-unsupported, groups "
+                               "that the scan contradicts are dropped. Distances are in percent of the diagonal.",
                                {},
                                {group_table(result, symmetry)},
                                {}});
   }
   if (!result.placements.empty()) {
-    report.sections.push_back({"Where the template may be in the scan", "", {}, {placement_table(result)}, {}});
+    report.sections.push_back(
+        {"Placements of the template in the scan", "The best is fitted.", {}, {placement_table(result)}, {}});
   }
   return to_html(report);
 }

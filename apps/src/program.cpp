@@ -1,19 +1,25 @@
 #include "program.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <new>
+#include <numeric>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "orbifit/model/errors.h"
 
 #include "console.h"
 #include "other_program.h"
+#include "picture_options.h"
 
 namespace orbifit {
 
@@ -25,23 +31,47 @@ struct CommonOptions {
   std::uint64_t seed = 1;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   double timeout = 0;
+  std::string output_format;
+  bool data_on_output = false;
 };
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
   const std::string group = "Common options";
   app.add_flag("--json", options.json, "Print one JSON object on standard output")->group(group);
-  app.add_flag("--quiet", options.quiet, "No progress and no notes")->group(group);
-  app.add_option("--seed", options.seed, "Seed of all random numbers")
+  app.add_flag("--quiet", options.quiet, "Print nothing but errors (and what --json asks for)")->group(group);
+  app.add_option("--seed", options.seed, "Seed of the random numbers")
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--threads", options.threads, "Threads to use; the result does not depend on it")
+  app.add_option("--threads", options.threads, "Number of threads; the result does not depend on it")
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--timeout", options.timeout, "Give up after so many seconds (exit code 4)")
+  app.add_option("--timeout", options.timeout, "Stop without a result after so many seconds (exit code 4)")
       ->type_name("SECONDS")
       ->group(group);
+  app.add_option("--output-format", options.output_format,
+                 "Format of a file written to standard output ('-' as its name): obj, ply, xyz ...")
+      ->type_name("FORMAT")
+      ->group(group);
+}
+
+// "-" as the name of an output is standard output, which has no ending that tells the format.
+void name_standard_output(CLI::App& app, CommonOptions& options, const std::string& format) {
+  constexpr std::array outputs{"--output", "--colour", "--preview", "--annotation-out", "--report", "--html", "OUT"};
+  for (const char* name : outputs) {
+    CLI::Option* option = app.get_option_no_throw(name);
+    if (option == nullptr) continue;
+    option->transform(CLI::Validator(
+        [&options, format](std::string& value) {
+          if (value != "-") return std::string();
+          if (options.data_on_output) return std::string("standard output can take one file only");
+          options.data_on_output = true;
+          if (!format.empty()) value += "." + format;
+          return std::string();
+        },
+        ""));
+  }
 }
 
 CommandContext make_context(const CommonOptions& options, bool has_timeout, Console& console) {
@@ -51,6 +81,10 @@ CommandContext make_context(const CommonOptions& options, bool has_timeout, Cons
   CommandContext context;
   context.json = options.json;
   context.quiet = options.quiet;
+  context.data_on_output = options.data_on_output;
+  if (options.json && options.data_on_output) {
+    throw UsageError("--json and an output '-' both want standard output: give the output a file's name");
+  }
   context.run.seed = options.seed;
   context.run.threads = options.threads;
   context.run.interrupted = &interruption();
@@ -72,15 +106,26 @@ std::string description(const Command& command) {
   return text + "\n\n" + command.summary;
 }
 
+// One line on stderr, and where JSON was asked for an object on stdout.
+int fail(Console& console, bool json, const std::string& text, int code) {
+  console.error(text);
+  if (json) {
+    const nlohmann::ordered_json object{{"error", text}, {"exit_code", code}};
+    print(object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  return code;
+}
+
 // Runs one command and turns every failure into its exit code.
 int run(const CommandBody& body, const CommonOptions& options, bool has_timeout) {
   Console console(options.quiet);
+  CommandContext context;
   const auto fail = [&](const std::string& text, int code) {
-    console.error(text);
-    return code;
+    // Nothing follows the object that the command printed, or the file that it wrote.
+    return orbifit::fail(console, options.json && !options.data_on_output && !context.printed, text, code);
   };
   try {
-    CommandContext context = make_context(options, has_timeout, console);
+    context = make_context(options, has_timeout, console);
     return body(context);
   } catch (const UsageError& error) {
     return fail(error.what(), kUsage);
@@ -99,32 +144,93 @@ int run(const CommandBody& body, const CommonOptions& options, bool has_timeout)
   }
 }
 
+// The word after the option, or after its "=".
+std::string value_of(const std::string& option, const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == option && i + 1 < words.size()) return words[i + 1];
+    if (words[i].starts_with(option + "=")) return words[i].substr(option.size() + 1);
+  }
+  return "";
+}
+
+// How many letters must be inserted, deleted or replaced to make one word the other.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// "; did you mean --seed?" for the first of the words that looks like an option, or a list of all options.
+std::string suggestion(const std::string& words, CLI::App& command) {
+  const std::size_t option_at = words.find("--");
+  if (option_at == std::string::npos) return "";
+  const std::string name = words.substr(option_at + 2, words.find_first_of("= ", option_at) - option_at - 2);
+  std::string best;
+  std::string all;
+  std::size_t least = 1 + name.size() / 3;  // of more letters apart no mistake is likely
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& known : option->get_lnames()) {
+      if (option->get_group().empty()) continue;  // hidden
+      all += (all.empty() ? "--" : ", --") + known;
+      if (const std::size_t distance = edit_distance(name, known); distance <= least) {
+        least = distance;
+        best = known;
+      }
+    }
+  }
+  return best.empty() ? "; there are " + all : "; did you mean --" + best + "?";
+}
+
+// "--mode: Check loose value in {fixed->0,floating->1} OR {0,1} FAILED" in plain words.
+std::string wrong_choice(const std::string& reason) {
+  const std::size_t check = reason.find(": Check ");
+  const std::size_t value = reason.find(" value in {");
+  if (check == std::string::npos || value == std::string::npos) return reason;
+  std::string names;
+  std::istringstream entries(reason.substr(value + 11, reason.find('}', value) - value - 11));
+  for (std::string entry; std::getline(entries, entry, ',');) {
+    names += (names.empty() ? "" : ", ") + entry.substr(0, entry.find("->"));
+  }
+  return reason.substr(0, check) + " is '" + reason.substr(check + 8, value - check - 8) + "': must be one of " + names;
+}
+
 // The program's own words for what the parser could not make sense of.
-int refuse_call(const CLI::ParseError& error, const std::string& command) {
+int refuse_call(const CLI::ParseError& error, const std::string& command, CLI::App& app, bool json) {
   Console console(false);
   const std::string help = "'orbifit " + (command.empty() ? "" : command + " ") + "--help'";
-  std::string reason = error.what();
+  std::string reason = wrong_choice(error.what());
   if (reason.starts_with("The following argument")) {
     const std::size_t colon = reason.find(": ");
-    reason = "unexpected argument" + (colon == std::string::npos ? "" : " " + reason.substr(colon + 2));
+    const std::string words = colon == std::string::npos ? "" : reason.substr(colon + 2);
+    reason = "unexpected argument " + words + suggestion(words, app);
   } else if (reason.starts_with("A subcommand")) {
     reason = "a command is needed";
   } else if (const std::size_t counts = reason.find(" required but received"); counts != std::string::npos) {
     reason = reason.substr(0, reason.find(':')) + ": wrong number of values";
   }
-  console.error(reason + " (see " + help + ")");
-  return kUsage;
+  return fail(console, json, reason + " (see " + help + ")", kUsage);
 }
 
 }  // namespace
 
 int run_program(std::span<const Command> commands, int argc, char** argv) {
+  const std::vector<std::string> words = with_up_in_numbers({argv, argv + argc});
+  const bool json = std::ranges::find(words, "--json") != words.end();
   CLI::App app("Find the symmetries of a shape; edit it, or fit it to a scan, without breaking them.", "orbifit");
   app.set_version_flag("--version", "orbifit " ORBIFIT_VERSION);
   app.require_subcommand(1);
   app.footer(
       "'orbifit COMMAND --help' shows a command's examples and options.\n"
-      "Exit codes: 0 done, 1 no result, 2 wrong call, 3 bad input, 4 timeout, 130 interrupted.");
+      "Exit codes: 0 success, 1 no result, 2 wrong usage, 3 bad input, 4 timeout, 130 interrupted.");
   CommonOptions options;
   std::vector<CommandBody> bodies(commands.size());
   for (std::size_t c = 0; c < commands.size(); ++c) {
@@ -135,6 +241,7 @@ int run_program(std::span<const Command> commands, int argc, char** argv) {
     }
     bodies[c] = commands[c].define(*sub);
     add_common_options(*sub, options);
+    name_standard_output(*sub, options, value_of("--output-format", words));
   }
   const std::string name = argc > 1 && argv[1][0] != '-' ? argv[1] : "";
   const Command* command = nullptr;
@@ -142,18 +249,20 @@ int run_program(std::span<const Command> commands, int argc, char** argv) {
     if (name == entry.name) command = &entry;
   }
   if (argc > 1 && !name.empty() && command == nullptr) {
-    Console(false).error("unknown command '" + name + "' ('orbifit --help' lists the commands)");
-    return kUsage;
+    std::string names;
+    for (const Command& entry : commands) names += (names.empty() ? "" : ", ") + std::string(entry.name);
+    Console console(false);
+    return fail(console, json, "unknown command '" + name + "'; there are " + names, kUsage);
   }
   if (command != nullptr && command->program != nullptr) return become_program(command->program, argv + 2);
   // In the list of commands a summary is wanted, in a command's own help the examples too.
   if (command != nullptr) app.get_subcommand(command->name)->description(description(*command));
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {  // --help, --version
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend() - 1));  // the parser takes them from the end
+  } catch (const CLI::Success& success) {                                   // --help, --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    return refuse_call(error, name);
+    return refuse_call(error, name, command == nullptr ? app : *app.get_subcommand(name), json);
   }
   const CLI::App* chosen = app.get_subcommands().front();
   for (std::size_t c = 0; c < commands.size(); ++c) {

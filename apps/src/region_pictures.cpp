@@ -151,42 +151,6 @@ Scene shape_scene(const Mesh& mesh, const std::vector<int>& number, bool see_thr
   return scene;
 }
 
-std::vector<int> other_faces(const Mesh& mesh, const std::vector<int>& faces) {
-  std::vector<char> in(static_cast<std::size_t>(mesh.faces.rows()), 0);
-  for (const int face : faces) in[static_cast<std::size_t>(face)] = 1;
-  std::vector<int> result;
-  for (int face = 0; face < static_cast<int>(in.size()); ++face) {
-    if (in[static_cast<std::size_t>(face)] == 0) result.push_back(face);
-  }
-  return result;
-}
-
-// Of a small picture of the surfaces, the pixels that are red.
-int red_pixels(const Scene& scene, const Mesh& framed, ViewOptions view, const RunContext& context) {
-  constexpr int kWidth = 120;
-  view.height = std::max(1, kWidth * view.height / std::max(1, view.width));
-  view.width = kWidth;
-  view.samples = 1;
-  view.ground_shadow = false;
-  if (view.frame.rows() == 0) view.frame = framed.vertices;
-  const Image image = render(scene, view, context);
-  int count = 0;
-  for (std::size_t i = 0; i < image.rgb.size(); i += 3) count += image.rgb[i] > image.rgb[i + 1] + 40 ? 1 : 0;
-  return count;
-}
-
-bool hidden(const Mesh& mesh, const std::vector<int>& faces, const ViewOptions& view, const RunContext& context) {
-  constexpr double kSeen = 0.15;  // of what would be seen if it were alone
-  constexpr double kMost = 0.25;  // of the faces: of more, enough is seen
-  if (static_cast<double>(faces.size()) > kMost * static_cast<double>(mesh.faces.rows())) return false;
-  const Colour red(0.9F, 0.1F, 0.1F);
-  Scene alone;
-  alone.surfaces.push_back({submesh(mesh, faces), {red}, {}});
-  Scene all = alone;
-  all.surfaces.push_back({submesh(mesh, other_faces(mesh, faces)), {kGrey}, {}});
-  return red_pixels(all, mesh, view, context) <= kSeen * red_pixels(alone, mesh, view, context);
-}
-
 }  // namespace
 
 Colour region_colour(int number) {
@@ -217,19 +181,6 @@ Colour heat_colour(double value) {
   const auto stop = static_cast<std::size_t>(std::min(place, 3.0));
   const auto share = static_cast<float>(place - static_cast<double>(stop));
   return (1 - share) * stops[stop] + share * stops[stop + 1];
-}
-
-Scene visible_region_scene(const Mesh& mesh, const Region& region, const ViewOptions& view, const RunContext& context) {
-  return region_scene(mesh, region, hidden(mesh, region.faces, view, context));
-}
-
-Scene visible_pattern_scene(const Mesh& mesh, const Pattern& pattern, const ViewOptions& view,
-                            const RunContext& context) {
-  std::vector<int> faces;
-  for (const PatternInstance& instance : pattern.instances) {
-    faces.insert(faces.end(), instance.faces.begin(), instance.faces.end());
-  }
-  return pattern_scene(mesh, pattern, hidden(mesh, faces, view, context));
 }
 
 Scene region_scene(const Mesh& mesh, const Region& region, bool see_through) {

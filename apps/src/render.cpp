@@ -29,6 +29,8 @@ void validate(const ViewOptions& view) {
   const int side = static_cast<int>(std::lround(std::sqrt(std::max(view.samples, 0))));
   require(side >= 1 && side <= 16 && side * side == view.samples, "samples", view.samples,
           "a square number from 1 to 256");
+  require(view.window.allFinite() && view.window[2] > 0 && view.window[3] > 0, "size of window", view.window[2],
+          "positive");
   require(view.up.allFinite() && view.up.stableNorm() > 0, "length of up", view.up.stableNorm(), "positive");
 }
 
@@ -268,7 +270,7 @@ Image render(const Scene& scene, const ViewOptions& view, const RunContext& cont
   const auto local = [&](const Points& points) -> Points { return scale * (points.rowwise() - centre); };
 
   const Camera camera = frame_points(local(framed), view);
-  const float pixel_width = 2 * camera.half_height / static_cast<float>(view.height);
+  const float pixel_width = 2 * camera.half_height * camera.window[3] / static_cast<float>(view.height);
   double farthest = 0;
   const Points placed = local(drawn);
   for (const auto& point : placed.rowwise()) {

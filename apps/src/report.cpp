@@ -4,6 +4,9 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "orbifit/model/errors.h"
 
@@ -35,10 +38,23 @@ section > p { max-width: 46rem; margin: 0 0 1rem; }
 .pictures { display: grid; gap: 1.1rem; margin: 1.1rem 0 1.3rem;
   grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); }
 .pictures.one { grid-template-columns: minmax(0, 46rem); }
+.pictures.many { gap: .8rem; grid-template-columns: repeat(auto-fill, minmax(min(100%, 12.5rem), 1fr)); }
+.many figcaption { font-size: .8rem; overflow-wrap: anywhere; }
 figure { margin: 0; border: 1px solid var(--line); border-radius: .6rem; overflow: hidden; background: #fff; }
 figure img, figure svg { display: block; width: 100%; height: auto; }
 figcaption { padding: .5rem .8rem .6rem; font-size: .88rem; line-height: 1.45; color: var(--soft);
   border-top: 1px solid var(--line); }
+figcaption b { display: block; color: var(--ink); font-weight: 600; }
+pre { font: .82rem/1.5 ui-monospace, "SFMono-Regular", Menlo, Consolas, "DejaVu Sans Mono", monospace; margin: 0 0 1rem; }
+pre.command { padding: .6rem .9rem; border-radius: .4rem; background: #1d2330; color: #e9edf4; white-space: pre-wrap;
+  overflow-wrap: anywhere; }
+pre.command::before { content: "$ "; color: #8fa1bd; }
+pre.output { overflow-x: auto; }
+pre.prose { white-space: pre-wrap; overflow-wrap: anywhere; }
+.printed td, .printed th { white-space: nowrap; }
+.files { font-size: .88rem; }
+.files a { margin-right: .9rem; }
+a { color: var(--accent); }
 .table { overflow-x: auto; margin: 0 0 1.3rem; }
 table { border-collapse: collapse; font-size: .93rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .35rem 1rem .35rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
@@ -47,7 +63,8 @@ th { color: var(--soft); font-weight: 600; white-space: nowrap; }
 .note { font-size: .88rem; color: var(--soft); margin: 0 0 .8rem; padding-left: .9rem; border-left: 3px solid var(--line);
   max-width: 46rem; }
 footer { padding-top: 1.4rem; padding-bottom: 2.5rem; color: var(--soft); font-size: .85rem; }
-@media (max-width: 40rem) { body { font-size: 16px; } h1 { font-size: 1.55rem; } header { padding-top: 1.6rem; } }
+@media (max-width: 40rem) { table { font-size: .84rem; } th, td { padding-right: .6rem; } .number { padding-left: .4rem; }
+  body { font-size: 16px; } h1 { font-size: 1.55rem; } header { padding-top: 1.6rem; } }
 @media print {
   body { font-size: 10.5pt; } header { background: none; padding-top: 0; } nav { display: none; }
   main, header > div, footer { max-width: none; padding: 0; } section { border: 0; padding-top: 1.2rem; }
@@ -84,7 +101,12 @@ std::string figure(const ReportPicture& picture) {
   std::string result = "<figure><img src=\"data:image/png;base64," + base64(picture.png) + "\" alt=\"" +
                        escaped(picture.caption) + "\" width=\"" + std::to_string(big_endian(picture.png, 16)) +
                        "\" height=\"" + std::to_string(big_endian(picture.png, 20)) + "\">";
-  if (!picture.caption.empty()) result += "<figcaption>" + escaped(picture.caption) + "</figcaption>";
+  if (!picture.caption.empty()) {
+    const std::size_t title = picture.caption.find('\n');
+    result += "<figcaption>";
+    if (title != std::string::npos) result += "<b>" + escaped(picture.caption.substr(0, title)) + "</b>";
+    result += escaped(picture.caption.substr(title == std::string::npos ? 0 : title + 1)) + "</figcaption>";
+  }
   return result + "</figure>\n";
 }
 
@@ -94,7 +116,7 @@ bool looks_like_number(const std::string& cell) {
          (std::isdigit(static_cast<unsigned char>(cell[first])) != 0 || cell[first] == '.');
 }
 
-std::string html(const ReportTable& table) {
+std::string html(const ReportTable& table, const std::string& kind = "table") {
   const std::size_t columns = table.headers.size();
   std::vector<bool> numeric(columns, !table.rows.empty());
   for (const std::vector<std::string>& row : table.rows) {
@@ -114,20 +136,112 @@ std::string html(const ReportTable& table) {
     }
     return result + "</tr>\n";
   };
-  std::string result = "<div class=\"table\"><table>\n<thead>" + cells(table.headers, "th") + "</thead>\n<tbody>\n";
+  std::string result =
+      "<div class=\"" + kind + "\"><table>\n<thead>" + cells(table.headers, "th") + "</thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) result += cells(row, "td");
   return result + "</tbody></table></div>\n";
+}
+
+bool is_row(const std::string& line) {
+  return line.starts_with("  ") && line.find_first_not_of(' ') != std::string::npos;
+}
+
+// Columns that the program aligned: where every line has two blanks or more, one column ends.
+ReportTable table_of(const std::vector<std::string>& lines) {
+  std::size_t width = 0;
+  for (const std::string& line : lines) width = std::max(width, line.size());
+  const auto blank = [&](std::size_t at) {
+    return std::ranges::all_of(lines, [&](const std::string& line) { return at >= line.size() || line[at] == ' '; });
+  };
+  std::vector<std::pair<std::size_t, std::size_t>> columns;  // begin and end
+  std::size_t gap = 2;
+  for (std::size_t at = 0; at < width; ++at) {
+    if (blank(at)) {
+      ++gap;
+      continue;
+    }
+    if (gap >= 2) columns.emplace_back(at, at);
+    columns.back().second = at + 1;
+    gap = 0;
+  }
+  ReportTable table;
+  for (const std::string& line : lines) {
+    std::vector<std::string> cells;
+    for (const auto& [begin, end] : columns) {
+      const std::string cell = begin < line.size() ? line.substr(begin, end - begin) : "";
+      const std::size_t first = cell.find_first_not_of(' ');
+      cells.push_back(first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') + 1 - first));
+    }
+    (table.headers.empty() ? table.headers : table.rows.emplace_back()) = cells;
+  }
+  return table;
+}
+
+// What the program printed: runs of indented lines under headers are tables.
+std::string printed(const std::string& output) {
+  std::vector<std::string> lines;
+  std::istringstream stream(output);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  std::string result;
+  for (std::size_t begin = 0, end = 0; begin < lines.size(); begin = end) {
+    const bool rows = is_row(lines[begin]);
+    while (end < lines.size() && is_row(lines[end]) == rows) ++end;
+    const std::vector<std::string> block(lines.begin() + static_cast<std::ptrdiff_t>(begin),
+                                         lines.begin() + static_cast<std::ptrdiff_t>(end));
+    const ReportTable table = rows && block.size() > 1 ? table_of(block) : ReportTable{};
+    if (table.headers.size() > 1 && std::ranges::none_of(table.headers, looks_like_number)) {
+      result += html(table, "table printed");
+      continue;
+    }
+    std::string text;
+    for (const std::string& line : block) text += line + "\n";
+    if (text.find_first_not_of(" \n") != std::string::npos) {
+      result += (rows ? "<pre class=\"output\">" : "<pre class=\"output prose\">") + escaped(text) + "</pre>\n";
+    }
+  }
+  return result;
+}
+
+// A file's name as a link holds it.
+std::string url(const std::string& name) {
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string result;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || std::string_view("-._~/").find(c) != std::string_view::npos) {
+      result += c;
+    } else {
+      result += {'%', digits[byte >> 4U], digits[byte & 15U]};
+    }
+  }
+  return result;
+}
+
+std::string links(const std::vector<ReportLink>& files) {
+  if (files.empty()) return "";
+  std::string result = "<p class=\"files\">Files: ";
+  for (const ReportLink& file : files) {
+    result += "<a href=\"" + url(file.target) + "\">" + escaped(file.text) + "</a> ";
+  }
+  return result + "</p>\n";
+}
+
+std::string gallery(const std::vector<ReportPicture>& pictures) {
+  constexpr std::size_t kMany = 9;  // more than a page shows large
+  if (pictures.empty()) return "";
+  std::string result = pictures.size() == 1       ? "<div class=\"pictures one\">\n"
+                       : pictures.size() >= kMany ? "<div class=\"pictures many\">\n"
+                                                  : "<div class=\"pictures\">\n";
+  for (const ReportPicture& picture : pictures) result += figure(picture);
+  return result + "</div>\n";
 }
 
 std::string html(const ReportSection& section, std::size_t number) {
   const std::string id = std::to_string(number);
   std::string result = "<section id=\"step-" + id + "\">\n<h2><span>" + id + "</span>" + escaped(section.title) +
                        "</h2>\n" + paragraphs(section.text);
-  if (!section.pictures.empty()) {
-    result += section.pictures.size() == 1 ? "<div class=\"pictures one\">\n" : "<div class=\"pictures\">\n";
-    for (const ReportPicture& picture : section.pictures) result += figure(picture);
-    result += "</div>\n";
-  }
+  if (!section.command.empty()) result += "<pre class=\"command\">" + escaped(section.command) + "</pre>\n";
+  result += printed(section.output) + gallery(section.pictures);
   if (!section.charts.empty()) {
     result += "<div class=\"pictures\">\n";
     for (const Chart& chart : section.charts) {
@@ -137,6 +251,7 @@ std::string html(const ReportSection& section, std::size_t number) {
   }
   for (const ReportTable& table : section.tables) result += html(table);
   for (const std::string& note : section.notes) result += "<p class=\"note\">" + escaped(note) + "</p>\n";
+  result += links(section.files);
   return result + "</section>\n";
 }
 

@@ -13,6 +13,8 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/radius_field.h"
 
+#include "command.h"
+
 namespace orbifit {
 
 namespace {
@@ -25,26 +27,31 @@ constexpr double kUsualSamples = 600;
 
 }  // namespace
 
-void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
-  SubspaceOptions& options = arguments.options;
-  app.add_option("--mode", options.mode,
-                 "What may become of the groups: fixed (as they are), floating (each moved by a translation) or moving "
-                 "(each by a rigid motion)")
+void add_mode_option(CLI::App& app, GroupMode& mode) {
+  app.add_option(
+         "--mode", mode,
+         "How the regions' groups may move with the shape: fixed (not at all), floating (each by a translation) or "
+         "moving (each by a rigid motion)")
       ->transform(CLI::CheckedTransformer(kModes).description(""))
       ->type_name("MODE")
       ->default_str("floating");
-  app.add_option("--lift", options.lift,
-                 "How vertices follow the samples: orbit (exact in every region) or paper (not exact in partial ones)")
+}
+
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
+  SubspaceOptions& options = arguments.options;
+  add_mode_option(app, options.mode);
+  app.add_option(
+         "--lift", options.lift,
+         "How the vertices follow the samples: orbit (exact in every region) or paper (not exact in partial regions)")
       ->transform(CLI::CheckedTransformer(kLifts).description(""))
       ->type_name("LIFT")
       ->default_str("orbit");
-  auto* radius =
-      app.add_option("--radius", options.radius, "Sampling radius in the mesh's units: smaller edits, more unknowns");
-  app.add_option("--samples", options.samples, "Number of samples to aim at instead of a radius")->excludes(radius);
-  app.add_option("--radius-field", arguments.radius_field,
-                 "Where sampling is finer or coarser (.json): painted areas, thin parts")
+  auto* radius = app.add_option("--radius", options.radius,
+                                "Sampling radius, mesh units; a smaller one allows finer edits with more unknowns");
+  app.add_option("--samples", options.samples, "Approximate number of samples, instead of a radius")->excludes(radius);
+  app.add_option("--radius-field", arguments.radius_field, "Radius field (.json): where sampling is finer or coarser")
       ->type_name("FILE");
-  app.add_flag("--sharp-features", options.sharp_features_first, "Sample sharp edges and corners first");
+  app.add_flag("--sharp-features", options.sharp_features_first, "Place samples on sharp edges and corners first");
 }
 
 void exclude_subspace_options(CLI::App& app, CLI::Option& option) {
@@ -52,18 +59,12 @@ void exclude_subspace_options(CLI::App& app, CLI::Option& option) {
 }
 
 void add_without_option(CLI::App& app, std::vector<int>& ids) {
-  app.add_option("--without", ids, "Do not keep the groups of these regions (their ids)")
-      ->delimiter(',')
-      ->type_name("ID,...");
+  app.add_option("--without", ids, "Ids of regions whose groups are not kept")->delimiter(',')->type_name("ID,...");
 }
 
 SymmetryAnnotation without(const std::vector<int>& ids, SymmetryAnnotation annotation) {
   if (ids.empty()) return annotation;
-  for (const int id : ids) {
-    if (std::ranges::find(annotation.regions, id, &Region::id) == annotation.regions.end()) {
-      throw UsageError("--without: the annotation has no region " + std::to_string(id));
-    }
-  }
+  for (const int id : ids) require_region("--without", id, annotation);
   return without_regions(std::move(annotation), ids);
 }
 

@@ -21,6 +21,9 @@ struct SubspaceArguments {
   std::string radius_field;  ///< file, or empty
 };
 
+/// Adds --mode alone.
+void add_mode_option(CLI::App& app, GroupMode& mode);
+
 /// Adds --mode, --lift, --radius, --samples, --radius-field and --sharp-features.
 void add_subspace_options(CLI::App& app, SubspaceArguments& arguments);
 

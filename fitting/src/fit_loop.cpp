@@ -137,6 +137,7 @@ void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, do
   move_to(state);
   record.damping = damping;
   record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;
+  if (input_.watch) input_.watch(record, state.pose, deformed_.vertices);
 }
 
 FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double energy) const {

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "orbifit/apps/annotation_pictures.h"
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
@@ -406,6 +407,62 @@ TEST(VisibleRegionScene, SeesThroughWhatHidesTheRegion) {
   const Scene seen = region_scene(mesh, inside, true);
   EXPECT_EQ(seen.surfaces[0].mesh.faces.rows() + seen.surfaces[1].mesh.faces.rows(), mesh.faces.rows());
   EXPECT_EQ(seen.surfaces[1].mesh.faces.rows(), 8);
+}
+
+TEST(Window, ShowsAPartOfThePictureEnlarged) {
+  Scene scene;
+  scene.surfaces.push_back(coloured(sphere({0, 0, 0}, 1), kRed));
+  ViewOptions view = small_view();
+  view.ground_shadow = false;
+  const Image whole = render(scene, view, {});
+  view.window = {0.25, 0.25, 0.5, 0.5};
+  const Image middle = render(scene, view, {});
+  int different = 0;
+  for (int y = 0; y < view.height; y += 2) {
+    for (int x = 0; x < view.width; x += 2) {
+      const Eigen::Vector3i shown = pixel(whole, view.width / 4 + x / 2, view.height / 4 + y / 2);
+      different += (pixel(middle, x, y) - shown).cwiseAbs().maxCoeff() > 40 ? 1 : 0;
+    }
+  }
+  EXPECT_LT(different, 30);  // along the sphere's rim
+  view.window[2] = 0;
+  EXPECT_THROW(render(scene, view, {}), UsageError);
+}
+
+TEST(AnnotationPictures, ShowEveryRegionWithItsName) {
+  const Mesh mesh = sphere({0, 0, 0}, 1);
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  const PointGroup mirror{PointGroup::Family::Cs, 1};
+  for (int i = 0; i < 30; ++i) {
+    annotation.regions.push_back(make_region(mirror, Eigen::Vector3d::Zero(), GroupFrame::Identity(),
+                                             {4 * i, 4 * i + 1}, "patch " + std::to_string(i)));
+    annotation.regions.back().id = i;
+  }
+  ViewOptions view = small_view();
+  view.samples = 1;
+  const auto pictures = annotation_pictures(mesh, annotation, view, {});
+  ASSERT_EQ(pictures.size(), 30U);
+  EXPECT_EQ(pictures[7].title, "region 7  Cs: patch 7");
+  EXPECT_NE(pictures[7].detail.find(" % of the area"), std::string::npos);
+  EXPECT_NE(pictures[7].detail.find(" % of the diagonal"), std::string::npos);
+  EXPECT_GT(contact_sheet(pictures, 4).height, 8 * view.height);
+}
+
+// Two faces of a sphere are small: in the close-up they are many times larger.
+TEST(AnnotationPictures, EnlargeWhatIsSmall) {
+  const Mesh mesh = sphere({0, 0, 0}, 1);
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  const int face = 2 * (6 * 24);  // on the equator, towards +x
+  Region region = make_region({PointGroup::Family::Ci, 1}, Eigen::Vector3d::Zero(), GroupFrame::Identity(),
+                              {face, face + 1}, "speck");
+  region.id = 3;  // red
+  annotation.regions.push_back(region);
+  const ViewOptions view = small_view();
+  const Image plain = render(visible_region_scene(mesh, region, view, {}), view, {});
+  const Image enlarged = annotation_pictures(mesh, annotation, view, {}).front().image;
+  EXPECT_EQ(enlarged.width, plain.width);
+  EXPECT_GT(count_pixels(enlarged, reddish), 3 * count_pixels(plain, reddish));
+  EXPECT_GT(count_pixels(plain, reddish), 0);
 }
 
 TEST(PatternScene, ColoursEveryInstance) {

@@ -96,6 +96,41 @@ TEST(ToHtml, AlignsColumnsOfNumbersOnly) {
   EXPECT_EQ(count(page, "<th>group</th>"), 1U);
 }
 
+TEST(ToHtml, ShowsTheCommandWhatItPrintedAndItsFiles) {
+  Report report;
+  report.sections.resize(1);
+  ReportSection& section = report.sections[0];
+  section.title = "Check";
+  section.command = "orbifit check a.obj a.json < b";
+  section.output =
+      "  region  group  rest max %  name\n"
+      "       0  C4v            12  seat and legs\n"
+      "      11  Cs          1e-13\n"
+      "Distances are in percent.\n"
+      "   x <y>\n"
+      "Sizes:\n"
+      "  vertices    246\n"
+      "  triangles  1384\n";
+  section.files = {{"out/a b#1.json", "a b#1.json"}};
+  const std::string page = to_html(report);
+  expect_nested(page);
+  EXPECT_EQ(count(page, "<pre class=\"command\">orbifit check a.obj a.json &lt; b</pre>"), 1U);
+  EXPECT_EQ(count(page, "<th class=\"number\">rest max %</th>"), 1U);
+  EXPECT_EQ(count(page, "<td>seat and legs</td>"), 1U);
+  EXPECT_EQ(count(page, "<td class=\"number\">1e-13</td>"), 1U);
+  EXPECT_EQ(count(page, "<tr>"), 3U);
+  EXPECT_EQ(count(page, "<pre class=\"output prose\">Distances are in percent.\n</pre>"), 1U);
+  EXPECT_EQ(count(page, "   x &lt;y&gt;"), 1U);       // one line is no table; its blanks stay
+  EXPECT_EQ(count(page, "  vertices    246\n"), 1U);  // nor are lines without headers
+  EXPECT_EQ(count(page, "<a href=\"out/a%20b%231.json\">a b#1.json</a>"), 1U);
+}
+
+TEST(ToHtml, SetsTheFirstLineOfACaptionApart) {
+  Report report;
+  report.sections.push_back({"Regions", "", {picture("region 0  C4v: seat\n12 % of the area")}, {}, {}});
+  EXPECT_EQ(count(to_html(report), "<figcaption><b>region 0  C4v: seat</b>12 % of the area</figcaption>"), 1U);
+}
+
 TEST(ToHtml, RefusesWhatDoesNotMatch) {
   Report report = sample();
   report.sections[0].tables[0].rows[0].pop_back();

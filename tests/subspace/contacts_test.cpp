@@ -139,7 +139,7 @@ TEST(Contacts, OneOfEachOrbitIsAsGoodAsAll) {
     const Subspace subspace = subspace_of(model, GroupMode::floating, kRadius);
     const ContactEnergy some(find_contacts(subspace, model.mesh, {}, RunContext{}), subspace, 3);
     const ContactEnergy all(find_contacts(subspace, model.mesh, all_images(), RunContext{}), subspace, 3);
-    EXPECT_LT(some.contacts(), all.contacts()) << name;
+    EXPECT_LT(some.contacts().size(), all.contacts().size()) << name;
     const Eigen::Index freedom = subspace.degrees_of_freedom();
     Eigen::MatrixXd gram_of_some = Eigen::MatrixXd::Zero(freedom, freedom);
     Eigen::MatrixXd gram_of_all = gram_of_some;

@@ -11,6 +11,7 @@
 
 #include "base/random.h"
 #include "basis/subspace_parts.h"
+#include "deformation/corotation.h"
 #include "subspaces.h"
 
 namespace orbifit {

@@ -137,9 +137,9 @@ class StoredSubspace : public testing::TestWithParam<StoredCase> {
 };
 
 TEST_P(StoredSubspace, GivesTheSameDisplacementsToTheLastBit) {
-  EXPECT_EQ(read_.mode, built_.mode);
-  EXPECT_EQ(read_.lift_kind, built_.lift_kind);
-  EXPECT_EQ(read_.diagonal, built_.diagonal);
+  EXPECT_EQ(read_->mode, built_->mode);
+  EXPECT_EQ(read_->lift_kind, built_->lift_kind);
+  EXPECT_EQ(read_->diagonal, built_->diagonal);
   ASSERT_EQ(read_.degrees_of_freedom(), built_.degrees_of_freedom());
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(built_.degrees_of_freedom(), -1, 1);
   EXPECT_EQ(sample_displacements(read_, q), sample_displacements(built_, q));
@@ -154,12 +154,12 @@ TEST_P(StoredSubspace, GivesTheSameDisplacementsToTheLastBit) {
 TEST_P(StoredSubspace, GivesTheSameFieldInSpaceAndTheSameAnnotation) {
   const SubspaceState state = random_state_of(built_);
   const SubspaceState same = random_state_of(read_);
-  Points points = built_.sampling.points.topRows(std::min<Eigen::Index>(8, built_.sampling.points.rows()));
-  points.array() += 0.01 * built_.sampling.radius;
-  const std::vector<int> sets(built_.sampling.sets.begin(), built_.sampling.sets.begin() + points.rows());
+  Points points = built_->sampling.points.topRows(std::min<Eigen::Index>(8, built_->sampling.points.rows()));
+  points.array() += 0.01 * built_->sampling.radius;
+  const std::vector<int> sets(built_->sampling.sets.begin(), built_->sampling.sets.begin() + points.rows());
   EXPECT_EQ(displacement_field(read_, same, points, sets, RunContext{}),
             displacement_field(built_, state, points, sets, RunContext{}));
-  for (int region = 0; region < built_.regions->count(); ++region) {
+  for (int region = 0; region < built_->regions->count(); ++region) {
     const Motion there = region_motion(built_, state, region), here = region_motion(read_, same, region);
     EXPECT_EQ(here.linear, there.linear);
     EXPECT_EQ(here.translation, there.translation);
@@ -170,7 +170,7 @@ TEST_P(StoredSubspace, DeformsAlike) {
   Handle held, pulled;
   held.vertices = {0, 1, 2};
   pulled.vertices = {static_cast<int>(model_.mesh.vertices.rows()) - 1};
-  pulled.motion.translation = {0.1 * built_.diagonal, 0.03 * built_.diagonal, 0};
+  pulled.motion.translation = {0.1 * built_->diagonal, 0.03 * built_->diagonal, 0};
   const auto deformed = [&](const Subspace& subspace) {
     Deformer deformer(subspace, model_.mesh, {}, RunContext{});
     deformer.set_handles({held, pulled}, 100);

@@ -139,7 +139,7 @@ std::string to_text(const Region& region, const RegionAddition& addition, const 
           (region.group.has_axis() ? ", axis " + triple(region.axis) : std::string()) + "\n";
   text += "  " + percent(found.kept) + " of it fits; residual " + percent(region.residual.rms) + " rms, " +
           percent(region.residual.max) + " at most of the diagonal\n";
-  for (const std::string& old : addition.replaced) text += "  in place of " + old + ", which says nothing more\n";
+  for (const std::string& old : addition.replaced) text += "  in place of " + old + ", which it subsumes\n";
   return text;
 }
 
@@ -174,42 +174,49 @@ void add_place(CLI::App& app, const std::string& option, std::vector<double>& va
 CommandBody annotate(CLI::App& app) {
   const auto arguments = std::make_shared<AnnotateArguments>();
   app.add_option("MESH", arguments->mesh, "Mesh to annotate")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output,
-                 "Annotation to write (.json); without it what would become of it is only shown")
+  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it the result is only shown")
       ->type_name("FILE");
-  auto* given =
-      app.add_option("--annotation", arguments->annotation, "Annotation to change, or to which the region is added")
-          ->type_name("FILE");
-  app.add_flag("--list", arguments->list, "Show the annotation's regions and patterns, with their ids")->needs(given);
-  app.add_option("--remove", arguments->edits.remove, "Remove these regions (their ids); the others keep theirs")
+  auto* given = app.add_option("--annotation", arguments->annotation, "Annotation to change or to add a region to")
+                    ->type_name("FILE");
+  app.add_flag("--list", arguments->list, "List the regions and patterns of the annotation with their ids")
+      ->needs(given);
+  app.add_option("--remove", arguments->edits.remove, "Ids of regions to remove; the others keep their ids")
       ->delimiter(',')
       ->needs(given)
       ->type_name("ID,...");
-  app.add_option("--rename", arguments->edits.rename, "Give a region another name; may be given again")
+  app.add_option("--rename", arguments->edits.rename, "Rename a region; may be repeated")
       ->needs(given)
       ->type_name("ID NAME");
-  add_place(app, "--plane", arguments->plane, 6, "Mirror plane, roughly: a point and the normal", "PX PY PZ NX NY NZ");
-  add_place(app, "--axis", arguments->axis, 6, "Axis, roughly: a point and the direction", "PX PY PZ DX DY DZ");
-  add_place(app, "--centre,--center", arguments->centre, 3, "Centre, roughly", "X Y Z");
-  app.add_option("--order", arguments->order,
-                 "Order of the rotation about the axis, or inf for all; the region's largest group with it is taken")
+  add_place(app, "--plane", arguments->plane, 6, "Approximate mirror plane: a point and the normal",
+            "PX PY PZ NX NY NZ");
+  add_place(app, "--axis", arguments->axis, 6, "Approximate axis: a point and the direction", "PX PY PZ DX DY DZ");
+  add_place(app, "--centre,--center", arguments->centre, 3, "Approximate centre", "X Y Z");
+  app.add_option(
+         "--order", arguments->order,
+         "Order of rotation about the axis, or inf for a surface of revolution; the largest group of the region that "
+         "contains these rotations is taken")
       ->type_name("N");
-  app.add_option("--group", arguments->group, "The group itself, such as C4v (default: Cs, Ci, or the largest found)")
+  app.add_option("--group", arguments->group,
+                 "Schoenflies symbol of the group, such as C4v (default: Cs for a plane, Ci for a centre, the largest "
+                 "found for "
+                 "an axis)")
       ->type_name("SYMBOL");
-  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be given again")
+  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("F");
   add_place(app, "--near", arguments->near, 3,
-            "A point at the region: the face nearest to it is taken as one of the region's", "X Y Z");
+            "A point near the region: the face nearest to it is taken as a face of the region", "X Y Z");
   app.add_option("--name", arguments->name, "Name of the region")->type_name("TEXT");
-  app.add_option("--tolerance", arguments->tolerance,
-                 "Largest distance that counts as symmetric, as a fraction of the diagonal "
-                 "(default: that of --annotation, or 0.005)");
-  app.add_flag("--consistent", arguments->consistent,
-               "Make all regions agree exactly, as deform and fit do before they start: what cannot is left out, and "
-               "images that are missing are added");
-  app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as it is given");
+  app.add_option(
+      "--tolerance", arguments->tolerance,
+      "Largest distance between the surface and its image that still counts as symmetric, as a fraction of the "
+      "diagonal (default: that of --annotation, or 0.005)");
+  app.add_flag(
+      "--consistent", arguments->consistent,
+      "Make all regions consistent with one another, exactly, as deform and fit do first: regions that cannot be are "
+      "left out, missing images of regions are added");
+  app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as given");
   return [arguments, &app](CommandContext& context) {
     const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
     RegionHint hint;
@@ -232,8 +239,8 @@ CommandBody annotate(CLI::App& app) {
     if (!adds) {
       if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
       if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-      print(context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
-                         : edits_text(changes, annotation, mesh, arguments->list));
+      print(context, context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
+                                  : edits_text(changes, annotation, mesh, arguments->list));
       return kDone;
     }
     GuidedRegion found = guided_region(mesh, hint, options, context.run);
@@ -255,11 +262,11 @@ CommandBody annotate(CLI::App& app) {
       nlohmann::ordered_json result = to_json(region, addition, found, mesh, count);
       if (!changes.empty()) result["changes"] = changes;
       if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
-      print(result.dump(2) + "\n");
+      print(context, result.dump(2) + "\n");
       return kDone;
     }
-    print(lines(changes) + to_text(region, addition, found, mesh, count) +
-          (arguments->list ? annotation_table(annotation, mesh) : ""));
+    print(context, lines(changes) + to_text(region, addition, found, mesh, count) +
+                       (arguments->list ? annotation_table(annotation, mesh) : ""));
     return kDone;
   };
 }

@@ -20,11 +20,8 @@ double share_of_area(const std::vector<int>& faces, const Eigen::VectorXd& areas
 }
 
 Region& region_of(int id, const std::string& option, SymmetryAnnotation& annotation) {
-  const auto found = std::ranges::find(annotation.regions, id, &Region::id);
-  if (found == annotation.regions.end()) {
-    throw UsageError(option + ": the annotation has no region " + std::to_string(id) + " ('--list' shows them)");
-  }
-  return *found;
+  require_region(option, id, annotation);
+  return *std::ranges::find(annotation.regions, id, &Region::id);
 }
 
 }  // namespace

@@ -60,17 +60,17 @@ nlohmann::ordered_json to_json(const SymmetryReport& report, bool deformed, doub
 }
 
 std::string region_table(const SymmetryReport& report, bool deformed) {
-  std::vector<std::string> header{"region", "group", "vertices", "rest rms", "rest max"};
-  if (deformed) header.insert(header.end(), {"deformed max", "excess rms", "excess max"});
+  std::vector<std::string> header{"region", "group", "vertices", "rest rms %", "rest max %"};
+  if (deformed) header.insert(header.end(), {"deformed max %", "excess rms %", "excess max %"});
   header.insert(header.end(), {"worst vertex", "name"});
   TextTable table(header);
   for (const RegionResidual& region : report.regions) {
     std::vector<std::string> row{std::to_string(region.id), region.group, std::to_string(region.vertices),
-                                 short_number(region.floor.rms, 3), short_number(region.floor.max, 3)};
+                                 short_number(100 * region.floor.rms, 3), short_number(100 * region.floor.max, 3)};
     if (deformed) {
-      row.push_back(short_number(region.deformed.max, 3));
-      row.push_back(short_number(region.excess.rms, 3));
-      row.push_back(short_number(region.excess.max, 3));
+      row.push_back(short_number(100 * region.deformed.max, 3));
+      row.push_back(short_number(100 * region.excess.rms, 3));
+      row.push_back(short_number(100 * region.excess.max, 3));
     }
     row.push_back(region.worst_vertex < 0 ? "-" : std::to_string(region.worst_vertex));
     row.push_back(region.name);
@@ -80,11 +80,11 @@ std::string region_table(const SymmetryReport& report, bool deformed) {
 }
 
 std::string pattern_table(const SymmetryReport& report, bool deformed) {
-  TextTable table(deformed ? std::vector<std::string>{"pattern", "rest max", "deformed max", "name"}
-                           : std::vector<std::string>{"pattern", "rest max", "name"});
+  TextTable table(deformed ? std::vector<std::string>{"pattern", "rest max %", "deformed max %", "name"}
+                           : std::vector<std::string>{"pattern", "rest max %", "name"});
   for (const PatternResidual& pattern : report.patterns) {
-    std::vector<std::string> row{std::to_string(pattern.id), short_number(pattern.floor.max, 3)};
-    if (deformed) row.push_back(short_number(pattern.deformed.max, 3));
+    std::vector<std::string> row{std::to_string(pattern.id), short_number(100 * pattern.floor.max, 3)};
+    if (deformed) row.push_back(short_number(100 * pattern.deformed.max, 3));
     row.push_back(pattern.name);
     table.add(row);
   }
@@ -101,7 +101,7 @@ std::string to_text(const SymmetryReport& report, bool deformed) {
                 : "Not all vertices map onto vertices: distances are to the surface between vertices.\n";
   }
   if (!report.patterns.empty()) text += pattern_table(report, deformed);
-  text += "Distances are fractions of the diagonal.";
+  text += "Distances are in percent of the diagonal.";
   if (deformed) text += " Excess is what the deformation adds to the distance at rest.";
   return text + "\n";
 }
@@ -121,14 +121,17 @@ CommandBody check(CLI::App& app) {
   const auto arguments = std::make_shared<CheckArguments>();
   app.add_option("MESH", arguments->mesh, "Mesh at rest")->required()->type_name("FILE");
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required()->type_name("FILE");
-  app.add_option("--deformed", arguments->deformed, "The same mesh after a deformation")->type_name("FILE");
-  app.add_option("--mode", arguments->mode,
-                 "How the groups may move along: fixed, posed (one rigid motion for all), floating (also a translation "
-                 "each) or moving (a rigid motion each)")
+  app.add_option("--deformed", arguments->deformed, "The same mesh, deformed")->type_name("FILE");
+  app.add_option(
+         "--mode", arguments->mode,
+         "How the groups may have moved: fixed (not at all), posed (by one common rigid motion), floating (also by a "
+         "translation each) or moving (by a rigid motion each)")
       ->type_name("MODE")
       ->capture_default_str();
-  app.add_option("--max-residual", arguments->max_residual,
-                 "Exit with 1 above this fraction of the diagonal (of the excess with --deformed)");
+  app.add_option(
+      "--max-residual", arguments->max_residual,
+      "Exit with 1 if the residual (with --deformed its excess) exceeds this fraction of the diagonal (0.01 is "
+      "1 %)");
   return [arguments, &app](CommandContext& context) {
     const bool limited = app.count("--max-residual") > 0;
     if (limited && !(arguments->max_residual >= 0)) {
@@ -151,10 +154,11 @@ CommandBody check(CLI::App& app) {
     const SymmetryReport report = symmetry_residual(mesh, annotation, has_deformed ? &deformed : nullptr,
                                                     parse_mode(arguments->mode), context.run);
     const double worst = worst_residual(report, has_deformed);
-    print(context.json ? to_json(report, has_deformed, worst).dump(2) + "\n" : to_text(report, has_deformed));
+    print(context, context.json ? to_json(report, has_deformed, worst).dump(2) + "\n" : to_text(report, has_deformed));
     if (!limited || worst <= arguments->max_residual) return kDone;
-    context.run.message("the residual " + short_number(worst) + " is above the limit " +
-                        short_number(arguments->max_residual));
+    context.run.message("the residual " + short_number(worst) + " (" + percent(worst) +
+                        " of the diagonal) is above the limit " + short_number(arguments->max_residual) + " (" +
+                        percent(arguments->max_residual) + ")");
     return kNoResult;
   };
 }

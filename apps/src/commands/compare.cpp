@@ -12,6 +12,7 @@
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
+#include "../picture_options.h"
 #include "../subspace_arguments.h"
 #include "comparison.h"
 #include "comparison_report.h"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct CompareArguments {
   std::string mesh, scan, annotation, truth, handles, folder;
-  std::vector<double> up{0, 0, 1};
+  std::vector<double> up;
   bool aligned = false;
   bool brief = false;
   ComparisonOptions options;
@@ -49,26 +50,28 @@ void place(const Mesh& mesh, const SymmetryAnnotation& annotation, const FitOpti
 CommandBody compare(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>();
   app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to; without it handles alone edit the template");
-  app.add_option("--annotation", arguments->annotation, "The template's symmetries")->required()->type_name("FILE");
-  app.add_option("--truth", arguments->truth, "All of the shape that was scanned, in the scan's frame")
+  app.add_option("SCAN", arguments->scan, "Points to fit it to; without them the handles alone edit the template");
+  app.add_option("--annotation", arguments->annotation, "Annotation of the template (.json)")
+      ->required()
       ->type_name("FILE");
-  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
+  app.add_option("--truth", arguments->truth, "Mesh of the whole shape that was scanned, in the scan's frame")
+      ->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
   app.add_option("-o,--output", arguments->folder, "Folder for the table, the page and the fitted meshes")
       ->required()
       ->type_name("DIR");
-  app.add_option("--methods", arguments->options.methods, "Only these methods")
+  app.add_option("--methods", arguments->options.methods, "Methods to compare; without it all of them")
       ->delimiter(',')
       ->type_name("METHOD,...");
-  app.add_option("--weights", arguments->options.weights, "Of the symmetry penalty, swept")
+  app.add_option("--weights", arguments->options.weights, "Weights of the symmetry penalty to sweep over")
       ->delimiter(',')
       ->type_name("W,...");
-  app.add_option("--sizes", arguments->options.samples, "Samples of the surface, to time against")
+  app.add_option("--sizes", arguments->options.samples, "Numbers of surface samples to measure the time for")
       ->delimiter(',')
       ->type_name("N,...");
   app.add_flag("--brief", arguments->brief, "Only the table: no sweep of weights, no timing against sizes");
   app.add_flag("--aligned", arguments->aligned, "The scan is in the template's frame");
-  app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
+  add_up_option(app, arguments->up, "Upward direction of the pictures");
   add_subspace_options(app, arguments->subspace);
   return [arguments](CommandContext& context) {
     ComparisonOptions& options = arguments->options;
@@ -76,7 +79,7 @@ CommandBody compare(CLI::App& app) {
     if (arguments->scan.empty() && !arguments->truth.empty()) throw UsageError("--truth needs a scan");
     options.fit.subspace = arguments->subspace.options;
     options.validate();
-    const Eigen::Vector3d up = to_direction("--up", arguments->up);
+    if (!arguments->up.empty()) to_direction("--up", arguments->up);
     const Mesh mesh = read_mesh(arguments->mesh);
     SymmetryAnnotation annotation = read_annotation(arguments->annotation, mesh);
     options.fit.subspace = subspace_options(arguments->subspace, mesh, context.run);
@@ -91,6 +94,7 @@ CommandBody compare(CLI::App& app) {
       truth->mesh = read_mesh(arguments->truth);
       truth->visible = visible_vertices(truth->mesh, scan.points);
     }
+    const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
     const fs::path folder = arguments->folder;
     make_folder(folder);
     Similarity pose;
@@ -110,7 +114,7 @@ CommandBody compare(CLI::App& app) {
     for (const MethodRun& run : comparison.runs) {
       if (run.failure.empty()) write_mesh(folder / (run.method + ".ply"), run.result.fitted);
     }
-    print(context.json ? comparison_json(comparison) : comparison_text(comparison));
+    print(context, context.json ? comparison_json(comparison) : comparison_text(comparison));
     return kDone;
   };
 }

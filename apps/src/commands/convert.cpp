@@ -61,7 +61,7 @@ CommandBody convert(CLI::App& app) {
       summary["faces"] = mesh.faces.rows();
       text += count_of(mesh.vertices.rows(), "vertex", "vertices") + ", " + count_of(mesh.faces.rows(), "triangle");
     }
-    print((context.json ? summary.dump(2) : text) + "\n");
+    print(context, (context.json ? summary.dump(2) : text) + "\n");
     return kDone;
   };
 }

@@ -43,21 +43,24 @@ CommandBody deform(CLI::App& app) {
   const auto arguments = std::make_shared<DeformArguments>();
   app.add_option("MESH", arguments->mesh, "Mesh to edit")->required();
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required();
-  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->required()->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Edited mesh to write")->required()->type_name("FILE");
   app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the edited mesh to write (.json)")
       ->type_name("FILE");
-  app.add_option("--iterations", arguments->iterations, "Co-rotated iterations, instead of the handle file's")
+  app.add_option("--iterations", arguments->iterations,
+                 "Number of co-rotated iterations, instead of the one in the handle file")
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
-  app.add_option("--laplacian", arguments->laplacian, "Laplacian of the samples")
+  app.add_option("--laplacian", arguments->laplacian, "Laplacian of the samples: graph, cotangent or point")
       ->check(CLI::IsMember({"graph", "cotangent", "point"}))
       ->capture_default_str();
-  app.add_flag("--no-contacts", arguments->no_contacts, "Let parts that touch at rest come apart");
-  auto* basis =
-      app.add_option("--basis", arguments->basis, "Stored basis to load instead of building one")->type_name("FILE");
-  app.add_option("--max-residual", arguments->max_residual,
-                 "Write nothing and exit with 1 where the edit is less symmetric than this fraction of the diagonal")
+  app.add_flag("--no-contacts", arguments->no_contacts, "Allow parts that touch at rest to come apart");
+  auto* basis = app.add_option("--basis", arguments->basis,
+                               "Basis stored by 'orbifit subspace -o', to load instead of building it")
+                    ->type_name("FILE");
+  app.add_option(
+         "--max-residual", arguments->max_residual,
+         "Write nothing and exit with 1 if the symmetry residual of the edit exceeds this fraction of the diagonal")
       ->type_name("R");
   add_without_option(app, arguments->without);
   add_subspace_options(app, arguments->subspace);
@@ -108,7 +111,7 @@ CommandBody deform(CLI::App& app) {
     const std::string refusal = "the edit is only " + exactness(worst_field) + ", above --max-residual " +
                                 short_number(arguments->max_residual) + "; nothing was written";
     if (!within && !context.json) throw NoResultError(refusal);
-    if (within) write_mesh(arguments->output, edited);
+    if (within) write_edited(arguments->output, arguments->mesh, edited, context.run);
     if (within && !arguments->annotation_output.empty()) {
       write_annotation(arguments->annotation_output, deformed_annotation(annotation, built, deformation.state, edited));
     }
@@ -135,17 +138,18 @@ CommandBody deform(CLI::App& app) {
                                              {"prefactor", milliseconds(with_subspace, factorised)},
                                              {"solve", milliseconds(factorised, solved)},
                                              {"lift", milliseconds(solved, lifted)}}}};
-      print(summary.dump(2) + "\n");
+      print(context, summary.dump(2) + "\n");
       if (!within) throw NoResultError(refusal);
       return kDone;
     }
-    print(arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
-          count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", " +
-          exactness(worst_field) + ", handles missed by " + short_number(100 * missed, 3) + " % of the diagonal\n" +
-          (loads ? "basis loaded " : "subspace ") + short_number(milliseconds(start, with_subspace), 3) +
-          " ms, prefactor " + short_number(milliseconds(with_subspace, factorised), 3) + " ms, " +
-          count_of(set.iterations, "iteration") + " " + short_number(milliseconds(factorised, solved), 3) +
-          " ms, lift " + short_number(milliseconds(solved, lifted), 3) + " ms\n");
+    print(context, arguments->output + ": " + count_of(static_cast<long long>(set.handles.size()), "handle") + ", " +
+                       count_of(built.degrees_of_freedom(), "degree of freedom", "degrees of freedom") + ", " +
+                       exactness(worst_field) + ", handles missed by " + short_number(100 * missed, 3) +
+                       " % of the diagonal\n" + (loads ? "basis loaded " : "subspace ") +
+                       short_number(milliseconds(start, with_subspace), 3) + " ms, prefactor " +
+                       short_number(milliseconds(with_subspace, factorised), 3) + " ms, " +
+                       count_of(set.iterations, "iteration") + " " + short_number(milliseconds(factorised, solved), 3) +
+                       " ms, lift " + short_number(milliseconds(solved, lifted), 3) + " ms\n");
     return kDone;
   };
 }

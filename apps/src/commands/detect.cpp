@@ -10,7 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "orbifit/apps/render.h"
+#include "orbifit/apps/annotation_pictures.h"
+#include "orbifit/apps/report.h"
 #include "orbifit/detection/detect_points.h"
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
@@ -18,18 +19,16 @@
 #include "orbifit/model/scan_io.h"
 
 #include "../commands.h"
+#include "../picture_options.h"
 #include "files/file.h"
 
 namespace orbifit::commands {
 
 namespace {
 
-constexpr std::size_t kMostPictures = 24;  // in one preview
-constexpr std::size_t kManyPictures = 8;   // beyond them fewer rays a pixel: nobody waits for smooth lines
-
 struct DetectArguments {
   std::string mesh, output, preview, colour, explain;
-  std::vector<double> up{0, 0, 1};
+  std::vector<double> up;
   bool points = false;
   DetectOptions options;
 };
@@ -38,6 +37,10 @@ double area_fraction(const Eigen::VectorXd& areas, const std::vector<int>& faces
   double area = 0;
   for (const int face : faces) area += areas[face];
   return areas.sum() > 0 ? area / areas.sum() : 0;
+}
+
+nlohmann::ordered_json importance(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
 }
 
 nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh) {
@@ -49,6 +52,7 @@ nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh
                        {"group", region.group.symbol()},
                        {"faces", region.faces.size()},
                        {"area_fraction", area_fraction(areas, region.faces)},
+                       {"importance", importance(region.importance)},
                        {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
                        {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
   }
@@ -58,37 +62,70 @@ nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh
                         {"name", pattern.name},
                         {"kind", to_string(pattern.kind)},
                         {"instances", pattern.instances.size()},
+                        {"importance", importance(pattern.importance)},
                         {"residual", {{"rms", pattern.residual.rms}, {"max", pattern.residual.max}}}});
   }
   return {{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
+}
+
+// How many regions from this one on are images of one another: they have the importance of all in common.
+std::size_t family_size(const std::vector<Region>& regions, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < regions.size() && regions[first].importance && regions[end].importance == regions[first].importance &&
+         regions[end].group == regions[first].group) {
+    ++end;
+  }
+  return end - first;
+}
+
+// "4 x rod" of "rod 1 of 4, upper left".
+std::string family_name(const Region& first, std::size_t count) {
+  const std::string tail = " 1 of " + std::to_string(count);
+  return count == 1 ? first.name : std::to_string(count) + " x " + first.name.substr(0, first.name.find(tail));
+}
+
+// One line for each set of regions that are images of one another.
+std::string region_table(const SymmetryAnnotation& found, const Mesh& mesh) {
+  const Eigen::VectorXd areas = face_areas(mesh);
+  // What is left by rounding is no news here; `check` shows every digit.
+  const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
+  TextTable table({"region", "group", "area %", "saves %", "parent", "residual max %", "name"});
+  for (std::size_t i = 0; i < found.regions.size();) {
+    const Region& region = found.regions[i];
+    const std::size_t count = family_size(found.regions, i);
+    double area = 0;
+    double residual = 0;
+    for (std::size_t k = i; k < i + count; ++k) {
+      area += area_fraction(areas, found.regions[k].faces);
+      residual = std::max(residual, found.regions[k].residual.max);
+    }
+    const std::string last = count > 1 ? "-" + std::to_string(found.regions[i + count - 1].id) : "";
+    table.add({std::to_string(region.id) + last, region.group.symbol(), percent(area),
+               region.importance ? percent(*region.importance) : "-",
+               region.parent ? std::to_string(*region.parent) : "-", percent(residual), family_name(region, count)});
+    i += count;
+  }
+  return table.text();
 }
 
 std::string to_text(const SymmetryAnnotation& found, const Mesh& mesh) {
   if (found.regions.empty() && found.patterns.empty()) {
     return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
   }
-  const Eigen::VectorXd areas = face_areas(mesh);
-  // What is left by rounding is no news here; `check` shows every digit.
   const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
-  std::string text;
-  if (!found.regions.empty()) {
-    TextTable table({"region", "group", "area %", "faces", "parent", "residual max %", "name"});
-    for (const Region& region : found.regions) {
-      table.add({std::to_string(region.id), region.group.symbol(), percent(area_fraction(areas, region.faces)),
-                 std::to_string(region.faces.size()), region.parent ? std::to_string(*region.parent) : "-",
-                 percent(region.residual.max), region.name});
-    }
-    text += table.text();
-  }
+  std::string text = found.regions.empty() ? "" : region_table(found, mesh);
   if (!found.patterns.empty()) {
-    TextTable table({"pattern", "kind", "instances", "residual max %", "name"});
+    TextTable table({"pattern", "kind", "instances", "saves %", "residual max %", "name"});
     for (const Pattern& pattern : found.patterns) {
       table.add({std::to_string(pattern.id), to_string(pattern.kind), std::to_string(pattern.instances.size()),
-                 percent(pattern.residual.max), pattern.name});
+                 pattern.importance ? percent(*pattern.importance) : "-", percent(pattern.residual.max), pattern.name});
     }
     text += (text.empty() ? "" : "\n") + table.text();
   }
-  return text + "Residuals are in percent of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
+  return text +
+         "Saves: of the surface that does not follow from the lines before. Residuals are in percent of the "
+         "diagonal, " +
+         short_number(diagonal(mesh.vertices), 6) + ".\n";
 }
 
 // Every region's colour on the faces for which it is the smallest region; clay elsewhere.
@@ -106,39 +143,27 @@ Points region_colours(const Mesh& mesh, const std::vector<Region>& regions) {
 
 void write_preview(const DetectArguments& arguments, const Mesh& mesh, const SymmetryAnnotation& found,
                    const RunContext& run) {
+  constexpr int kColumns = 4;
   ViewOptions view;
   view.width = 480;
   view.height = 360;
-  view.up = to_direction("--up", arguments.up);
-  const std::size_t total = found.regions.size() + found.patterns.size();
-  if (total > kManyPictures) view.samples = 4;
-  std::vector<Image> images;
-  std::vector<std::string> captions;
-  const auto add = [&](const Scene& scene, const std::string& caption) {
-    if (images.size() >= kMostPictures) return;
-    images.push_back(orbifit::render(scene, view, run));
-    captions.push_back(caption);
-  };
-  for (const Region& region : found.regions) {
-    if (images.size() >= kMostPictures) break;
-    add(visible_region_scene(mesh, region, view, run),
-        "region " + std::to_string(region.id) + ": " + region.group.symbol());
+  view.up = picture_up(arguments.up, mesh, arguments.mesh, &found);
+  const std::vector<AnnotationPicture> pictures = annotation_pictures(mesh, found, view, run);
+  if (lower_extension(arguments.preview) == ".png") {
+    write_png(arguments.preview, contact_sheet(pictures, kColumns));
+    return;
   }
-  for (const Pattern& pattern : found.patterns) {
-    if (images.size() >= kMostPictures) break;
-    add(visible_pattern_scene(mesh, pattern, view, run),
-        "pattern " + std::to_string(pattern.id) + ": " + to_string(pattern.kind));
+  Report report;
+  report.title = std::filesystem::path(arguments.mesh).filename().string();
+  report.sections.push_back({count_of(static_cast<long long>(found.regions.size()), "region") + ", " +
+                                 count_of(static_cast<long long>(found.patterns.size()), "pattern"),
+                             "",
+                             {},
+                             {}});
+  for (const AnnotationPicture& picture : pictures) {
+    report.sections.back().pictures.push_back({encode_png(picture.image), picture.title + "\n" + picture.detail});
   }
-  if (images.empty()) {
-    Scene plain;
-    plain.surfaces.emplace_back().mesh = mesh;
-    add(plain, "no symmetry found");
-  }
-  if (total > images.size()) {
-    run.message("the preview shows the first " + std::to_string(images.size()) + " of " + std::to_string(total) +
-                " regions and patterns");
-  }
-  write_png(arguments.preview, contact_sheet(images, captions, std::min<int>(static_cast<int>(images.size()), 4)));
+  write_file(arguments.preview, to_html(report));
 }
 
 // One line a judgement, columns apart by tabs.
@@ -226,7 +251,7 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
   const SymmetryAnnotation found = detect_points(scan, chosen, context.run);
   if (!arguments.explain.empty()) write_explanation(arguments.explain, explanation);
   if (!arguments.output.empty()) write_annotation(arguments.output, found);
-  print(context.json ? points_json(found).dump(2) + "\n" : points_text(found));
+  print(context, context.json ? points_json(found).dump(2) + "\n" : points_text(found));
   return kDone;
 }
 
@@ -235,47 +260,59 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
 CommandBody detect(CLI::App& app) {
   const auto arguments = std::make_shared<DetectArguments>();
   DetectOptions& options = arguments->options;
-  app.add_option("MESH", arguments->mesh, "Mesh to look at; with --points a scan")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it only the list is printed")
+  app.add_option("MESH", arguments->mesh, "Mesh whose symmetries are sought; with --points, a scan")
+      ->required()
       ->type_name("FILE");
-  app.add_option("--tolerance", options.tolerance,
-                 "Largest distance that counts as symmetric, as a fraction of the diagonal")
+  app.add_option("-o,--output", arguments->output,
+                 "Annotation to write (.json); without it the regions are only listed")
+      ->type_name("FILE");
+  app.add_option(
+         "--tolerance", options.tolerance,
+         "Largest distance between the surface and its image that still counts as symmetric, as a fraction of the "
+         "diagonal of the mesh's bounding box")
       ->capture_default_str();
   app.add_flag(
       "--points", arguments->points,
-      "The file is a scan (PLY, PCD, XYZ, PTS), perhaps seen from one side only: the annotation's face numbers "
-      "are point numbers, and its counts of vertices and of faces are both the number of points");
-  app.add_option("--max-seconds", options.time_budget, "Stop then and keep what is verified; 0: no limit")
+      "The file is a scan (PLY, PCD, XYZ, PTS), which may have been taken from one side only. In the annotation, face "
+      "numbers are then point numbers, and the numbers of vertices and of faces are both the number of points");
+  app.add_option("--time-budget", options.time_budget,
+                 "Stop searching after so many seconds and keep what is verified by then; 0: no limit")
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  app.add_option("--max-seconds", options.time_budget)->group("");  // what --time-budget was called
+  app.add_option("--samples", options.samples,
+                 "Number of surface samples on which symmetries of the whole mesh are verified")
       ->capture_default_str();
-  app.add_option("--samples", options.samples, "Surface samples on which a whole mesh is verified")
-      ->capture_default_str();
-  app.add_option("--preview", arguments->preview, "Picture of every region and pattern (.png)")->type_name("FILE");
-  app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region (.ply)")->type_name("FILE");
-  app.add_option("--explain", arguments->explain,
-                 "Folder for what each stage kept and dropped, why, and how long it took (created)")
+  app.add_flag("--all", options.all, "List also what saves next to nothing beside what is listed before it");
+  app.add_option("--preview", arguments->preview,
+                 "Pictures of all regions and patterns to write: one sheet (.png) or a page (.html)")
+      ->type_name("FILE");
+  app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region to write (.ply)")->type_name("FILE");
+  app.add_option(
+         "--explain", arguments->explain,
+         "Folder to write what each stage kept and dropped, for which reason, and how long it took; created if missing")
       ->type_name("DIR");
-  app.add_option("--up", arguments->up, "Upward direction of the preview")
-      ->type_size(3)
-      ->expected(1)
-      ->type_name("X Y Z");
+  add_up_option(app, arguments->up, "Upward direction, for names and the preview; kept in the annotation");
   return [arguments](CommandContext& context) {
     arguments->options.validate();
-    to_direction("--up", arguments->up);
+    if (!arguments->up.empty()) to_direction("--up", arguments->up);
     if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
-    if (!arguments->preview.empty()) check_output(arguments->preview, {".png"}, {arguments->mesh});
+    if (!arguments->preview.empty()) check_output(arguments->preview, {".png", ".html"}, {arguments->mesh});
     if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
     if (arguments->points) return detect_in_points(*arguments, context);
     const Mesh mesh = read_mesh(arguments->mesh);
     context.run.check();
     Explanation explanation;
     DetectOptions chosen = arguments->options;
+    chosen.up = picture_up(arguments->up, mesh, arguments->mesh, nullptr);
     RunContext run = context.run;
     std::optional<StageTimes> times;
     if (!arguments->explain.empty()) {
       chosen.explanation = &explanation;
       times.emplace(run);
     }
-    const SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
+    SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
+    if (!arguments->up.empty()) found.up = to_direction("--up", arguments->up);
     if (times) {
       write_explanation(arguments->explain, explanation);
       times->write(arguments->explain);
@@ -283,7 +320,7 @@ CommandBody detect(CLI::App& app) {
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
     if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
-    print(context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
+    print(context, context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
     return kDone;
   };
 }

@@ -18,6 +18,7 @@
 #include "../commands.h"
 #include "../edit_warnings.h"
 #include "../fit_report.h"
+#include "../picture_options.h"
 #include "../subspace_arguments.h"
 #include "files/file.h"
 
@@ -27,7 +28,7 @@ namespace {
 
 struct FitArguments {
   std::string mesh, scan, annotation, output, report, html, landmarks, handles, annotation_output;
-  std::vector<double> up{0, 0, 1};
+  std::vector<double> up;
   std::vector<double> viewpoint;
   bool aligned = false;
   bool no_contacts = false;
@@ -53,16 +54,17 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
                      percent(arguments.options.inlier_distance) + " of the diagonal (rms " + percent(result.rms) +
                      "), " + percent(result.hidden_fraction) + " of the surface not seen; " +
                      exactness(result.field_residual) + "\n";
-  text += "symmetry residual added to the mesh " + short_number(symmetry.worst_excess, 3) + "\n";
+  text +=
+      "symmetry residual added to the mesh: " + short_number(100 * symmetry.worst_excess, 3) + " % of the diagonal\n";
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
           count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;
     const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
-    text += "region " + std::to_string(group.region) + ": the scan is off its symmetry by " +
+    text += "region " + std::to_string(group.region) + ": an unconstrained fit contradicts its symmetry by " +
             percent(group.disagreement) + " of the diagonal (rms " + percent(group.held) + ", without the group " +
-            percent(group.free) + (left_out ? "); left out\n" : ")\n");
+            percent(group.free) + (left_out ? "); dropped\n" : ")\n");
   }
   return text;
 }
@@ -72,35 +74,41 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
 CommandBody fit(CLI::App& app) {
   const auto arguments = std::make_shared<FitArguments>();
   FitOptions& options = arguments->options;
-  app.add_option("TEMPLATE", arguments->mesh, "Mesh to fit")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to, anywhere, at any scale")->required();
-  app.add_option("--annotation", arguments->annotation, "The template's annotation; without it, it is detected")
+  app.add_option("TEMPLATE", arguments->mesh, "Mesh to deform and place so that it fits the scan")->required();
+  app.add_option("SCAN", arguments->scan, "Points to fit it to, in any position and at any scale")->required();
+  app.add_option("--annotation", arguments->annotation,
+                 "The template's annotation; without it, the symmetries are detected")
       ->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Fitted mesh to write")->required()->type_name("FILE");
-  app.add_option("--report", arguments->report, "All figures (.json)")->type_name("FILE");
-  app.add_option("--html", arguments->html, "Page with pictures (.html)")->type_name("FILE");
-  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the fitted mesh (.json)")
+  app.add_option("--report", arguments->report, "Report with all figures to write (.json)")->type_name("FILE");
+  app.add_option("--html", arguments->html, "Page with figures and pictures to write (.html)")->type_name("FILE");
+  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the fitted mesh to write (.json)")
       ->type_name("FILE");
-  app.add_option("--landmarks", arguments->landmarks, "Vertices and their places in the scan (.json)")
+  app.add_option("--landmarks", arguments->landmarks,
+                 "Vertices of the template and their positions in the scan (.json)")
       ->type_name("FILE");
-  app.add_option("--handles", arguments->handles, "Handles and where they go (.json)")->type_name("FILE");
+  app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
   app.add_flag("--aligned", arguments->aligned,
-               "The scan is in the template's frame: neither find nor refine its pose");
-  app.add_option("--viewpoint", arguments->viewpoint,
-                 "From where all of the scan was seen, where its file does not say: 0 0 0 in a camera's frame")
+               "The scan is in the template's frame: the pose is neither sought nor refined");
+  app.add_option(
+         "--viewpoint", arguments->viewpoint,
+         "Point from which all of the scan was taken, if its file does not say; 0 0 0 for a scan in the camera's frame")
       ->expected(3)
       ->type_name("X Y Z");
-  app.add_option("--max-residual", arguments->max_residual,
-                 "Write no mesh and exit with 1 where the fit is less symmetric than this fraction of the diagonal")
+  app.add_option(
+         "--max-residual", arguments->max_residual,
+         "Write no mesh and exit with 1 if the symmetry residual of the fit exceeds this fraction of the diagonal")
       ->type_name("R");
   add_without_option(app, arguments->without);
-  app.add_flag("--auto-relax", options.drop_unsupported,
-               "Do not keep the groups that the scan has not, as a fit without shows");
-  app.add_flag("--no-contacts", arguments->no_contacts, "Let parts of the template that touch come apart");
-  app.add_option("--stiffness", options.last_stiffness, "Of the last iterations; less follows the scan more closely")
+  app.add_flag("--drop-unsupported", options.drop_unsupported,
+               "Drop the groups that an unconstrained fit to the scan contradicts");
+  app.add_flag("--auto-relax", options.drop_unsupported)->group("");  // what --drop-unsupported was called
+  app.add_flag("--no-contacts", arguments->no_contacts, "Allow parts of the template that touch to come apart");
+  app.add_option("--stiffness", options.last_stiffness,
+                 "Stiffness in the last iterations; a smaller value follows the scan more closely")
       ->capture_default_str();
-  app.add_option("--scan-points", options.scan_points, "Points of the scan to use")->capture_default_str();
-  app.add_option("--up", arguments->up, "Upward direction of the pictures")->expected(3)->type_name("X Y Z");
+  app.add_option("--scan-points", options.scan_points, "Number of scan points used")->capture_default_str();
+  add_up_option(app, arguments->up, "Upward direction of the pictures");
   add_subspace_options(app, arguments->subspace);
   return [arguments, &app](CommandContext& context) {
     FitOptions& chosen = arguments->options;
@@ -113,7 +121,7 @@ CommandBody fit(CLI::App& app) {
     chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();
-    const Eigen::Vector3d up = to_direction("--up", arguments->up);
+    if (!arguments->up.empty()) to_direction("--up", arguments->up);
     check_outputs(*arguments);
     const Mesh mesh = read_mesh(arguments->mesh);
     chosen.subspace = subspace_options(arguments->subspace, mesh, context.run);
@@ -147,6 +155,7 @@ CommandBody fit(CLI::App& app) {
     // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
     if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");
     if (!arguments->html.empty()) {
+      const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
       write_file(arguments->html, fit_to_html(mesh, scan, result, symmetry, up, context.run));
     }
     if (!result.converged) {
@@ -160,9 +169,9 @@ CommandBody fit(CLI::App& app) {
     if (result.field_residual > kExactResidual) {
       context.run.message("warning: the fit is only " + exactness(result.field_residual));
     }
-    write_mesh(arguments->output, result.fitted);
+    write_edited(arguments->output, arguments->mesh, result.fitted, context.run);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
-    print(context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
+    print(context, context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
     return kDone;
   };
 }

@@ -43,8 +43,8 @@ std::map<std::string, double> parse_parameters(const std::vector<std::string>& t
   return result;
 }
 
-int list_models(bool json) {
-  if (json) {
+int list_models(CommandContext& context) {
+  if (context.json) {
     nlohmann::ordered_json models = nlohmann::ordered_json::array();
     for (const Generator& model : generators()) {
       nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
@@ -58,7 +58,7 @@ int list_models(bool json) {
       }
       models.push_back({{"name", model.name}, {"meaning", model.meaning}, {"parameters", parameters}});
     }
-    print(nlohmann::ordered_json{{"models", models}}.dump(2) + "\n");
+    print(context, nlohmann::ordered_json{{"models", models}}.dump(2) + "\n");
     return kDone;
   }
   std::string text;
@@ -71,7 +71,7 @@ int list_models(bool json) {
     }
     text += table.text();
   }
-  print(text);
+  print(context, text);
   return kDone;
 }
 
@@ -84,11 +84,11 @@ CommandBody generate(CLI::App& app) {
       ->type_name("NAME=NUMBER")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("-o,--output", arguments->folder, "Folder for NAME.ply and NAME.annotation.json; made if missing")
+  app.add_option("-o,--output", arguments->folder, "Folder for NAME.ply and NAME.annotation.json; created if missing")
       ->type_name("FOLDER");
   app.add_flag("--list", arguments->list, "List the models and their parameters");
   return [arguments](CommandContext& context) -> int {
-    if (arguments->list) return list_models(context.json);
+    if (arguments->list) return list_models(context);
     if (arguments->name.empty()) throw UsageError("a model's NAME is needed ('orbifit generate --list' shows them)");
     if (arguments->folder.empty()) throw UsageError("-o FOLDER is needed");
     const GeneratedModel model = orbifit::generate(arguments->name, parse_parameters(arguments->parameters));
@@ -102,19 +102,19 @@ CommandBody generate(CLI::App& app) {
     write_mesh(mesh_file, model.mesh);
     write_annotation(annotation_file, model.truth);
     if (context.json) {
-      print(nlohmann::ordered_json{{"mesh", mesh_file.string()},
-                                   {"annotation", annotation_file.string()},
-                                   {"vertices", model.mesh.vertices.rows()},
-                                   {"faces", model.mesh.faces.rows()},
-                                   {"regions", model.truth.regions.size()},
-                                   {"patterns", model.truth.patterns.size()}}
-                .dump(2) +
-            "\n");
+      print(context, nlohmann::ordered_json{{"mesh", mesh_file.string()},
+                                            {"annotation", annotation_file.string()},
+                                            {"vertices", model.mesh.vertices.rows()},
+                                            {"faces", model.mesh.faces.rows()},
+                                            {"regions", model.truth.regions.size()},
+                                            {"patterns", model.truth.patterns.size()}}
+                             .dump(2) +
+                         "\n");
     } else {
-      print(mesh_file.string() + ": " + count_of(model.mesh.vertices.rows(), "vertex", "vertices") + ", " +
-            count_of(model.mesh.faces.rows(), "triangle") + "\n" + annotation_file.string() + ": " +
-            count_of(static_cast<long long>(model.truth.regions.size()), "region") + ", " +
-            count_of(static_cast<long long>(model.truth.patterns.size()), "pattern") + "\n");
+      print(context, mesh_file.string() + ": " + count_of(model.mesh.vertices.rows(), "vertex", "vertices") + ", " +
+                         count_of(model.mesh.faces.rows(), "triangle") + "\n" + annotation_file.string() + ": " +
+                         count_of(static_cast<long long>(model.truth.regions.size()), "region") + ", " +
+                         count_of(static_cast<long long>(model.truth.patterns.size()), "pattern") + "\n");
     }
     return kDone;
   };

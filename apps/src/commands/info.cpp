@@ -77,7 +77,7 @@ CommandBody info(CLI::App& app) {
     const Mesh mesh = read_mesh(*file);
     context.run.check();
     const MeshReport report = inspect(mesh);
-    print(context.json ? to_json(*file, mesh, report).dump(2) + "\n" : to_text(*file, mesh, report));
+    print(context, context.json ? to_json(*file, mesh, report).dump(2) + "\n" : to_text(*file, mesh, report));
     return kDone;
   };
 }

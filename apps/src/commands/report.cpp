@@ -7,7 +7,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "orbifit/apps/annotation_pictures.h"
+#include "orbifit/apps/upright.h"
+#include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
+#include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
 #include "files/file.h"
@@ -19,7 +23,9 @@ namespace {
 // Reads the description of a report; every refusal names the file and the key.
 class StepsReader {
  public:
-  explicit StepsReader(const std::filesystem::path& file) : file_(file) {}
+  /// \param page  that will link to the files
+  StepsReader(const std::filesystem::path& file, const std::filesystem::path& page, const RunContext& run)
+      : file_(file), page_(page), run_(run) {}
 
   Report read() const {
     nlohmann::json json;
@@ -96,6 +102,30 @@ class StepsReader {
     return picture;
   }
 
+  ReportLink read_link(const nlohmann::json& json, const std::string& place) const {
+    const std::string name = cell(json, place);
+    const std::filesystem::path file = file_.parent_path() / name;
+    if (!std::filesystem::is_regular_file(file)) refuse(place, "\"" + name + "\" is no file beside it");
+    const std::filesystem::path folder = std::filesystem::absolute(page_).parent_path();
+    return {std::filesystem::absolute(file).lexically_normal().lexically_relative(folder.lexically_normal()).string(),
+            name};
+  }
+
+  // Pictures of all that an annotation holds.
+  void read_regions(const nlohmann::json& json, const std::string& place, std::vector<ReportPicture>& pictures) const {
+    if (!json.is_object()) refuse(place, "must be an object with a mesh and its annotation");
+    const std::filesystem::path mesh_file = file_.parent_path() / text(json, "mesh", place);
+    const Mesh mesh = read_mesh(mesh_file);
+    const SymmetryAnnotation annotation = read_annotation(file_.parent_path() / text(json, "annotation", place), mesh);
+    ViewOptions view;
+    view.width = 400;
+    view.height = 320;
+    view.up = up_of(mesh, mesh_file, &annotation);
+    for (const AnnotationPicture& each : annotation_pictures(mesh, annotation, view, run_)) {
+      pictures.push_back({encode_png(each.image), each.title + "\n" + each.detail});
+    }
+  }
+
   ReportTable read_table(const nlohmann::json& json, const std::string& place) const {
     ReportTable table;
     for (const auto& [header, at] : list(json, "headers", place, false)) table.headers.push_back(cell(*header, at));
@@ -113,14 +143,21 @@ class StepsReader {
     ReportSection section;
     section.title = text(json, "title", place);
     section.text = text(json, "text", place);
+    section.command = text(json, "command", place);
+    section.output = text(json, "output", place);
     for (const auto& [picture, at] : list(json, "pictures", place))
       section.pictures.push_back(read_picture(*picture, at));
+    if (const auto regions = json.find("regions"); regions != json.end()) {
+      read_regions(*regions, key_at(place, "regions"), section.pictures);
+    }
+    for (const auto& [file, at] : list(json, "files", place, false)) section.files.push_back(read_link(*file, at));
     for (const auto& [table, at] : list(json, "tables", place)) section.tables.push_back(read_table(*table, at));
     for (const auto& [note, at] : list(json, "notes", place, false)) section.notes.push_back(cell(*note, at));
     return section;
   }
 
-  std::filesystem::path file_;
+  std::filesystem::path file_, page_;
+  const RunContext& run_;
 };
 
 }  // namespace
@@ -135,7 +172,7 @@ CommandBody report(CLI::App& app) {
   app.add_option("-o,--output", arguments->output, "Page to write (.html)")->required()->type_name("FILE");
   return [arguments](CommandContext& context) {
     check_output(arguments->output, {".html", ".htm"}, {arguments->steps});
-    const Report report = StepsReader(arguments->steps).read();
+    const Report report = StepsReader(arguments->steps, arguments->output, context.run).read();
     const std::string page = to_html(report);
     context.run.check();
     write_file(arguments->output, page);
@@ -146,10 +183,10 @@ CommandBody report(CLI::App& app) {
                                            {"sections", report.sections.size()},
                                            {"pictures", pictures},
                                            {"bytes", page.size()}};
-      print(summary.dump(2) + "\n");
+      print(context, summary.dump(2) + "\n");
     } else {
-      print(arguments->output + ": " + count_of(static_cast<long long>(report.sections.size()), "section") + ", " +
-            count_of(static_cast<long long>(pictures), "picture") + "\n");
+      print(context, arguments->output + ": " + count_of(static_cast<long long>(report.sections.size()), "section") +
+                         ", " + count_of(static_cast<long long>(pictures), "picture") + "\n");
     }
     return kDone;
   };

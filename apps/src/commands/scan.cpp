@@ -31,17 +31,18 @@ CommandBody scan(CLI::App& app) {
   const auto number = [&](const std::string& name, auto& value, const std::string& meaning) {
     app.add_option(name, value, meaning)->capture_default_str();
   };
-  number("--views", options.views, "Views, spread evenly around the mesh");
-  number("--azimuth", options.azimuth, "Of the first view: degrees about the upward direction");
-  number("--elevation", options.elevation, "Degrees above the horizon");
-  number("--noise", options.noise, "Standard deviation along the ray, as a fraction of the diagonal");
-  number("--outliers", options.outliers, "Fraction of points thrown anywhere into the box");
-  number("--clutter", options.clutter, "Fraction of points on a floor and blocks around the mesh");
-  number("--distance", options.distance, "From the camera to the centre, in diagonals");
-  number("--width", options.width, "Pixels");
-  number("--height", options.height, "Pixels");
-  number("--field-of-view", options.field_of_view, "Vertical, degrees");
-  number("--grazing-limit", options.grazing_limit, "Degrees between ray and normal above which nothing is seen");
+  number("--views", options.views, "Number of views, spread evenly around the mesh");
+  number("--azimuth", options.azimuth, "Azimuth of the first view, degrees about the upward direction");
+  number("--elevation", options.elevation, "Elevation of the camera, degrees above the horizon");
+  number("--noise", options.noise,
+         "Standard deviation of the depth noise along the ray, as a fraction of the diagonal");
+  number("--outliers", options.outliers, "Fraction of points replaced by uniformly random points of the bounding box");
+  number("--clutter", options.clutter, "Fraction of points that lie on a floor and on blocks around the mesh");
+  number("--distance", options.distance, "Distance of the camera from the centre, in diagonals");
+  number("--width", options.width, "Width of the depth image, pixels");
+  number("--height", options.height, "Height of the depth image, pixels");
+  number("--field-of-view", options.field_of_view, "Vertical field of view, degrees");
+  number("--grazing-limit", options.grazing_limit, "Angle between ray and normal above which nothing is seen, degrees");
   app.add_option("--up", arguments->up, "Upward direction")
       ->type_size(3)
       ->expected(1)
@@ -57,13 +58,13 @@ CommandBody scan(CLI::App& app) {
     context.run.check();
     write_scan(arguments->output, points);
     const auto count = points.points.rows();
-    print(context.json ? nlohmann::ordered_json{{"scan", arguments->output},
-                                                {"points", count},
-                                                {"views", arguments->options.views}}
-                                 .dump(2) +
-                             "\n"
-                       : arguments->output + ": " + count_of(count, "point") + " from " +
-                             count_of(arguments->options.views, "view") + "\n");
+    print(context, context.json ? nlohmann::ordered_json{{"scan", arguments->output},
+                                                         {"points", count},
+                                                         {"views", arguments->options.views}}
+                                          .dump(2) +
+                                      "\n"
+                                : arguments->output + ": " + count_of(count, "point") + " from " +
+                                      count_of(arguments->options.views, "view") + "\n");
     return kDone;
   };
 }

@@ -73,18 +73,18 @@ nlohmann::ordered_json to_json(const SymmetryAnnotation& annotation, const std::
 
 std::string to_table(const SymmetryAnnotation& annotation, const std::vector<LiftResiduals>& residuals) {
   std::vector<std::string> header{"region", "group"};
-  for (const LiftResiduals& one : residuals) header.push_back(to_string(one.lift) + " lift");
+  for (const LiftResiduals& one : residuals) header.push_back(to_string(one.lift) + " lift %");
   header.emplace_back("name");
   TextTable table(header);
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     const Region& region = annotation.regions[i];
     std::vector<std::string> row{std::to_string(region.id), region.group.symbol()};
-    for (const LiftResiduals& one : residuals) row.push_back(short_number(one.regions[i].max, 3));
+    for (const LiftResiduals& one : residuals) row.push_back(short_number(100 * one.regions[i].max, 3));
     row.push_back(region.name);
     table.add(row);
   }
   return table.text() +
-         "Residuals are of a random displacement, at the images of each region's vertices, as fractions of the "
+         "Residuals are of a random displacement, at the images of each region's vertices, in percent of the "
          "diagonal.\n";
 }
 
@@ -96,12 +96,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 CommandBody subspace(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
-  app.add_option("MESH", arguments->mesh, "Mesh")->required();
+  app.add_option("MESH", arguments->mesh, "Mesh to build the subspace of")->required();
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json)")->required();
-  app.add_option("-o,--output", arguments->output, "Basis to write, for deform --basis")->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Basis to write, for 'orbifit deform --basis'")->type_name("FILE");
   add_without_option(app, arguments->without);
   add_subspace_options(app, arguments->subspace);
-  app.add_flag("--compare-lifts", arguments->compare_lifts, "Report the residuals of the other lift as well");
+  app.add_flag("--compare-lifts", arguments->compare_lifts, "Report the residuals of the other lift too");
   return [arguments](CommandContext& context) {
     arguments->subspace.options.validate();
     const bool stores = !arguments->output.empty();
@@ -132,7 +132,7 @@ CommandBody subspace(CLI::App& app) {
                                      {"build_seconds", seconds},
                                      {"regions", to_json(annotation, residuals)}};
       if (stores) summary["basis"] = arguments->output;
-      print(summary.dump(2) + "\n");
+      print(context, summary.dump(2) + "\n");
       return kDone;
     }
     std::string text = "mode                " + to_string(built.mode()) + "\n";
@@ -142,11 +142,11 @@ CommandBody subspace(CLI::App& app) {
     text += "samples             " + std::to_string(built.samples().rows()) + " in " +
             count_of(built->sampling.orbits(), "orbit") + "\n";
     text += "degrees of freedom  " + std::to_string(built.degrees_of_freedom()) + "\n";
-    text += "samples a vertex    " + short_number(neighbours, 3) + "\n";
+    text += "samples per vertex  " + short_number(neighbours, 3) + "\n";
     text += "time                " + short_number(seconds, 3) + " s\n";
     if (stores) text += "basis               " + arguments->output + "\n";
     if (!annotation.regions.empty()) text += to_table(annotation, residuals);
-    print(text);
+    print(context, text);
     return kDone;
   };
 }

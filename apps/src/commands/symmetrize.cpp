@@ -52,19 +52,21 @@ nlohmann::ordered_json to_json(const SymmetrizeReport& report, const SymmetryRep
 
 std::string to_text(const std::string& output, const SymmetrizeReport& report, const SymmetryReport& after) {
   TextTable table(
-      {"region", "group", "places", "mapped", "before rms", "before max", "after rms", "after max", "name"});
+      {"region", "group", "places", "mapped", "before rms %", "before max %", "after rms %", "after max %", "name"});
   for (std::size_t r = 0; r < report.regions.size(); ++r) {
     const SymmetrizeReport::RegionChange& change = report.regions[r];
     table.add({std::to_string(change.id), after.regions[r].group, std::to_string(change.places),
-               std::to_string(change.mapped), short_number(change.before.rms, 3), short_number(change.before.max, 3),
-               short_number(change.after.rms, 3), short_number(change.after.max, 3), change.name});
+               std::to_string(change.mapped), short_number(100 * change.before.rms, 3),
+               short_number(100 * change.before.max, 3), short_number(100 * change.after.rms, 3),
+               short_number(100 * change.after.max, 3), change.name});
   }
-  return output + ": vertices moved by " + short_number(report.largest_movement, 3) + " at most, " +
-         short_number(report.rms_movement, 3) + " rms; " + std::to_string(report.mapped) + " of " +
+  return output + ": vertices moved by " + percent(report.largest_movement) + " at most, " +
+         percent(report.rms_movement) + " rms; " + std::to_string(report.mapped) + " of " +
          count_of(report.in_regions, "vertex", "vertices") + " in regions exactly symmetric" +
-         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, lest a region get worse" : "") +
-         (report.unclosed > 0 ? ", groups disagree about " + std::to_string(report.unclosed) : "") + "\n" +
-         (report.regions.empty() ? "" : table.text()) + "Lengths are fractions of the diagonal.\n";
+         (report.held > 0 ? ", " + std::to_string(report.held) + " left as they are, since a region would get worse"
+                          : "") +
+         (report.unclosed > 0 ? ", groups contradict one another at " + std::to_string(report.unclosed) : "") + "\n" +
+         (report.regions.empty() ? "" : table.text()) + "Lengths are in percent of the diagonal.\n";
 }
 
 }  // namespace
@@ -84,13 +86,13 @@ CommandBody symmetrize(CLI::App& app) {
       check_output(arguments->annotation_output, {".json"}, {arguments->mesh, arguments->output});
     }
     const Mesh mesh = read_mesh(arguments->mesh);
-    SymmetryAnnotation annotation = made_consistent(
-        mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
+    SymmetryAnnotation annotation =
+        made_consistent(mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
     SymmetrizeReport report;
     const Mesh result = symmetrized(mesh, annotation, context.run, &report);
     const SymmetryReport after = symmetry_residual(result, annotation, nullptr, CarriedMotions::fixed, context.run);
     context.run.check();
-    write_mesh(arguments->output, result);
+    write_edited(arguments->output, arguments->mesh, result, context.run);
     if (!arguments->annotation_output.empty()) {
       annotation.mesh_diagonal = diagonal(result.vertices);
       for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
@@ -101,7 +103,7 @@ CommandBody symmetrize(CLI::App& app) {
       }
       write_annotation(arguments->annotation_output, annotation);
     }
-    print(context.json ? to_json(report, after).dump(2) + "\n" : to_text(arguments->output, report, after));
+    print(context, context.json ? to_json(report, after).dump(2) + "\n" : to_text(arguments->output, report, after));
     return kDone;
   };
 }

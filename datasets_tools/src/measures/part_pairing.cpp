@@ -134,11 +134,11 @@ class Pairer {
   // Measures the candidates on some vertices of the parts.
   void judge(const RegionParts::Division& from, const RegionParts::Division& to,
              std::vector<std::vector<Candidate>>& all) const {
-    constexpr std::size_t kSamples = 12;  // of a part
+    constexpr std::size_t kPartVertices = 12;  // of a part
     std::vector<Request> requests(to.parts.size());
     for (std::size_t c = 0; c < all.size(); ++c) {
       const std::vector<int>& vertices = from.parts[c % from.parts.size()].vertices;
-      const std::size_t samples = std::min(kSamples, vertices.size());
+      const std::size_t samples = std::min(kPartVertices, vertices.size());
       for (Candidate& candidate : all[c]) {
         Request& request = requests[static_cast<std::size_t>(candidate.part)];
         for (std::size_t s = 0; s < samples; ++s) {

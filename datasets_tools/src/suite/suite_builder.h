@@ -39,7 +39,7 @@ bool holds(const Region& region, const Motion& motion, double length);
 
 /// Puts a model together from placed copies of parts and derives what is symmetric: a group maps a part to another one
 /// when both are copies of one kind and the motion between them belongs to the kind's own group. The region of a group
-/// is all that it maps onto parts (method notes 4.1). No geometry is compared.
+/// is all that it maps onto parts (docs/method.md 6). No geometry is compared.
 class SuiteBuilder {
  public:
   /// \return the kind's number

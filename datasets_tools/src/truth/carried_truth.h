@@ -22,7 +22,7 @@ struct CarryOptions {
 ///
 /// A region's faces are those whose source belongs to it and whose centroid stays, under every element of its group (96
 /// or more random ones of a continuous group), on the region's visible surface with a normal within 25 degrees,
-/// unsigned, unless next to a crease (method notes 4.1). All faces whose source belongs to it are accepted as well, and
+/// unsigned, unless next to a crease (docs/method.md 6). All faces whose source belongs to it are accepted as well, and
 /// what the model accepts besides. A region becomes optional
 /// - when that test leaves too little or too ragged a part of it, or when it is small;
 /// - when it slides along itself because its ends are hidden or cut off: a piece of a plane or of a cylinder;

@@ -29,7 +29,7 @@ struct RevolutionRegions {
 };
 
 /// Turned regions that end within a piece of surface, where other things are joined to it: for each axis the faces
-/// whose whole circles lie on the surface (the orbit test, method notes 4.1), then the largest group of what they make
+/// whose whole circles lie on the surface (the orbit test, docs/method.md 6), then the largest group of what they make
 /// up. Of a plane nearly all within its creases is taken, or what turns if the plane ends where the region goes on, or
 /// nothing: a disc on a larger plane is no part of anything. Costs O(F) cheap tests an axis, and 12 to 48 nearest-point
 /// queries a face of the region.

@@ -15,7 +15,7 @@
 
 namespace orbifit {
 
-/// The linear system of one iteration of a fit whose regions' groups turn (mode moving; method notes 2.2): legs that
+/// The linear system of one iteration of a fit whose regions' groups turn (mode moving; docs/method.md 2.2): legs that
 /// splay. To first order in the turns; then these are applied exactly, the basis is built anew, and its coordinates are
 /// those nearest to what was solved for, so that every state keeps every carried symmetry to rounding.
 ///

@@ -60,7 +60,7 @@ bool CarriedRegions::overlap(int a, int b) const {
   return !common.empty();
 }
 
-CarriedRegions::CarriedRegions(const Subspace& subspace) : subspace_(subspace) {
+CarriedRegions::CarriedRegions(const Subspace& subspace, const RunContext& context) : subspace_(subspace) {
   const RegionMap& regions = *subspace->regions;
   const auto count = static_cast<std::size_t>(regions.count());
   samples_.resize(count);
@@ -90,32 +90,56 @@ CarriedRegions::CarriedRegions(const Subspace& subspace) : subspace_(subspace) {
     if (taken[static_cast<std::size_t>(order[place])] == 0)
       gather(place, order, centroids, kNear * subspace->diagonal, taken);
   }
-  if (subspace->mode == GroupMode::moving) keep_agreeing();
+  if (subspace->mode == GroupMode::moving) keep_agreeing(context);
 }
 
-// Adds one way after another and turns them all, each by another angle. Ways that lose freedom are given up too:
-// regions whose mirrors no longer agree would leave their common points no way to move but along both.
-void CarriedRegions::keep_agreeing() {
-  std::vector<MatrixXd> wanted;
-  for (Family& family : families_) {
-    wanted.push_back(family.free);
-    family.free.resize(3, 0);
-  }
-  freedom_ = 0;
+// Turns all ways at once, each by another angle. Ways that lose freedom are given up: regions whose mirrors no longer
+// agree would leave their common points no way to move but along both. Of ways that contradict those before them, the
+// first is found by halving: what some ways break, more ways break too.
+void CarriedRegions::keep_agreeing(const RunContext& context) {
+  struct Way {
+    std::size_t family;
+    Vector3d vector;
+  };
+  std::vector<Way> open;
   for (std::size_t f = 0; f < families_.size(); ++f) {
-    for (Eigen::Index d = 0; d < wanted[f].cols(); ++d) {
-      MatrixXd& free = families_[f].free;
-      const MatrixXd before = free;
-      free.conservativeResize(3, before.cols() + 1);
-      free.rightCols<1>() = wanted[f].col(d);
-      ++freedom_;
-      Eigen::VectorXd angles(freedom_);
-      for (Eigen::Index k = 0; k < freedom_; ++k) angles[k] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(k));
-      if (keeps_freedom(subspace_, rotations(turned(rest(), angles)), kAgree * subspace_->diagonal)) continue;
-      free = before;
-      --freedom_;
-    }
+    for (Eigen::Index d = 0; d < families_[f].free.cols(); ++d) open.push_back({f, families_[f].free.col(d)});
   }
+  std::vector<Way> kept;
+  const auto take = [&](std::size_t more) {  // those kept and the first few that are open
+    context.check();
+    for (Family& family : families_) family.free.resize(3, 0);
+    freedom_ = static_cast<int>(kept.size() + more);
+    for (std::size_t k = 0; k < kept.size() + more; ++k) {
+      const Way& way = k < kept.size() ? kept[k] : open[k - kept.size()];
+      MatrixXd& free = families_[way.family].free;
+      free.conservativeResize(3, free.cols() + 1);
+      free.rightCols<1>() = way.vector;
+    }
+  };
+  const auto agree = [&](std::size_t more) {
+    take(more);
+    Eigen::VectorXd angles(freedom_);
+    for (Eigen::Index k = 0; k < freedom_; ++k) angles[k] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(k));
+    return keeps_freedom(subspace_, rotations(turned(rest(), angles)), kAgree * subspace_->diagonal);
+  };
+  while (!open.empty()) {
+    std::size_t good = 0;               // so many agree
+    std::size_t bad = open.size() + 1;  // so many do not, or there are not so many
+    if (agree(open.size())) {
+      good = open.size();
+    } else {
+      bad = open.size();
+    }
+    while (good + 1 < bad) {
+      const std::size_t middle = good + (bad - good) / 2;
+      (agree(middle) ? good : bad) = middle;
+    }
+    const auto end = open.begin() + static_cast<std::ptrdiff_t>(good);
+    kept.insert(kept.end(), open.begin(), end);
+    open.erase(open.begin(), end == open.end() ? end : end + 1);
+  }
+  take(0);
 }
 
 // The family of a region: all that the elements of regions around take it to.

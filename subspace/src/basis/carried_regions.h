@@ -20,14 +20,14 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector);
 /// A matrix on points (x) I_3, applied to stacked displacements: 3 rows a point.
 Eigen::MatrixXd applied(const LiftWeights& scalar, const Eigen::MatrixXd& stacked);
 
-/// How the regions' groups may turn in mode `moving` (method notes 2.2) without contradicting one another. Regions that
-/// elements of larger ones take to one another form a family: when g takes region i to j, their rotations relative to
-/// the regions around them obey Q_j = g Q_i g^-1. What takes a region to itself leaves it only the rotations that
+/// How the regions' groups may turn in mode `moving` (docs/method.md 2.2) without contradicting one another. Regions
+/// that elements of larger ones take to one another form a family: when g takes region i to j, their rotations relative
+/// to the regions around them obey Q_j = g Q_i g^-1. What takes a region to itself leaves it only the rotations that
 /// commute with it. Regions that overlap without nesting turn together. Ways of turning that contradict one another all
 /// the same are found by trying them and given up, those of smaller regions first.
 class CarriedRegions {
  public:
-  explicit CarriedRegions(const Subspace& subspace);
+  explicit CarriedRegions(const Subspace& subspace, const RunContext& context = RunContext{});
 
   /// Number of ways in which families may turn: the length of the vectors below.
   int freedom() const { return freedom_; }
@@ -67,7 +67,7 @@ class CarriedRegions {
     std::vector<Member> members;
     Eigen::MatrixXd free;  ///< 3 by 0..3, orthonormal: the first member's rotation vectors
   };
-  void keep_agreeing();
+  void keep_agreeing(const RunContext& context);
   void gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
               std::vector<char>& taken);
   bool nested(int inner, int outer) const;

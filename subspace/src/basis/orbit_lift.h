@@ -30,7 +30,7 @@ inline bool is_position(LiftAtom::Kind kind) {
   return kind == LiftAtom::Kind::full || kind == LiftAtom::Kind::centre;
 }
 
-/// The lift from samples to vertices, averaged over orbits (method notes 2.1):
+/// The lift from samples to vertices, averaged over orbits (docs/method.md 2.3):
 ///     u(p) = 1/N sum over (p_k, O_k) in orbit(p) of O_k^T u_plain(p_k),
 /// so exact in every region, partial, nested and overlapping ones too. Baked for one vertex an orbit, as scalar weights
 /// on the atoms' displacements; its images are carried copies.

@@ -25,7 +25,7 @@ struct LiftTerm {
 /// a place fades out as the point comes near that place: its part is multiplied by a smooth step of the point's
 /// distance from the place, over one radius, and is next to nothing inside. So what happens in a place depends on the
 /// samples of that place alone, and goes over continuously into its surroundings. Under a continuous group the
-/// Gaussians are averaged over the circle or sphere in closed form (method notes 2.3).
+/// Gaussians are averaged over the circle or sphere in closed form (docs/method.md 2.4).
 class PlainLift {
  public:
   /// \param faded false: the paper's lift, blind for the places

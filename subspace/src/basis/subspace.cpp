@@ -43,8 +43,8 @@ void bind(const Binding& binding, const Vector3d& position, const Eigen::VectorX
   u = bound;
 }
 
-// The part of the lift that turns with the regions (method notes 2.2): the sum of w (R - 1) (p - x), each atom turning
-// the point about itself. Linear in each, so that it does not matter by which of several words an atom is seen.
+// The part of the lift that turns with the regions (docs/method.md 2.2): the sum of w (R - 1) (p - x), each atom
+// turning the point about itself. Linear in each, so that it does not matter by which of several words an atom is seen.
 void add_turned_rest(const Subspace& subspace, const ConjugatedBasis& basis, int representative, Vector3d& u) {
   const Vector3d start = subspace->orbits.positions.row(representative).transpose();
   subspace->lift.visit(representative, [&](int atom, double weight) {

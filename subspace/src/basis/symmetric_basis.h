@@ -33,7 +33,7 @@ struct Binding {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
 
-/// A basis of the symmetry-preserving displacements of a sampling (paper, section 5; floating: method notes 2.2).
+/// A basis of the symmetry-preserving displacements of a sampling (paper, section 5; floating: docs/method.md 2.2).
 /// A coordinate vector q gives the samples' displacements U q + offset, stacked x0 y0 z0 x1 ..., and the translations
 /// T q + carried_offset that carry the groups. The offsets are zero unless groups are turned (moving).
 struct SymmetricBasis {

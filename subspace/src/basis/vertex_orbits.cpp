@@ -79,6 +79,7 @@ class OrbitBuilder {
   }
 
   VertexOrbits run(const RunContext& context) {
+    closure_.context = &context;
     if (continuous_) find_canonical_places();
     for (std::size_t v = 0; v < sets_.size(); ++v) {
       if (v % 4096 == 0) context.progress("vertex orbits", double(v) / double(sets_.size()));

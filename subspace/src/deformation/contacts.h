@@ -13,7 +13,7 @@
 
 namespace orbifit {
 
-/// A place where two parts of a mesh touch at rest (method notes 2.6), to be kept softly: what the one part's surface
+/// A place where two parts of a mesh touch at rest (docs/method.md 4.1), to be kept softly: what the one part's surface
 /// does there the other's does too.
 struct Contact {
   struct Side {

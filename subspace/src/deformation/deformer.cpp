@@ -43,19 +43,21 @@ struct Deformer::Implementation {
   double alpha = 0;
   Eigen::MatrixXd factor;  // lower
   std::optional<MovingSolve> moving;
+  RunContext context;
 
   Implementation(const Subspace& the_subspace, const Mesh& the_mesh, const DeformerOptions& options,
-                 const RunContext& context)
+                 const RunContext& the_context)
       : subspace(the_subspace),
         mesh(the_mesh),
-        corotation(deformation_energy(subspace, mesh, options.laplacian, context)),
+        corotation(deformation_energy(subspace, mesh, options.laplacian, the_context)),
         quotient(subspace, corotation),
-        stiffness(quotient.stiffness()) {
+        stiffness(quotient.stiffness()),
+        context(the_context) {
     const double weight = contact_weight(corotation);
     std::vector<Contact> found;
     // Fixed groups lock parts in place: what touches them could not follow a handle.
     if (options.contacts && subspace->mode != GroupMode::fixed) found = find_contacts(subspace, mesh, {}, context);
-    if (subspace->mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight);
+    if (subspace->mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight, context);
     contacts = ContactEnergy(std::move(found), subspace, weight);
     if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
     contacts.add_gram(stiffness);
@@ -95,7 +97,8 @@ Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, 
                      std::to_string(motions.size()) + " motions");
   }
   if (implementation_->moving) {
-    return implementation_->moving->solve(implementation_->handles, implementation_->alpha, motions, iterations, start);
+    return implementation_->moving->solve(implementation_->handles, implementation_->alpha, motions, iterations, start,
+                                          implementation_->context);
   }
   return implementation_->solve(motions, iterations, start);
 }
@@ -114,6 +117,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
   Eigen::VectorXd side(freedom);
   const auto turned = [&](int sample) { return quotient.rotation_of(sample, rotations); };
   for (int iteration = 0; iteration < iterations; ++iteration) {
+    context.check();
     // Equation (4), right, with the Laplace coordinates turned.
     quotient.pull(rotations, side);
     side += handle_pull;

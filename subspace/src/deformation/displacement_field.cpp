@@ -26,7 +26,7 @@ constexpr double kMet = 1e-13;  // of the diagonal: a vertex this near an image 
 // Evaluates the field at one point after another.
 class FieldEvaluator {
  public:
-  FieldEvaluator(const Subspace& subspace, const SubspaceState& state)
+  FieldEvaluator(const Subspace& subspace, const SubspaceState& state, const RunContext& context)
       : subspace_(subspace),
         basis_(basis_of(subspace, state)),
         words_(*subspace->words),
@@ -35,6 +35,7 @@ class FieldEvaluator {
     carriers_ = basis_.carried * state.q;
     if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
     closure_.doublet = kDoublet * subspace->diagonal;
+    closure_.context = &context;
     transports_ = basis_.transports;
   }
 
@@ -159,15 +160,14 @@ class FieldEvaluator {
 // Pairs of a point and its image by one motion of a place, and how far the field is from carrying one to the other.
 class PairResidual {
  public:
-  PairResidual(const Subspace& subspace, const Mesh& mesh, const SubspaceState& state)
+  PairResidual(const Subspace& subspace, const Mesh& mesh, const SubspaceState& state, const RunContext& context)
       : subspace_(subspace),
         mesh_(mesh),
-        baked_(vertex_displacements(subspace, state)),
+        baked_(vertex_displacements(subspace, state, context)),
         images_(mesh.vertices, kMet * subspace->diagonal),
-        field_(subspace, state) {
+        field_(subspace, state, context) {
     if (subspace->lift_kind != LiftKind::orbit) return;
-    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v)
-      sets_.push_back(set_of_vertex(subspace->orbits, v));
+    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v) sets_.push_back(set_of_vertex(subspace->orbits, v));
   }
 
   /// Images at vertices are measured at once, others by finish().
@@ -281,7 +281,7 @@ Residual residual_of(PairResidual& residual, const Subspace& subspace, const Mes
 
 Points displacement_field(const Subspace& subspace, const SubspaceState& state, const Points& points,
                           const std::vector<int>& sets, const RunContext& context) {
-  FieldEvaluator field(subspace, state);
+  FieldEvaluator field(subspace, state, context);
   Points result(points.rows(), 3);
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
     if (p % 256 == 0) context.check();
@@ -292,7 +292,7 @@ Points displacement_field(const Subspace& subspace, const SubspaceState& state, 
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const SubspaceState& state, const RunContext& context, int pairs) {
-  PairResidual residual(subspace, mesh, state);
+  PairResidual residual(subspace, mesh, state, context);
   return residual_of(residual, subspace, mesh, region, region_number, state, context, pairs);
 }
 
@@ -303,7 +303,7 @@ Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region
 
 std::vector<Residual> field_residuals(const Subspace& subspace, const Mesh& mesh, const SymmetryAnnotation& annotation,
                                       const SubspaceState& state, const RunContext& context, int pairs) {
-  PairResidual residual(subspace, mesh, state);
+  PairResidual residual(subspace, mesh, state, context);
   std::vector<Residual> result;
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     const auto number = static_cast<int>(i);
@@ -330,7 +330,7 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
   const ConjugatedBasis& basis = basis_of(subspace, state);
   Eigen::VectorXd carriers = basis.carried * state.q;
   if (carriers.size() > 0) carriers += basis.carried_offset;
-  PairResidual residual(subspace, mesh, state);
+  PairResidual residual(subspace, mesh, state, context);
   for (const int vertex : vertices_of_faces(mesh, pattern.instances.front().faces)) {
     context.check();
     for (std::size_t a = 1; a < pattern.instances.size(); ++a) {

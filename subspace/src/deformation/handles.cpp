@@ -75,6 +75,11 @@ std::vector<int> listed_vertices(const HandleReader& reader, const Json& list, c
 Motion read_motion(const HandleReader& reader, const Json& object, const std::string& key,
                    const Eigen::Vector3d& centroid) {
   Motion motion;
+  if (object.contains("scale")) {
+    const double factor = reader.number(object, "scale", key, 1);
+    if (!(factor > 0)) reader.fail(key + "scale", "must be positive");
+    motion = Motion::about(factor * Eigen::Matrix3d::Identity(), centroid);
+  }
   if (object.contains("rotation")) {
     const Json& rotation = object.at("rotation");
     const std::string place = key + "rotation.";
@@ -85,7 +90,7 @@ Motion read_motion(const HandleReader& reader, const Json& object, const std::st
     if (!(axis.norm() > 1e-12)) reader.fail(place + "axis", "must not be zero");
     const Eigen::Vector3d about = rotation.contains("about") ? reader.vector(rotation, "about", place) : centroid;
     const double radians = reader.number(rotation, "degrees", place, 0) * std::numbers::pi / 180;
-    motion = Motion::rotation(axis.normalized(), radians, about);
+    motion = Motion::rotation(axis.normalized(), radians, about) * motion;
   }
   if (object.contains("translation")) motion.translation += reader.vector(object, "translation", key);
   return motion;

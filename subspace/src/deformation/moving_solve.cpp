@@ -86,10 +86,10 @@ class SampleEnergy {
 }  // namespace
 
 MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
-                         double contact_weight)
+                         double contact_weight, const RunContext& context)
     : subspace_(subspace),
       corotation_(corotation),
-      regions_(subspace),
+      regions_(subspace, context),
       contacts_(std::move(contacts)),
       contact_weight_(contact_weight) {}
 
@@ -113,7 +113,7 @@ CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const 
 }
 
 Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions,
-                               int iterations, const SubspaceState& start) const {
+                               int iterations, const SubspaceState& start, const RunContext& context) const {
   const Points& rest = corotation_.rest;
   const LiftWeights spread = lift_weights(handles.rest(), rest, subspace_->sampling.radius, RunContext{});
   const SampleEnergy energy(corotation_, spread, handles.weights(), alpha);
@@ -152,6 +152,7 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
   };
   // The best coordinates for groups that stand as they do, and the local rotations to them.
   const auto follow = [&](const Points& before, const VectorXd& wanted, const Points& turned_delta) {
+    context.check();
     const auto solution =
         energy.solve(MatrixXd(state.basis->columns), MatrixXd(3 * rest.rows(), 0), MatrixXd(wanted.size(), 0),
                      state.basis->offset, stacked(turned_delta - corotation_.delta), wanted, contact_rows(nullptr));
@@ -163,6 +164,7 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
   };
   if (fresh) follow(sample_displacements(subspace_, state), targets, turned_coordinates(local));
   for (int iteration = 0; iteration < iterations; ++iteration) {
+    context.progress("iterations", static_cast<double>(iteration) / iterations);
     const Points before = sample_displacements(subspace_, state);
     // Where the lift differs from mere Gaussians about the samples, the handles' targets make up for it.
     const Points lifted = vertex_displacements(subspace_, state)(handles.vertices(), Eigen::all);
@@ -182,6 +184,7 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
                                 .z;
       VectorXd angles = both.tail(turning.cols());
       const double largest = angles.cwiseAbs().maxCoeff();
+      context.check();
       if (largest > kMostTurn) angles *= kMostTurn / largest;
       const CarriedRegions::Turns next = regions_.turned(turns, angles);
       auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(next)));

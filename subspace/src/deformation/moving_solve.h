@@ -12,17 +12,17 @@
 
 namespace orbifit {
 
-/// Co-rotated Laplace editing while the regions' groups turn (method notes 2.2, moving). An iteration solves for the
+/// Co-rotated Laplace editing while the regions' groups turn (docs/method.md 2.2, moving). An iteration solves for the
 /// coordinates and, to first order, for the families' rotations together; then the rotations are applied exactly and
 /// the basis is built anew, so that every state keeps every carried symmetry to rounding.
 class MovingSolve {
  public:
   /// \param contact_weight  see ContactEnergy
   MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
-              double contact_weight);
+              double contact_weight, const RunContext& context);
 
   Deformation solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions, int iterations,
-                    const SubspaceState& start) const;
+                    const SubspaceState& start, const RunContext& context) const;
 
  private:
   CarriedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;

@@ -11,8 +11,8 @@
 
 namespace orbifit {
 
-/// The Laplace energy and its co-rotation in coordinates q, once for samples that behave alike (method notes, section
-/// 3). Samples of one orbit whose neighbourhoods are images of one another have rotations that are conjugates and
+/// The Laplace energy and its co-rotation in coordinates q, once for samples that behave alike (docs/method.md
+/// 4). Samples of one orbit whose neighbourhoods are images of one another have rotations that are conjugates and
 /// Laplace rows that are images, so one of them stands for all, weighted by their number. Which do is found by
 /// comparing them under random displacements, so where a border makes neighbourhoods differ they are kept apart.
 class Quotient {

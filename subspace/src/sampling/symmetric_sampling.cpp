@@ -231,6 +231,7 @@ SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOpti
   DiscGrid grid(largest, regions_);
   ClosureOptions closure;
   closure.doublet = kDoubletSamples * diagonal(mesh_.vertices);
+  closure.context = &context;
   std::set<int> unclosed;  // sets of borders
   std::size_t done = 0;
   for (const Candidate& candidate : candidates) {

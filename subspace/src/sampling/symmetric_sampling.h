@@ -44,7 +44,7 @@ struct SymmetricSampling {
 
 struct SamplingOptions {
   double radius = 0;  ///< r, mesh units, > 0
-  /// r at each vertex (method notes 2.4), #V, > 0; empty: `radius` everywhere. Images of a sample share its radius.
+  /// r at each vertex (docs/method.md 2.5), #V, > 0; empty: `radius` everywhere. Images of a sample share its radius.
   Eigen::VectorXd radius_field;
   /// Points to draw first, such as those on sharp features (paper, section 7).
   SurfaceSamples first;

@@ -49,8 +49,10 @@ Transport step_transport(const RegionMap& regions, int place, int element, const
   step.frame = motion.linear;
   step.shift = motion.translation;
   if (place < regions.count() && rotation != Eigen::Matrix3d::Identity()) {
+    // The motion conjugated by the region's turn, also where it leaves the centre off by rounding or a file's digits.
+    const Eigen::Vector3d& centre = regions.centre(place);
     step.frame = rotation * motion.linear * rotation.transpose();
-    step.shift = regions.centre(place) - step.frame * regions.centre(place);
+    step.shift = centre - step.frame * centre + rotation * (motion(centre) - centre);
   }
   if (floating) step.carried = regions.carried(place, element, step.frame);
   return step;

@@ -14,7 +14,7 @@ namespace orbifit {
 
 /// Where a point's image goes when the point at the start of a word goes to y: to frame y + shift + sum of carried t.
 /// For displacements, where every group stays as it is or is carried by a translation: u = frame s + sum of carried t
-/// (paper, section 5; method notes 2.2).
+/// (paper, section 5; docs/method.md 2.2).
 struct Transport {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -28,7 +28,7 @@ Transport inverse(const Transport& transport);
 /// Largest entry of the difference of two transports' frames and carried parts.
 double transport_difference(const Transport& a, const Transport& b);
 
-/// Transport by one motion of a place. `rotation` is R of a region whose group moves (method notes 2.2): the motion's
+/// Transport by one motion of a place. `rotation` is R of a region whose group moves (docs/method.md 2.2): the motion's
 /// linear part becomes R O R^T about the region's carried centre.
 Transport step_transport(const RegionMap& regions, int place, int element, const Motion& motion, bool floating,
                          const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity());

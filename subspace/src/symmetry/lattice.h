@@ -9,7 +9,7 @@
 
 namespace orbifit {
 
-/// The instances of a pattern as powers of its generators, and how they may move (method notes 2.2; Bokeloh et al.
+/// The instances of a pattern as powers of its generators, and how they may move (docs/method.md 2.2; Bokeloh et al.
 /// 2012): u_j(m_j p) = O u_0(p) + tau_j. On a lattice of translations tau_j = sum of k tau, along an arc or a screw
 /// tau_k = sum over m < k of O^m tau, so that the step stays regular while it changes; free for mere copies.
 struct Lattice {

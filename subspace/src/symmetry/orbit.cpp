@@ -100,7 +100,10 @@ class Closure {
       first.position = settled(inverse(orbit_.turn)(seed), continuum);
     }
     add(first, 0);
-    for (std::size_t head = 0; head < queue_.size(); ++head) expand(queue_[head]);
+    for (std::size_t head = 0; head < queue_.size(); ++head) {
+      if (options_.context != nullptr) options_.context->check();
+      expand(queue_[head]);
+    }
     return std::move(orbit_);
   }
 

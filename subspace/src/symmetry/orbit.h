@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
 
 #include "symmetry/group_words.h"
 #include "symmetry/region_map.h"
@@ -44,6 +45,7 @@ struct ClosureOptions {
   /// The set of places of a known point at (nearly) this position, which the second set is to be part of; -1: no point
   /// is known there, and the second set is it.
   std::function<int(const Eigen::Vector3d&, int)> set_at;
+  const RunContext* context = nullptr;  ///< asked at each point whether to stop; null: never. Not owned
 };
 
 /// \param set the places that hold the seed

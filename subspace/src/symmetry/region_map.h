@@ -16,7 +16,7 @@
 
 namespace orbifit {
 
-/// How a displacement depends on the translations that carry the groups (method notes 2.2): the sum over the pairs of
+/// How a displacement depends on the translations that carry the groups (docs/method.md 2.2): the sum over the pairs of
 /// matrix * t_carrier, ascending by carrier.
 using Carried = std::vector<std::pair<int, Eigen::Matrix3d>>;
 

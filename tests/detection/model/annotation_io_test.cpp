@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "orbifit/model/errors.h"
@@ -30,6 +31,7 @@ SymmetryAnnotation sample_annotation(const Mesh& mesh, const Eigen::Vector3d& ce
         make_region(*PointGroup::parse(symbol), centre, frame, faces, "part \"" + std::to_string(id) + "\" \xC3\xA9");
     region.id = id++;
     region.residual = {1.0 / 3, 2.0 / 3};
+    if (id % 2 == 0) region.importance = 1.0 / (id + 3);
     annotation.regions.push_back(region);
   }
   set_parents(annotation.regions);
@@ -77,6 +79,20 @@ TEST(Annotation, GivesBackEveryBit) {
   expect_equal(read.patterns[0].generators, written.patterns[0].generators);
   EXPECT_EQ(read.patterns[0].instances[1].faces, written.patterns[0].instances[1].faces);
   EXPECT_EQ(to_json(read), to_json(written));
+}
+
+TEST(Annotation, KnowsWhereUpIsIfSomebodySaidSo) {
+  const Mesh mesh = polygon_mesh();
+  SymmetryAnnotation annotation = sample_annotation(mesh);
+  EXPECT_EQ(to_json(annotation).find("\"up\""), std::string::npos);
+  annotation.up = -Eigen::Vector3d::UnitY();
+  const std::string text = to_json(annotation);
+  EXPECT_EQ(annotation_from_json(text, mesh, "a.json").up, annotation.up);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_LT((*transformed(annotation, {2, turn, {1, 2, 3}}).up + Eigen::Vector3d::UnitZ()).norm(), 1e-15);
+  std::string spoilt = text;
+  spoilt.replace(spoilt.find("[0, -1, 0]"), 10, "[0, 0, 0]");
+  EXPECT_THROW(annotation_from_json(spoilt, mesh, "a.json"), InputError);
 }
 
 TEST(Annotation, WritesRunsThatDoNotTouch) {
@@ -158,6 +174,8 @@ std::vector<Mistake> mistakes() {
       {"NoFaces", "\"faces\": [[0, 8]]", "\"faces\": []", "regions[0].faces: must name at least one face"},
       {"ParentSelf", "\"parent\": null", "\"parent\": 0", "regions[0].parent: leads back to the region itself"},
       {"Residual", "\"rms\": 0,", "\"rms\": -1,", "regions[0].residual: must not be negative"},
+      {"Importance", "\"parent\": null", "\"parent\": null, \"importance\": 1.5",
+       "regions[0].importance: must be from 0 to 1"},
       {"NotANumber", "\"rms\": 0,", "\"rms\": 1e999,", "is not JSON"},
       {"Regions", "\"regions\": [", "\"region\": [", "regions: is missing"},
   };

@@ -46,8 +46,8 @@ TEST_P(Constraints, NullSpaceIsThatOfTheBasis) {
   const Subspace dense = with_svd_basis(subspace);
   ASSERT_EQ(dense.degrees_of_freedom(), subspace.degrees_of_freedom());
   const auto orthonormal = [](const Subspace& each) -> MatrixXd {
-    const Eigen::HouseholderQR<MatrixXd> qr(MatrixXd(each.basis.columns));
-    return qr.householderQ() * MatrixXd::Identity(each.basis.columns.rows(), each.degrees_of_freedom());
+    const Eigen::HouseholderQR<MatrixXd> qr(MatrixXd(each->basis.columns));
+    return qr.householderQ() * MatrixXd::Identity(each->basis.columns.rows(), each.degrees_of_freedom());
   };
   const MatrixXd cosines = orthonormal(subspace).transpose() * orthonormal(dense);
   EXPECT_GT(Eigen::JacobiSVD<MatrixXd>(cosines).singularValues().minCoeff(), 1 - 1e-12);

@@ -55,15 +55,19 @@ struct ViewOptions {
   /// Points that the picture frames, #P by 3, or two opposite corners of a box; empty: the scene's own. Set it to keep
   /// two pictures at one scale; its diagonal then is the scene's.
   Points frame;
+  /// The part of the picture that is drawn, as if enlarged: left, top, width and height as fractions of the whole.
+  Eigen::Vector4d window{0, 0, 1, 1};
   Colour background{1, 1, 1};
 };
 
-/// Sets azimuth and elevation so that the picture is seen from there. \param direction  from the scene to the eye, any
+/// Sets azimuth and elevation so that the picture is seen from there.
+/// \param direction  from the scene to the eye, any
 /// length; the view stays as it is where that is zero
 void look_from(const Eigen::Vector3d& direction, ViewOptions& view);
 
 /// Ray-cast picture with soft light and ambient occlusion; the same scene gives the same bytes with any number of
-/// threads. \throw UsageError naming the field of `view`, its value and the rule
+/// threads.
+/// \throw UsageError naming the field of `view`, its value and the rule
 Image render(const Scene& scene, const ViewOptions& view, const RunContext& context);
 
 /// Distinct colours, one a region; the same number gives the same colour.
@@ -79,14 +83,16 @@ Scene region_scene(const Mesh& mesh, const Region& region, bool see_through = fa
 /// Likewise, seen through where the view hides most of the region behind or inside the rest.
 Scene visible_region_scene(const Mesh& mesh, const Region& region, const ViewOptions& view, const RunContext& context);
 
-/// The mesh with an instance of each colour. \param see_through  all else is glass
+/// The mesh with an instance of each colour.
+/// \param see_through  all else is glass
 Scene pattern_scene(const Mesh& mesh, const Pattern& pattern, bool see_through = false);
 
 /// Likewise, seen through where the view hides most of the instances behind or inside the rest.
 Scene visible_pattern_scene(const Mesh& mesh, const Pattern& pattern, const ViewOptions& view,
                             const RunContext& context);
 
-/// Small pictures side by side with a caption each, in rows. Captions are ASCII; long ones are cut.
+/// Small pictures side by side, in rows, with a caption each below: its first line is a title, further lines say more;
+/// what is wider than the picture is cut.
 /// \throw UsageError for another number of captions than images, fewer than one column, or an ill-formed image
 Image contact_sheet(const std::vector<Image>& images, const std::vector<std::string>& captions, int columns);
 

@@ -23,8 +23,10 @@ struct FitScore {
 std::vector<char> visible_vertices(const Mesh& truth, const Points& scan);
 
 /// Correspondences are those of the symmetric copy that fits best: a table turned by a quarter is the same table.
-/// \param rest, annotation  the template and its symmetries \param truth  the shape scanned, in the scan's frame
-/// \param visible  of the truth's vertices \param fitted  the template in the scan's frame
+/// \param rest, annotation  the template and its symmetries
+/// \param truth  the shape scanned, in the scan's frame
+/// \param visible  of the truth's vertices
+/// \param fitted  the template in the scan's frame
 FitScore score_fit(const Mesh& rest, const SymmetryAnnotation& annotation, const Mesh& truth,
                    const std::vector<char>& visible, const Mesh& fitted, const RunContext& context);
 

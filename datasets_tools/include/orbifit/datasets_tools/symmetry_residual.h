@@ -9,7 +9,7 @@
 
 namespace orbifit {
 
-/// Which motions of a region's group are allowed in the deformed shape (method notes 2.2).
+/// Which motions of a region's group are allowed in the deformed shape (docs/method.md 2.2).
 enum class CarriedMotions {
   fixed,     ///< the group as it is
   posed,     ///< moved by one rigid motion common to all regions
@@ -51,7 +51,8 @@ struct SymmetryReport {
 /// How far the regions and patterns are from symmetric, at rest and, if `deformed` is not null, after a deformation
 /// that kept the connectivity. Points are paired at rest, within parts, so that what touches a part or lies in the same
 /// place does not matter; where several parts do lie in one place, the deformed shape tells them apart. Continuous
-/// groups are measured on mirrors, half turns and the rotations that the tessellation has. \throw InputError when the
+/// groups are measured on mirrors, half turns and the rotations that the tessellation has.
+/// \throw InputError when the
 /// deformed mesh's counts differ
 SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
                                  CarriedMotions motions, RunContext& context);

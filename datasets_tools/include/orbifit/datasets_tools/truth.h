@@ -30,7 +30,8 @@ struct TruthModel {
 /// \throw UsageError when `also_accepted` names a region that there is not, or an id occurs twice
 std::string to_json(const DetectionTruth& truth);
 
-/// Whole or not at all. \throw UsageError as to_json; InputError when the file cannot be written
+/// Whole or not at all.
+/// \throw UsageError as to_json; InputError when the file cannot be written
 void write_truth(const std::filesystem::path& file, const DetectionTruth& truth);
 
 /// Reads a truth of `mesh`; a plain annotation is a truth without the further keys.

@@ -13,7 +13,8 @@ namespace orbifit {
 /// point i of `scan.points` (points that a reader dropped are not counted). Outliers are in no region. The tolerance is
 /// raised to twice the scan's noise, and to half the distance between the points looked at; the annotation has the one
 /// used. What cannot be kept exactly beside larger regions is left out. There are no patterns. The result is the same
-/// for any number of threads. \throw InputError for fewer than 50 points, for points that are not finite, and when they
+/// for any number of threads.
+/// \throw InputError for fewer than 50 points, for points that are not finite, and when they
 /// have no extent
 SymmetryAnnotation detect_points(const PointCloud& scan, const DetectOptions& options, RunContext& context);
 

@@ -31,7 +31,8 @@ struct RegionHint {
   /// False: the plane, axis or centre is taken as it is given, and the group is the one given or the rotations alone.
   bool refine = true;
 
-  /// \param faces of the mesh \throw UsageError naming the field, its value and the rule
+  /// \param faces of the mesh
+  /// \throw UsageError naming the field, its value and the rule
   void validate(int faces) const;
 };
 
@@ -50,7 +51,8 @@ struct GuidedRegion {
 
 /// Fits the plane, axis or centre to the seeds' surroundings, then alternates between finding the region of the group
 /// (tolerances scaled to its size) and fitting the group to it, and verifies the result. Costs O(F log F) for the mesh
-/// and a few orbit tests of it. \throw UsageError for a hint that makes no sense, InputError when the mesh has no area
+/// and a few orbit tests of it.
+/// \throw UsageError for a hint that makes no sense, InputError when the mesh has no area
 GuidedRegion guided_region(const Mesh& mesh, const RegionHint& hint, const GuidedRegionOptions& options,
                            const RunContext& context);
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#ifndef __SANITIZE_THREAD__
+#if !defined(__SANITIZE_THREAD__) && !defined(ORBIFIT_PORTABLE)
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -19,7 +19,15 @@ namespace orbifit {
 
 namespace {
 
-#ifdef __SANITIZE_THREAD__
+#if defined(ORBIFIT_PORTABLE)
+
+// One thread does all.
+template <class Work>
+void run_on(std::size_t /*threads*/, int /*allowed*/, const Work& work) {
+  work(0);
+}
+
+#elif defined(__SANITIZE_THREAD__)
 
 // The thread sanitizer does not see what TBB's threads wait for, and would report all that they hand to one another.
 template <class Work>

@@ -166,6 +166,7 @@ void DomainMap::share_references() {
       const Vector3d centre = own.centre;
       own = *places_[a].continuum;
       own.centre = own.foot(centre);
+      places_[b].centre = own.centre;  // what turns with the group turns about its axis
       shared = true;
     }
     if (shared) continue;

@@ -19,7 +19,7 @@
 
 namespace orbifit {
 
-/// The continuous part of a region's group: all rotations about an axis, or about a point (method notes 2.3).
+/// The continuous part of a region's group: all rotations about an axis, or about a point (docs/method.md 2.4).
 struct Continuum {
   bool spherical = false;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -40,7 +40,7 @@ struct Continuum {
 /// The regions and pattern instances of an annotated mesh, called places: sets of faces on which motions act. Places
 /// 0 ... count() - 1 are the regions, in the annotation's order, each mapped onto itself; the instances of the patterns
 /// follow, mapped onto one another. Sets of places have numbers: set_places() lists their members. What motions do to
-/// sets is decided once for all points, by algebra (method notes 2.6).
+/// sets is decided once for all points, by algebra (docs/method.md 3).
 class DomainMap {
  public:
   /// \param motions  of each pattern, from its first instance to each; as many as it has instances
@@ -90,7 +90,7 @@ class DomainMap {
 
   /// The places that hold the image, by element number `element` of `place`, of a point that `set` holds: those that
   /// the motion takes places of the set to, and the arrival. By algebra alone: the surface at the image is not asked,
-  /// since it is off by the tolerance and would answer now so, now so (method notes 2.6). Not for use by several
+  /// since it is off by the tolerance and would answer now so, now so (docs/method.md 3). Not for use by several
   /// threads.
   int carried_set(int set, int place, int element) const;
 

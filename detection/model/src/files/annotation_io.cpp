@@ -68,6 +68,7 @@ class AnnotationReader {
     read_mesh_counts(member(root, "mesh", ""), annotation);
     annotation.tolerance = number(root, "tolerance", "");
     if (annotation.tolerance < 0) refuse("tolerance", "must not be negative");
+    if (root.contains("up")) annotation.up = direction(root["up"], "up");
     const Json& regions = list(root, "regions", "");
     for (std::size_t r = 0; r < regions.size(); ++r)
       annotation.regions.push_back(region(regions[r], item("regions", r)));
@@ -156,6 +157,13 @@ class AnnotationReader {
     return result;
   }
 
+  Eigen::Vector3d direction(const Json& value, const std::string& where) const {
+    const Eigen::Vector3d result = vector(value, where);
+    const double length = result.stableNorm();
+    if (!(length > 0)) refuse(where, "must not be all 0");
+    return result / length;
+  }
+
   Motion motion(const Json& value, const std::string& where) const {
     const bool rows = value.is_array() && value.size() == 3 &&
                       std::ranges::all_of(value, [](const Json& row) { return row.is_array() && row.size() == 4; });
@@ -187,6 +195,13 @@ class AnnotationReader {
     const std::string inner = path(where, "residual");
     const Residual result{number(value, "rms", inner), number(value, "max", inner)};
     if (result.rms < 0 || result.max < 0) refuse(inner, "must not be negative");
+    return result;
+  }
+
+  std::optional<double> importance(const Json& object, const std::string& where) const {
+    if (!object.contains("importance")) return std::nullopt;
+    const double result = number(object, "importance", where);
+    if (!(result >= 0 && result <= 1)) refuse(path(where, "importance"), "must be from 0 to 1");
     return result;
   }
 
@@ -262,6 +277,7 @@ class AnnotationReader {
       result.parent = identifier(object, "parent", where);
     }
     result.residual = residual(object, where);
+    result.importance = importance(object, where);
     check_group(result, where);
     return result;
   }
@@ -357,6 +373,7 @@ class AnnotationReader {
       refuse(path(where, "instances") + "[0].motion", "must be the identity");
     }
     result.residual = residual(object, where);
+    result.importance = importance(object, where);
     return result;
   }
 

@@ -20,6 +20,7 @@ class AnnotationWriter {
     text_ += std::to_string(annotation.mesh_vertices) + ", \"faces\": " + std::to_string(annotation.mesh_faces);
     text_ +=
         ", \"diagonal\": " + number(annotation.mesh_diagonal) + " },\n  \"tolerance\": " + number(annotation.tolerance);
+    if (annotation.up) text_ += ",\n  \"up\": " + vector(*annotation.up);
     text_ += ",\n  \"regions\": [";
     for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
       text_ += r == 0 ? "\n" : ",\n";
@@ -80,6 +81,10 @@ class AnnotationWriter {
     text_ += values.empty() ? "],\n" : "\n      ],\n";
   }
 
+  void importance(const std::optional<double>& value) {
+    if (value) text_ += ",\n      \"importance\": " + number(*value);
+  }
+
   void region(const Region& value) {
     text_ += "    {\n      \"id\": " + std::to_string(value.id) + ",\n      \"name\": " + string(value.name) + ",\n";
     text_ += "      \"group\": \"" + value.group.symbol() + "\",\n      \"centre\": " + vector(value.centre) + ",\n";
@@ -88,7 +93,9 @@ class AnnotationWriter {
     motions("elements", value.elements);
     text_ += "      \"faces\": " + runs(value.faces) + ",\n      \"parent\": ";
     text_ +=
-        (value.parent ? std::to_string(*value.parent) : "null") + ",\n      " + residual(value.residual) + "\n    }";
+        (value.parent ? std::to_string(*value.parent) : "null") + ",\n      " + residual(value.residual);
+    importance(value.importance);
+    text_ += "\n    }";
   }
 
   void pattern(const Pattern& value) {
@@ -101,7 +108,9 @@ class AnnotationWriter {
                ",\n          \"faces\": " + runs(value.instances[i].faces) + " }";
     }
     text_ +=
-        std::string(value.instances.empty() ? "" : "\n      ") + "],\n      " + residual(value.residual) + "\n    }";
+        std::string(value.instances.empty() ? "" : "\n      ") + "],\n      " + residual(value.residual);
+    importance(value.importance);
+    text_ += "\n    }";
   }
 
   std::string text_;

@@ -71,9 +71,35 @@ fs::path temporary_name(const fs::path& file) {
          ("." + file.filename().string() + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
 }
 
+// Files of /proc, pipes and files that grow meanwhile hold more than their size says; read to the end whatever it is.
+std::string read_all(int descriptor, std::size_t expected, const std::string& name) {
+  std::string content(expected, '\0');
+  std::size_t filled = 0;
+  while (true) {
+    if (filled == content.size()) content.resize(content.size() + (expected > 0 ? 0 : content.size()) + 4096);
+    const ssize_t count = ::read(descriptor, content.data() + filled, content.size() - filled);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw InputError(name, "", "cannot be read: " + system_reason(errno));
+    if (count == 0) break;
+    filled += static_cast<std::size_t>(count);
+  }
+  content.resize(filled);
+  return content;
+}
+
 }  // namespace
 
+bool is_standard_stream(const fs::path& file) {
+  const std::string& name = file.native();
+  return name == "-" || (name.starts_with("-.") && name.find('/') == std::string::npos);
+}
+
 std::string read_file(const fs::path& file) {
+  if (is_standard_stream(file)) {
+    std::string content = read_all(STDIN_FILENO, 0, "standard input");
+    if (content.empty()) throw InputError("standard input", "", "is empty, or was read before");
+    return content;
+  }
   std::error_code code;
   const fs::file_status status = fs::status(file, code);
   if (status.type() == fs::file_type::not_found) throw InputError(file.string(), "", "no such file");
@@ -82,23 +108,16 @@ std::string read_file(const fs::path& file) {
   if (descriptor.number() < 0) throw InputError(file.string(), "", "cannot be read: " + system_reason(errno));
   if (!fs::is_regular_file(status)) throw InputError(file.string(), "", "is not a regular file");
   const std::uintmax_t size = fs::file_size(file, code);
-  std::string content(code ? 0 : size, '\0');
-  std::size_t filled = 0;
-  // Files of /proc and files that grow meanwhile hold more than their size says; read to the end whatever it is.
-  while (true) {
-    if (filled == content.size()) content.resize(content.size() + 4096);
-    const ssize_t count = ::read(descriptor.number(), content.data() + filled, content.size() - filled);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw InputError(file.string(), "", "cannot be read: " + system_reason(errno));
-    if (count == 0) break;
-    filled += static_cast<std::size_t>(count);
-  }
-  content.resize(filled);
+  std::string content = read_all(descriptor.number(), code ? 0 : size, file.string());
   if (content.empty()) throw InputError(file.string(), "", "is empty");
   return content;
 }
 
 void write_file(const fs::path& file, std::string_view content) {
+  if (is_standard_stream(file)) {
+    if (!write_all(STDOUT_FILENO, content)) refuse_writing("standard output", system_reason(errno));
+    return;
+  }
   std::error_code code;
   const fs::file_status status = fs::status(file, code);
   if (fs::is_directory(status)) refuse_writing(file, "it is a folder");
@@ -125,7 +144,8 @@ void write_file(const fs::path& file, std::string_view content) {
 }
 
 std::string lower_extension(const fs::path& file) {
-  std::string ending = file.extension().string();
+  const std::string& name = file.native();
+  std::string ending = is_standard_stream(file) ? name.substr(1) : file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
   return ending;
 }

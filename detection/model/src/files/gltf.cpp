@@ -28,97 +28,6 @@ using namespace gltf;
 
 constexpr std::int64_t kMostVertices = 200'000'000;
 
-std::size_t component_size(std::int64_t type) {
-  switch (type) {
-    case kByte:
-    case kUnsignedByte:
-      return 1;
-    case kShort:
-    case kUnsignedShort:
-      return 2;
-    case kUnsignedInt:
-    case kFloat:
-      return 4;
-    default:
-      return 0;
-  }
-}
-
-// Normalised integers (KHR_mesh_quantization) stand for fractions.
-double load_component(const char* bytes, std::int64_t type, bool normalised) {
-  switch (type) {
-    case kByte: {
-      const double value = load<std::int8_t>(bytes);
-      return normalised ? std::max(value / 127, -1.0) : value;
-    }
-    case kUnsignedByte: {
-      const double value = load<std::uint8_t>(bytes);
-      return normalised ? value / 255 : value;
-    }
-    case kShort: {
-      const double value = load<std::int16_t>(bytes);
-      return normalised ? std::max(value / 32767, -1.0) : value;
-    }
-    case kUnsignedShort: {
-      const double value = load<std::uint16_t>(bytes);
-      return normalised ? value / 65535 : value;
-    }
-    case kUnsignedInt:
-      return load<std::uint32_t>(bytes);
-    default:
-      return load<float>(bytes);
-  }
-}
-
-std::optional<std::string> decode_base64(std::string_view text) {
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  std::uint32_t bits = 0;
-  int held = 0;
-  for (const char c : text) {
-    int value = 0;
-    if (c >= 'A' && c <= 'Z') {
-      value = c - 'A';
-    } else if (c >= 'a' && c <= 'z') {
-      value = c - 'a' + 26;
-    } else if (c >= '0' && c <= '9') {
-      value = c - '0' + 52;
-    } else if (c == '+' || c == '/') {
-      value = c == '+' ? 62 : 63;
-    } else if (c == '=') {
-      break;
-    } else {
-      return std::nullopt;
-    }
-    bits = (bits << 6U) | static_cast<std::uint32_t>(value);
-    held += 6;
-    if (held >= 8) {
-      held -= 8;
-      bytes.push_back(static_cast<char>((bits >> static_cast<unsigned>(held)) & 0xFFU));
-    }
-  }
-  return bytes;
-}
-
-std::string decode_percent(std::string_view text) {
-  const auto hex = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%' && i + 2 < text.size() && hex(text[i + 1]) >= 0 && hex(text[i + 2]) >= 0) {
-      result.push_back(static_cast<char>(16 * hex(text[i + 1]) + hex(text[i + 2])));
-      i += 2;
-    } else {
-      result.push_back(text[i]);
-    }
-  }
-  return result;
-}
-
 class GltfReader {
  public:
   GltfReader(const fs::path& file, std::string_view content, MeshBuilder& builder) : file_(file), builder_(builder) {
@@ -138,6 +47,8 @@ class GltfReader {
     entered_.assign(nodes_ == nullptr ? 0 : nodes_->size(), false);
     for (const std::int64_t root : root_nodes()) visit_tree(root);
   }
+
+  const std::vector<PrimitiveUse>& uses() const { return uses_; }
 
  private:
   [[noreturn]] void refuse(const std::string& where, const std::string& reason) const {
@@ -279,18 +190,20 @@ class GltfReader {
       if (extensions != nullptr && find(*extensions, "EXT_mesh_gpu_instancing") != nullptr) {
         refuse(where, "the extension EXT_mesh_gpu_instancing is not read");
       }
-      if (const std::int64_t mesh = integer(node, "mesh", -1, where); mesh >= 0) add_mesh(mesh, world);
+      if (const std::int64_t mesh = integer(node, "mesh", -1, where); mesh >= 0) add_mesh(open.node, mesh, world);
       const auto children = node_list(node, "children", where);
       for (auto child = children.rbegin(); child != children.rend(); ++child) stack.push_back({*child, world});
     }
   }
 
-  void add_mesh(std::int64_t number, const Eigen::Matrix4d& world) {
+  void add_mesh(std::int64_t node, std::int64_t number, const Eigen::Matrix4d& world) {
     const std::string where = "meshes[" + std::to_string(number) + "]";
     const Json* primitives = find(item("meshes", number, where), "primitives");
     if (primitives == nullptr || !primitives->is_array()) refuse(where + ".primitives", "must be a list");
     for (std::size_t p = 0; p < primitives->size(); ++p) {
+      const std::int64_t first = builder_.vertices();
       add_primitive((*primitives)[p], where + ".primitives[" + std::to_string(p) + "]", world);
+      if (builder_.vertices() > first) uses_.push_back({node, number, static_cast<std::int64_t>(p), first, world});
     }
   }
 
@@ -421,7 +334,11 @@ class GltfReader {
     } else if (text.find("://") != std::string::npos) {
       refuse(where + ".uri", in_quotes(text) + ": only files are read");
     } else {
-      bytes = read_file(file_.parent_path() / decode_percent(text));
+      const fs::path name = decode_percent(text);
+      if (name.is_absolute() || std::ranges::any_of(name, [](const fs::path& part) { return part == ".."; })) {
+        refuse(where + ".uri", in_quotes(text) + " leaves the file's folder: not read");
+      }
+      bytes = read_file(file_.parent_path() / name);
     }
     return bytes;
   }
@@ -433,9 +350,111 @@ class GltfReader {
   std::map<std::int64_t, std::string> buffers_;
   const Json* nodes_ = nullptr;
   std::vector<bool> entered_;
+  std::vector<PrimitiveUse> uses_;
 };
 
 }  // namespace
+
+namespace gltf {
+
+std::size_t component_size(std::int64_t type) {
+  switch (type) {
+    case kByte:
+    case kUnsignedByte:
+      return 1;
+    case kShort:
+    case kUnsignedShort:
+      return 2;
+    case kUnsignedInt:
+    case kFloat:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+double load_component(const char* bytes, std::int64_t type, bool normalised) {
+  switch (type) {
+    case kByte: {
+      const double value = load<std::int8_t>(bytes);
+      return normalised ? std::max(value / 127, -1.0) : value;
+    }
+    case kUnsignedByte: {
+      const double value = load<std::uint8_t>(bytes);
+      return normalised ? value / 255 : value;
+    }
+    case kShort: {
+      const double value = load<std::int16_t>(bytes);
+      return normalised ? std::max(value / 32767, -1.0) : value;
+    }
+    case kUnsignedShort: {
+      const double value = load<std::uint16_t>(bytes);
+      return normalised ? value / 65535 : value;
+    }
+    case kUnsignedInt:
+      return load<std::uint32_t>(bytes);
+    default:
+      return load<float>(bytes);
+  }
+}
+
+std::optional<std::string> decode_base64(std::string_view text) {
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  std::uint32_t bits = 0;
+  int held = 0;
+  for (const char c : text) {
+    int value = 0;
+    if (c >= 'A' && c <= 'Z') {
+      value = c - 'A';
+    } else if (c >= 'a' && c <= 'z') {
+      value = c - 'a' + 26;
+    } else if (c >= '0' && c <= '9') {
+      value = c - '0' + 52;
+    } else if (c == '+' || c == '/') {
+      value = c == '+' ? 62 : 63;
+    } else if (c == '=') {
+      break;
+    } else {
+      return std::nullopt;
+    }
+    bits = (bits << 6U) | static_cast<std::uint32_t>(value);
+    held += 6;
+    if (held >= 8) {
+      held -= 8;
+      bytes.push_back(static_cast<char>((bits >> static_cast<unsigned>(held)) & 0xFFU));
+    }
+  }
+  return bytes;
+}
+
+std::string decode_percent(std::string_view text) {
+  const auto hex = [](char c) {
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+  };
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && hex(text[i + 1]) >= 0 && hex(text[i + 2]) >= 0) {
+      result.push_back(static_cast<char>(16 * hex(text[i + 1]) + hex(text[i + 2])));
+      i += 2;
+    } else {
+      result.push_back(text[i]);
+    }
+  }
+  return result;
+}
+
+std::vector<PrimitiveUse> primitive_uses(const fs::path& file, std::string_view content) {
+  MeshBuilder builder(file.string());
+  GltfReader reader(file, content, builder);
+  reader.read();
+  return reader.uses();
+}
+
+}  // namespace gltf
 
 void read_gltf(const fs::path& file, std::string_view content, MeshBuilder& builder) {
   GltfReader(file, content, builder).read();

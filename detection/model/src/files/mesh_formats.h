@@ -26,9 +26,12 @@ std::string ply_bytes(const Mesh& mesh, const std::optional<Points>& colours);
 std::string stl_bytes(const std::filesystem::path& file, const Mesh& mesh);
 std::string glb_bytes(const std::filesystem::path& file, const Mesh& mesh);
 
-/// The reader for the file's ending, or null.
+/// The file's ending in lower case; for standard input without one, what the content looks like.
+std::string format_ending(const std::filesystem::path& file, std::string_view content);
+
+/// The reader for an ending, or null.
 using MeshReader = void (*)(const std::filesystem::path& file, std::string_view content, MeshBuilder& builder);
-MeshReader mesh_reader(const std::filesystem::path& file);
+MeshReader mesh_reader(const std::string& ending);
 
 /// \throw InputError when a number is too large for single precision
 float to_float(const std::filesystem::path& file, double value);

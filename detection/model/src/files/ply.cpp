@@ -29,47 +29,14 @@ constexpr std::array<TypeName, 8> kTypes{{{"char", "int8", PlyType::int8, 1},
                                           {"float", "float32", PlyType::float32, 4},
                                           {"double", "float64", PlyType::float64, 8}}};
 
-std::size_t size_of(PlyType type) {
-  return kTypes[static_cast<std::size_t>(type)].size;
-}
-
-double load_number(const char* bytes, PlyType type, std::endian order) {
-  switch (type) {
-    case PlyType::int8:
-      return load<std::int8_t>(bytes, order);
-    case PlyType::uint8:
-      return load<std::uint8_t>(bytes, order);
-    case PlyType::int16:
-      return load<std::int16_t>(bytes, order);
-    case PlyType::uint16:
-      return load<std::uint16_t>(bytes, order);
-    case PlyType::int32:
-      return load<std::int32_t>(bytes, order);
-    case PlyType::uint32:
-      return load<std::uint32_t>(bytes, order);
-    case PlyType::float32:
-      return load<float>(bytes, order);
-    case PlyType::float64:
-      return load<double>(bytes, order);
-  }
-  return 0;
-}
-
-enum class Encoding { ascii, little, big };
-
-struct Header {
-  Encoding encoding = Encoding::ascii;
-  std::vector<PlyElement> elements;
-};
-
 class HeaderReader {
  public:
   HeaderReader(const std::string& file, LineReader& lines) : file_(file), lines_(lines) {}
 
-  Header read() {
+  PlyHeader read() {
     std::string_view line;
     if (!lines_.next(line) || WordReader(line).word() != "ply") refuse("not a PLY file: 'ply' must come first");
-    Header header;
+    PlyHeader header;
     bool has_format = false;
     while (true) {
       if (!lines_.next(line)) refuse("the file ends within the header");
@@ -97,10 +64,10 @@ class HeaderReader {
     throw InputError(file_, place(std::max(lines_.line(), 1LL), "", 0), reason);
   }
 
-  Encoding encoding(std::string_view name) const {
-    if (name == "ascii") return Encoding::ascii;
-    if (name == "binary_little_endian") return Encoding::little;
-    if (name == "binary_big_endian") return Encoding::big;
+  PlyEncoding encoding(std::string_view name) const {
+    if (name == "ascii") return PlyEncoding::ascii;
+    if (name == "binary_little_endian") return PlyEncoding::little;
+    if (name == "binary_big_endian") return PlyEncoding::big;
     refuse("unknown format " + in_quotes(name));
   }
 
@@ -165,7 +132,7 @@ class BinaryBody {
   double take(PlyType type) {
     const std::size_t size = size_of(type);
     if (bytes_.size() < size) truncated(*element_, row_);
-    const double number = load_number(bytes_.data(), type, order_);
+    const double number = ply_number(bytes_.data(), type, order_);
     bytes_.remove_prefix(size);
     return number;
   }
@@ -226,7 +193,7 @@ class AsciiBody {
 };
 
 template <typename Body>
-void visit_body(const std::string& file, const Header& header, Body body,
+void visit_body(const std::string& file, const PlyHeader& header, Body body,
                 const std::function<void(const PlyElement&)>& begin_element,
                 const std::function<void(const PlyElement&, const PlyRow&)>& visit) {
   for (const PlyElement& element : header.elements) {
@@ -259,6 +226,39 @@ void visit_body(const std::string& file, const Header& header, Body body,
 
 }  // namespace
 
+std::size_t size_of(PlyType type) {
+  return kTypes[static_cast<std::size_t>(type)].size;
+}
+
+double ply_number(const char* bytes, PlyType type, std::endian order) {
+  switch (type) {
+    case PlyType::int8:
+      return load<std::int8_t>(bytes, order);
+    case PlyType::uint8:
+      return load<std::uint8_t>(bytes, order);
+    case PlyType::int16:
+      return load<std::int16_t>(bytes, order);
+    case PlyType::uint16:
+      return load<std::uint16_t>(bytes, order);
+    case PlyType::int32:
+      return load<std::int32_t>(bytes, order);
+    case PlyType::uint32:
+      return load<std::uint32_t>(bytes, order);
+    case PlyType::float32:
+      return load<float>(bytes, order);
+    case PlyType::float64:
+      return load<double>(bytes, order);
+  }
+  return 0;
+}
+
+PlyHeader read_ply_header(const std::string& file, std::string_view content) {
+  LineReader lines(content);
+  PlyHeader header = HeaderReader(file, lines).read();
+  header.size = content.size() - lines.rest().size();
+  return header;
+}
+
 int PlyElement::find(std::string_view property) const {
   const auto found = std::ranges::find(properties, property, &PlyProperty::name);
   return found == properties.end() ? -1 : static_cast<int>(found - properties.begin());
@@ -268,11 +268,11 @@ void visit_ply(const std::string& file, std::string_view content,
                const std::function<void(const PlyElement&)>& begin_element,
                const std::function<void(const PlyElement&, const PlyRow&)>& visit) {
   LineReader lines(content);
-  const Header header = HeaderReader(file, lines).read();
-  if (header.encoding == Encoding::ascii) {
+  const PlyHeader header = HeaderReader(file, lines).read();
+  if (header.encoding == PlyEncoding::ascii) {
     visit_body(file, header, AsciiBody(file, lines), begin_element, visit);
   } else {
-    const std::endian order = header.encoding == Encoding::little ? std::endian::little : std::endian::big;
+    const std::endian order = header.encoding == PlyEncoding::little ? std::endian::little : std::endian::big;
     visit_body(file, header, BinaryBody(file, lines.rest(), order), begin_element, visit);
   }
 }

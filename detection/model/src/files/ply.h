@@ -1,5 +1,7 @@
 #pragma once
 
+#include <bit>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,6 +26,23 @@ struct PlyElement {
   /// Position of a property, or -1.
   int find(std::string_view property) const;
 };
+
+enum class PlyEncoding { ascii, little, big };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;  ///< bytes up to the body
+};
+
+/// Bytes that a number takes in a binary file.
+std::size_t size_of(PlyType type);
+
+/// The number stored at `bytes`. \pre size_of(type) bytes are there
+double ply_number(const char* bytes, PlyType type, std::endian order);
+
+/// \throw InputError naming `file`
+PlyHeader read_ply_header(const std::string& file, std::string_view content);
 
 /// One row of an element; every number of a PLY fits a double.
 struct PlyRow {

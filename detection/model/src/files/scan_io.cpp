@@ -112,7 +112,7 @@ std::string ply_bytes(const PointCloud& scan) {
 
 PointCloud read_scan(const std::filesystem::path& file) {
   const std::string content = read_file(file);
-  const std::string ending = lower_extension(file);
+  const std::string ending = format_ending(file, content);
   ScanBuilder builder(file.string());
   if (ending == ".ply") {
     read_ply_scan(content, builder);
@@ -122,7 +122,7 @@ PointCloud read_scan(const std::filesystem::path& file) {
     read_xyz(content, builder);
   } else if (ending == ".pts") {
     read_pts(content, builder);
-  } else if (const MeshReader read = mesh_reader(file); read != nullptr) {
+  } else if (const MeshReader read = mesh_reader(ending); read != nullptr) {
     MeshBuilder mesh(file.string());
     read(file, content, mesh);
     PointCloud scan;
@@ -142,6 +142,7 @@ void write_scan(const std::filesystem::path& file, const PointCloud& scan) {
   if (ending == ".pcd") return write_file(file, pcd_bytes(file.string(), scan));
   if (ending == ".xyz") return write_file(file, xyz_text(scan));
   if (ending == ".pts") return write_file(file, pts_text(scan));
+  if (file == "-") throw UsageError("standard output needs a format: --output-format ply, pcd, xyz or pts");
   throw UsageError(file.string() + ": unknown ending " + in_quotes(file.extension().string()) +
                    ": scans are written as .ply, .pcd, .xyz or .pts");
 }

@@ -6,14 +6,15 @@
 
 #include "files/binary.h"
 #include "files/mesh_formats.h"
+#include "files/stl.h"
 #include "files/text.h"
 
 namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kHeader = 84;    // 80 bytes of anything, then the number of triangles
-constexpr std::size_t kTriangle = 50;  // normal and three corners in single precision, two bytes of attributes
+using stl::kHeader;
+using stl::kTriangle;
 
 void add_triangle(MeshBuilder& builder, long long line) {
   const std::int64_t count = builder.vertices();
@@ -83,12 +84,15 @@ void read_ascii(std::string_view content, MeshBuilder& builder) {
 
 }  // namespace
 
-void read_stl(std::string_view content, MeshBuilder& builder) {
-  // Binary files may begin with "solid" too: their size decides.
+bool stl::is_text(std::string_view content) {
   const bool sized = content.size() >= kHeader &&
                      content.size() == kHeader + kTriangle * std::size_t{load<std::uint32_t>(content.data() + 80)};
   const std::string start = lower_case(content.substr(0, 5));
-  if (!sized && (start == "solid" || content.find("facet") < 200)) return read_ascii(content, builder);
+  return !sized && (start == "solid" || content.find("facet") < 200);
+}
+
+void read_stl(std::string_view content, MeshBuilder& builder) {
+  if (stl::is_text(content)) return read_ascii(content, builder);
   if (content.size() < kHeader)
     throw InputError(builder.file(), "", "the file is truncated: not even an STL header fits");
   read_binary(content, builder);

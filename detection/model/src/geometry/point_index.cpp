@@ -4,13 +4,94 @@
 #include <cmath>
 #include <limits>
 
+#ifdef ORBIFIT_PORTABLE
+#include <nanoflann.hpp>
+#else
 #include <flann/flann.hpp>
+#endif
 
 namespace orbifit {
 
 namespace {
 
-using Tree = flann::KDTreeSingleIndex<flann::L2_Simple<double>>;
+constexpr int kLeaf = 10;  // points of the tree's leaves
+
+#ifdef ORBIFIT_PORTABLE
+
+// Where FLANN is not; the searches below are written for FLANN's interface.
+struct PointsView {
+  const Points& points;
+
+  std::size_t kdtree_get_point_count() const { return static_cast<std::size_t>(points.rows()); }
+  double kdtree_get_pt(std::size_t row, std::size_t column) const {
+    return points(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box& /*box*/) const {
+    return false;
+  }
+};
+
+class Tree {
+ public:
+  explicit Tree(const Points& points)
+      : view_{points}, tree_(3, view_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)) {
+    tree_.buildIndex();
+  }
+
+  template <class Set>
+  void search(Set& set, const double* point) const {
+    Results<Set> results{set};
+    tree_.findNeighbors(results, point, nanoflann::SearchParams());
+  }
+
+ private:
+  template <class Set>
+  struct Results {
+    using DistanceType = double;
+    Set& set;
+
+    double worstDist() const { return set.worstDist(); }
+    bool full() const { return set.full(); }
+    bool addPoint(double squared_distance, std::size_t index) {
+      set.addPoint(squared_distance, index);
+      return true;
+    }
+  };
+  using Metric = nanoflann::L2_Simple_Adaptor<double, PointsView>;
+
+  PointsView view_;
+  nanoflann::KDTreeSingleIndexAdaptor<Metric, PointsView, 3, std::size_t> tree_;
+};
+
+struct ResultSet {
+  virtual ~ResultSet() = default;
+  virtual bool full() const = 0;
+  virtual void addPoint(double squared_distance, std::size_t index) = 0;
+  virtual double worstDist() const = 0;
+};
+
+#else
+
+using ResultSet = flann::ResultSet<double>;
+
+class Tree {
+ public:
+  explicit Tree(Points& points)
+      : tree_(flann::Matrix<double>(points.data(), static_cast<std::size_t>(points.rows()), 3),
+              flann::KDTreeSingleIndexParams(kLeaf, true)) {
+    tree_.buildIndex();
+  }
+
+  void search(ResultSet& set, const double* point) const {
+    tree_.findNeighbors(set, point, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F, false));
+  }
+
+ private:
+  flann::KDTreeSingleIndex<flann::L2_Simple<double> > tree_;
+};
+
+#endif
 
 // FLANN adds up distances to its cells step by step; the slack keeps points at the very border.
 constexpr double kSlack = 1 + 1e-12;
@@ -26,7 +107,7 @@ struct Candidate {
 };
 
 // The `count` best by distance, then number; FLANN's own sets leave ties to the order of the tree.
-class NearestSet : public flann::ResultSet<double> {
+class NearestSet : public ResultSet {
  public:
   explicit NearestSet(std::size_t count) : count_(count) { heap_.reserve(count + 1); }
 
@@ -55,7 +136,7 @@ class NearestSet : public flann::ResultSet<double> {
   std::vector<Candidate> heap_;
 };
 
-class RadiusSet : public flann::ResultSet<double> {
+class RadiusSet : public ResultSet {
  public:
   explicit RadiusSet(double radius)
       : radius_(radius), bound_(radius * radius * kSlack + std::numeric_limits<double>::denorm_min()) {}
@@ -86,10 +167,6 @@ std::vector<PointIndex::Neighbour> sorted(std::vector<Candidate>& candidates) {
   return result;
 }
 
-flann::SearchParams exact_search() {
-  return flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0F, false);
-}
-
 }  // namespace
 
 struct PointIndex::Implementation {
@@ -100,9 +177,7 @@ struct PointIndex::Implementation {
 PointIndex::PointIndex(const Points& points) : implementation_(std::make_unique<Implementation>()) {
   implementation_->points = points;
   if (points.rows() == 0) return;
-  const flann::Matrix<double> data(implementation_->points.data(), static_cast<std::size_t>(points.rows()), 3);
-  implementation_->tree = std::make_unique<Tree>(data, flann::KDTreeSingleIndexParams(10, true));
-  implementation_->tree->buildIndex();
+  implementation_->tree = std::make_unique<Tree>(implementation_->points);
 }
 
 PointIndex::~PointIndex() = default;
@@ -113,14 +188,14 @@ std::vector<PointIndex::Neighbour> PointIndex::nearest(const Eigen::Vector3d& po
   const auto available = static_cast<int>(implementation_->points.rows());
   if (available == 0 || count <= 0) return {};
   NearestSet set(static_cast<std::size_t>(std::min(count, available)));
-  implementation_->tree->findNeighbors(set, point.data(), exact_search());
+  implementation_->tree->search(set, point.data());
   return sorted(set.candidates());
 }
 
 std::vector<PointIndex::Neighbour> PointIndex::within(const Eigen::Vector3d& point, double radius) const {
   if (implementation_->points.rows() == 0 || !(radius >= 0)) return {};
   RadiusSet set(radius);
-  implementation_->tree->findNeighbors(set, point.data(), exact_search());
+  implementation_->tree->search(set, point.data());
   return sorted(set.candidates());
 }
 

@@ -5,18 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <embree3/rtcore.h>
-#include <tbb/task_arena.h>
-
-#include "orbifit/model/errors.h"
 
 #include "geometry/face_cells.h"
+#include "geometry/face_tree.h"
 #include "geometry/space_order.h"
 
 namespace orbifit {
@@ -26,7 +21,8 @@ namespace {
 // Beyond this many boxes from the mesh single precision cannot tell its faces apart: every face is then measured.
 constexpr double kFarAway = 1e6;
 
-// Rounding of vertices, of the query and of Embree's own arithmetic, in units of the box; several times the worst case.
+// Rounding of vertices, of the query and of the tree's own arithmetic, in units of the box; several times the worst
+// case.
 constexpr double kCullMargin = 1e-6;
 
 // Squared sine of a corner below which Ericson's method, whose products grow with the fourth power, loses digits.
@@ -34,25 +30,6 @@ constexpr double kSliver = 1e-2;
 
 // From far away a ray begins anew at a sphere of this radius about the box, where single precision resolves the faces.
 constexpr double kSphere = 2;
-
-using Device = std::shared_ptr<RTCDeviceTy>;
-
-// One device serves all indices for as long as one lives. Threads are not limited here: Embree would limit all that the
-// process has.
-Device shared_device() {
-  static std::mutex mutex;
-  static std::weak_ptr<RTCDeviceTy> current;
-  const std::lock_guard lock(mutex);
-  Device device = current.lock();
-  if (!device) {
-    device = Device(rtcNewDevice("set_affinity=0"), [](RTCDevice handle) {
-      if (handle != nullptr) rtcReleaseDevice(handle);
-    });
-    if (!device) throw Error("Embree cannot create its device");
-    current = device;
-  }
-  return device;
-}
 
 struct Corners {
   Eigen::Vector3d a, b, c;
@@ -72,9 +49,9 @@ constexpr float kFacetMargin = 2e-6F;
 
 // What a query asks of a triangle before it measures, in one line of the cache.
 struct alignas(64) Facet {
-  // Times (p, 1), p in Embree's frame: the height over the triangle's plane, and how far p is outside each edge within
-  // that plane. Times (n, 0): first the cosine of the angle between n and the normal. Not numbers, which no comparison
-  // holds for, where the normal is uncertain.
+  // Times (p, 1), p in the tree's frame: the height over the triangle's plane, and how far p is outside each edge
+  // within that plane. Times (n, 0): first the cosine of the angle between n and the normal. Not numbers, which no
+  // comparison holds for, where the normal is uncertain.
   Eigen::Matrix4f planes;
 };
 
@@ -171,7 +148,7 @@ Eigen::Vector3d unit_normal(const Corners& face) {
   return length > 0 ? Eigen::Vector3d(vector / length) : Eigen::Vector3d::Zero();
 }
 
-// \param face  in Embree's frame
+// \param face  in the tree's frame
 Facet facet_of(const Corners& face) {
   Facet facet;
   const Eigen::Vector3d ab = face.b - face.a;
@@ -209,8 +186,7 @@ Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
 }
 
 struct SurfaceIndex::Implementation {
-  Device device;
-  RTCScene scene = nullptr;
+  std::optional<FaceTree> tree;                      // none for no faces
   double scale = 1;                                  // a power of two; lengths below are in scaled units
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the box, scaled units
   std::vector<Corners> corners;                      // scaled units
@@ -219,21 +195,14 @@ struct SurfaceIndex::Implementation {
   std::vector<int> face_numbers;  // in the mesh
   std::vector<int> places;        // by face of the mesh, -1 for those that are not in
 
-  Implementation() = default;
-  Implementation(const Implementation&) = delete;
-  Implementation& operator=(const Implementation&) = delete;
-  ~Implementation() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-  }
-
   void take(const Mesh& mesh);  // the corners of the faces numbered; those near one another come to lie near in memory
   void build();
   Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
                   bool unsigned_normal, const std::vector<bool>* only, bool any = false, int likely = -1) const;
 
-  // A ray in Embree's frame, with the way by which its origin was moved towards the mesh.
+  // A ray in the tree's frame, with the way by which its origin was moved towards the mesh.
   struct LocalRay {
-    RTCRay ray;
+    TreeRay ray;
     double advance;  // scaled units
     bool misses;
   };
@@ -243,7 +212,7 @@ struct SurfaceIndex::Implementation {
 
 namespace {
 
-// State of one nearest-point query; Embree hands it to the callback.
+// State of one nearest-point query; the tree hands it to the callback.
 struct Search {
   const Corners* corners = nullptr;
   const Facet* facets = nullptr;
@@ -253,7 +222,7 @@ struct Search {
   double max_distance = 0;
   double margin = 0;
 
-  Eigen::Vector4f place;  // (p, 1) in Embree's frame
+  Eigen::Vector4f place;  // (p, 1) in the tree's frame
   float facet_margin = 0;
 
   const Eigen::Vector3d* facing = nullptr;
@@ -334,33 +303,29 @@ bool is_nearest(Search& search, unsigned triangle) {
   return true;
 }
 
-bool measure(RTCPointQueryFunctionArguments* arguments) {
-  Search& search = *static_cast<Search*>(arguments->userPtr);
-  if (!is_nearest(search, arguments->primID)) return false;
+bool measure(void* state, unsigned face, float& radius) {
+  Search& search = *static_cast<Search*>(state);
+  if (!is_nearest(search, face)) return false;
   const float reach = search.any ? 0 : search.reach(std::sqrt(search.squared_distance));
-  if (!(reach < arguments->query->radius)) return false;
-  arguments->query->radius = reach;
+  if (!(reach < radius)) return false;
+  radius = reach;
   return true;
 }
 
 // Finds the nearest through the tree, which has the faces about `centre`.
-void walk(RTCScene scene, const Eigen::Vector3d& centre, Search& search) {
+void walk(const FaceTree& tree, const Eigen::Vector3d& centre, Search& search) {
   const Eigen::Vector3d local = search.point - centre;
   const double offset = local.cwiseAbs().maxCoeff();
-  RTCPointQuery query{};
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();
   if (offset < kFarAway) {
-    query.x = static_cast<float>(local.x());
-    query.y = static_cast<float>(local.y());
-    query.z = static_cast<float>(local.z());
+    point = local.cast<float>();
     search.margin = kCullMargin * (1 + offset);
   } else {
     search.margin = std::numeric_limits<double>::infinity();
   }
   const double radius = search.face < 0 ? search.max_distance : std::sqrt(search.squared_distance);
-  query.radius = radius < 2 * kFarAway ? search.reach(radius) : std::numeric_limits<float>::infinity();
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(scene, &query, &context, measure, &search);
+  const float reach = radius < 2 * kFarAway ? search.reach(radius) : std::numeric_limits<float>::infinity();
+  tree.search(point, reach, measure, &search);
 }
 
 }  // namespace
@@ -380,30 +345,13 @@ void SurfaceIndex::Implementation::build() {
     return std::array{corners[i].a, corners[i].b, corners[i].c};
   });
 
-  device = shared_device();
-  scene = rtcNewScene(device.get());
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                3 * sizeof(float), 3 * corners.size()));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), corners.size()));
-  if (positions == nullptr || indices == nullptr) {
-    rtcReleaseGeometry(geometry);
-    throw Error("Embree cannot hold " + std::to_string(corners.size()) + " faces");
-  }
+  std::vector<TreeFace> faces;
+  faces.reserve(corners.size());
   for (const Corners& face : corners) {
-    for (const Eigen::Vector3d* corner : {&face.a, &face.b, &face.c}) {
-      const Eigen::Vector3f position = (*corner - centre).cast<float>();
-      positions = std::copy_n(position.data(), 3, positions);
-    }
+    faces.push_back(
+        {(face.a - centre).cast<float>(), (face.b - centre).cast<float>(), (face.c - centre).cast<float>()});
   }
-  std::iota(indices, indices + 3 * corners.size(), 0U);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);  // the scene keeps it
-  tbb::task_arena alone(1);      // Embree builds on the threads of the arena that it is called in
-  alone.execute([&] { rtcCommitScene(scene); });
+  tree.emplace(faces);
 }
 
 SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3d& point, double max_distance,
@@ -440,7 +388,7 @@ SurfaceIndex::Nearest SurfaceIndex::Implementation::nearest(const Eigen::Vector3
       }
     }
   }
-  if (!any || search.face < 0) walk(scene, centre, search);
+  if (!any || search.face < 0) walk(*tree, centre, search);
   if (search.face < 0) return result;
   result.face = search.face;
   if (any) return result;
@@ -467,19 +415,12 @@ SurfaceIndex::Implementation::LocalRay SurfaceIndex::Implementation::local_ray(c
     local.advance = std::max(0.0, -along - kSphere);
     start += local.advance * unit_direction;
   }
-  const Eigen::Vector3f org = start.cast<float>();
-  const Eigen::Vector3f dir = unit_direction.cast<float>();
+  local.ray.origin = start.cast<float>();
+  local.ray.direction = unit_direction.cast<float>();
   const double limit = std::min(scale * max_distance - local.advance, 1e6);
-  local.ray.org_x = org.x();
-  local.ray.org_y = org.y();
-  local.ray.org_z = org.z();
-  local.ray.dir_x = dir.x();
-  local.ray.dir_y = dir.y();
-  local.ray.dir_z = dir.z();
-  local.ray.tnear = static_cast<float>(std::clamp(scale * min_distance - local.advance, 0.0, 1e6));
-  local.ray.tfar = static_cast<float>(limit);
-  local.ray.mask = 0xFFFFFFFFU;
-  local.misses = !(limit >= 0) || !org.allFinite() || !dir.allFinite();
+  local.ray.near = static_cast<float>(std::clamp(scale * min_distance - local.advance, 0.0, 1e6));
+  local.ray.far = static_cast<float>(limit);
+  local.misses = !(limit >= 0) || !local.ray.origin.allFinite() || !local.ray.direction.allFinite();
   return local;
 }
 
@@ -572,19 +513,14 @@ std::optional<SurfaceIndex::Hit> SurfaceIndex::cast(const Eigen::Vector3d& origi
   const Eigen::Vector3d unit = direction.stableNormalized();
   const auto local = data.local_ray(origin, unit, min_distance, std::numeric_limits<double>::infinity());
   if (local.misses) return std::nullopt;
-  RTCRayHit query{};
-  query.ray = local.ray;
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(data.scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  TreeHit met;
+  if (!data.tree->cast(local.ray, met)) return std::nullopt;
 
-  const Corners& corners = data.corners[query.hit.primID];
-  const auto u = static_cast<double>(query.hit.u);
-  const auto v = static_cast<double>(query.hit.v);
+  const Corners& corners = data.corners[met.face];
+  const auto u = static_cast<double>(met.u);
+  const auto v = static_cast<double>(met.v);
   Hit hit;
-  hit.face = data.face_numbers[query.hit.primID];
+  hit.face = data.face_numbers[met.face];
   hit.barycentric = {1 - u - v, u, v};
   // The point in double precision, where the ray does not graze the face (Moeller and Trumbore 1997).
   const Eigen::Vector3d ab = corners.b - corners.a;
@@ -608,11 +544,7 @@ bool SurfaceIndex::occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d
   if (data.corners.empty()) return false;
   const auto local = data.local_ray(origin, direction.stableNormalized(), min_distance, max_distance);
   if (local.misses) return false;
-  RTCRay ray = local.ray;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(data.scene, &context, &ray);
-  return ray.tfar < 0;
+  return data.tree->occluded(local.ray);
 }
 
 }  // namespace orbifit

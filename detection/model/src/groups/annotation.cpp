@@ -95,6 +95,7 @@ SymmetryAnnotation transformed(const SymmetryAnnotation& annotation, const Simil
   SymmetryAnnotation result = annotation;
   result.mesh_diagonal *= similarity.scale;  // the diagonal of a turned box may differ; callers that know it set it
   const auto move = [&](Motion& motion) { motion = conjugate(similarity, motion); };
+  if (result.up) result.up = similarity.linear * *result.up;
   for (Region& region : result.regions) {
     region.centre = similarity(region.centre);
     region.axis = similarity.linear * region.axis;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -101,12 +102,15 @@ struct FitInput {
   std::vector<Handle> handles = {};      ///< their motions give places in the template's frame posed by `pose`
   /// Of the mesh and the annotation, as FitOptions::subspace says, where it is built already; null: built by fit().
   std::shared_ptr<const Subspace> subspace = nullptr;
+  /// Told after each step of the iterations: its record, the pose, and the vertices then, #V by 3, in the template's
+  /// frame. Where several starts are tried each of their steps is told, by several threads where the context has them.
+  std::function<void(const FitIteration&, const Similarity&, const Points&)> watch = nullptr;
 
   /// The same to be fitted with another annotation, which is kept by reference.
   FitInput with(const SymmetryAnnotation& other) const { return {mesh, other, scan, pose, landmarks, handles}; }
 };
 
-/// Deforms a template to a scan within its symmetric subspace (method notes, section 5): alternates correspondences and
+/// Deforms a template to a scan within its symmetric subspace (docs/method.md 7): alternates correspondences and
 /// a co-rotated solve in which the pose takes part, from stiff to soft.
 /// The result's `converged` says whether it explains the scan; a fit that does not is still returned.
 /// \throw InputError for a scan of fewer than 10 points, UsageError for options

@@ -37,7 +37,8 @@ struct Placement {
 /// bring the template onto itself, as its symmetries do, are one.
 /// \param annotation  of the template; one without regions leaves the pairs
 /// \param given  a pose that is tried as well, such as the scan's own frame
-/// \return best first, at most 10; empty where nothing fits \throw InputError as for fit()
+/// \return best first, at most 10; empty where nothing fits
+/// \throw InputError as for fit()
 std::vector<Placement> find_placements(const Mesh& mesh, const SymmetryAnnotation& annotation, const PointCloud& scan,
                                        const PlacementOptions& options, const RunContext& context,
                                        const std::optional<Similarity>& given = {});

@@ -18,7 +18,7 @@
 
 namespace orbifit {
 
-/// The Laplacians of the samples to choose from (method notes, section 3).
+/// The Laplacians of the samples to choose from (docs/method.md 4).
 enum class LaplacianKind {
   graph,      ///< degree less adjacency of neighbouring samples (the paper)
   cotangent,  ///< the surface's, restricted to the samples (Huang et al. 2006)
@@ -49,6 +49,7 @@ struct DeformerOptions {
 class Deformer {
  public:
   /// \param subspace and mesh outlive the deformer
+  /// \param context  solve() asks it as well whether to stop; a copy is kept
   Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options = {},
            const RunContext& context = RunContext{});
   ~Deformer();

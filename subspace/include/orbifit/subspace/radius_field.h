@@ -17,7 +17,7 @@ struct PaintedArea {
   double factor = 1;  ///< of the base radius, > 0
 };
 
-/// How the sampling radius varies over the surface (method notes 2.4).
+/// How the sampling radius varies over the surface (docs/method.md 2.5).
 struct RadiusFieldOptions {
   double base = 0;                 ///< r where nothing else is said, mesh units, > 0
   std::vector<PaintedArea> areas;  ///< where several hold a point the smallest factor counts

@@ -13,7 +13,7 @@
 
 namespace orbifit {
 
-/// What may become of a region's group in a deformation (method notes 2.2).
+/// What may become of a region's group in a deformation (docs/method.md 2.2).
 enum class GroupMode {
   fixed,     ///< kept as it is (the paper)
   floating,  ///< carried along by a translation of its own
@@ -25,7 +25,7 @@ std::string to_string(GroupMode mode);
 /// How displacements go from the samples to the vertices.
 enum class LiftKind {
   paper,  ///< Gaussians (paper, section 5): not exact on partial regions
-  orbit   ///< averaged over orbits, exact (method notes 2.1)
+  orbit   ///< averaged over orbits, exact (docs/method.md 2.3)
 };
 
 std::string to_string(LiftKind kind);
@@ -38,7 +38,7 @@ struct SubspaceOptions {
   double radius = 0;  // >= 0
   /// Number of samples to aim at when no radius is given; 0: see `radius`.
   int samples = 0;  // 0, or >= 4
-  /// r at each vertex relative to `radius` (method notes 2.4), #V, > 0; empty: 1 everywhere.
+  /// r at each vertex relative to `radius` (docs/method.md 2.5), #V, > 0; empty: 1 everywhere.
   Eigen::VectorXd relative_radii;
   /// Draw samples on sharp edges and corners first (paper, section 7).
   bool sharp_features_first = false;

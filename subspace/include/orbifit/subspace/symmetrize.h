@@ -29,7 +29,7 @@ struct SymmetrizeReport {
   std::vector<RegionChange> regions;  ///< in the annotation's order
 };
 
-/// The nearest exactly symmetric rest shape (method notes 2.5): every vertex moves to the average over its orbit.
+/// The nearest exactly symmetric rest shape (docs/method.md 5): every vertex moves to the average over its orbit.
 /// Where a region's group maps vertices near vertices one to one, orbits are made of vertices: the first takes the mean
 /// of all, each taken back to it, moved to where its stabiliser leaves it, and the others are its exact images, under
 /// all regions at once, nested and overlapping ones too. Where images lie between vertices, vertices and the surface

@@ -14,7 +14,8 @@ namespace orbifit {
 ///        a region's parent is not in the file, as when it was deleted by hand, all parents are found anew.
 SymmetryAnnotation read_annotation(const std::filesystem::path& file, const Mesh& mesh);
 
-/// The same from a file's text. \param name of the file, for messages
+/// The same from a file's text.
+/// \param name of the file, for messages
 SymmetryAnnotation annotation_from_json(const std::string& text, const Mesh& mesh, const std::string& name);
 
 /// The file's text: keys in the format's order, 17 digits, one region a block; the same annotation gives the same

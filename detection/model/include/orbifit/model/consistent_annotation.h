@@ -34,7 +34,7 @@ struct ConsistentAnnotation {
 /// does not meet another. Then going to and fro between them carries a point ever farther, and nothing keeps both. An
 /// annotation is consistent where, for every region or pattern A, every motion g of A and every region B that shares
 /// faces with A and does not hold all of it, there is a region C that is the image of B: C has B's group, placed by g
-/// exactly, and holds what g makes of the faces that A and B share (method: groupoid closed under its own motions).
+/// exactly, and holds what g makes of the faces that A and B share (docs/method.md 3).
 /// Shared planes and axes, axes in planes and right angles are the cases in which C is B itself.
 ///
 /// Regions are taken largest first. Each comes with all its images under those already taken (its family); images that
@@ -51,7 +51,8 @@ struct ConsistentAnnotation {
 /// part, and a pattern all instances but one; each position saves the more bits the smaller the residual is. Regions of
 /// the whole are never given up.
 ///
-/// An annotation that is consistent comes back as it is. \pre the annotation fits the mesh (read_annotation checks it)
+/// An annotation that is consistent comes back as it is.
+/// \pre the annotation fits the mesh (read_annotation checks it)
 /// Cost O(F) and, for each pair of regions that overlap, some hundred nearest-point queries; where much is
 /// refused, a multiple of that which is the smaller the more there is to do.
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,

@@ -60,7 +60,8 @@ struct PointGroup {
 using GroupFrame = Eigen::Matrix3d;
 
 /// All elements in closed form, the identity first; accurate to rounding, closed under products to 1e-15.
-/// The order of the elements is a function of the group alone. \pre !group.continuous()
+/// The order of the elements is a function of the group alone.
+/// \pre !group.continuous()
 std::vector<Eigen::Matrix3d> elements(const PointGroup& group, const GroupFrame& frame = GroupFrame::Identity());
 
 /// Whether the orthogonal map belongs to the group about the unit axis (of no effect for K and Kh): it keeps the axis,

@@ -15,7 +15,8 @@ namespace orbifit {
 Eigen::MatrixXd svd_nullspace(const Eigen::SparseMatrix<double>& constraints);
 
 /// A subspace whose basis is dense, from svd_nullspace() of its symmetry_constraints(): of the null space what moves
-/// samples. \pre no groups are turned, the lift is the paper's
+/// samples.
+/// \pre no groups are turned, the lift is the paper's
 Subspace with_svd_basis(const Subspace& subspace);
 
 struct SvdNullspaceOptions {

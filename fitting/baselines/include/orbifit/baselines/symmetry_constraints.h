@@ -12,7 +12,8 @@ namespace orbifit {
 ///     that leads there; with t summed over the groups that g passes through,
 ///   - two ways from a seed to one place, which must agree,
 ///   - what vertices bound to a place ask of t alone.
-/// Rows may depend on one another. \return 3 #constraints by 3 (#S + #carriers)
+/// Rows may depend on one another.
+/// \return 3 #constraints by 3 (#S + #carriers)
 Eigen::SparseMatrix<double> symmetry_constraints(const Subspace& subspace);
 
 }  // namespace orbifit

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit::benchmarks {
+
+/// The pose of a template of known size in a scan, as PCL's users find it: normals, VoxelGrid, FPFH features (Rusu et
+/// al. 2009), SampleConsensusPrerejective (Buch et al. 2013), then ICP. \param scale  of the template in the scan
+/// \return template -> scan; nothing where PCL did not converge
+std::optional<Similarity> pcl_pose(const Mesh& mesh, const PointCloud& scan, double scale, const RunContext& context);
+
+}  // namespace orbifit::benchmarks

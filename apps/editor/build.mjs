@@ -1,0 +1,44 @@
+// Bundles the page: node build.mjs WASM-FOLDER OUT. WASM-FOLDER has editor_core.mjs and editor_core.wasm; OUT becomes the
+// page without a mesh. The same sources give the same bytes.
+import { readFileSync, mkdirSync, writeFileSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+
+import { build } from "esbuild";
+import { gzipSync } from "fflate";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const [folder, out] = process.argv.slice(2).map(argument => resolve(argument));
+const source = name => join(here, "src", name);
+
+const options = {
+  bundle: true, minify: true, write: false, target: "es2022", charset: "utf8", legalComments: "none", logLevel: "warning",
+  absWorkingDir: here, alias: { "editor-core": join(folder, "editor_core.mjs") },
+  define: { "import.meta.url": '""' } // where the module's file would be; the page carries it in itself
+};
+const bundled = async (entry, more) => {
+  const result = await build({ ...options, ...more, entryPoints: [source(entry)] });
+  return result.outputFiles[0].text;
+};
+
+const worker = await bundled("worker.ts", { format: "iife" });
+const workerCode = {
+  name: "worker-code",
+  setup(setup) {
+    setup.onResolve({ filter: /^worker-code$/ }, () => ({ path: "worker-code", namespace: "worker-code" }));
+    setup.onLoad({ filter: /.*/, namespace: "worker-code" }, () => ({ contents: worker, loader: "text" }));
+  }
+};
+const script = await bundled("main.ts", { format: "esm", plugins: [workerCode] });
+const style = (await bundled("style.css", {})).trim();
+const wasm = gzipSync(readFileSync(join(folder, "editor_core.wasm")), { level: 9, mtime: 0 });
+const core = Buffer.from(wasm).toString("base64");
+
+// Functions, since a text with $ in it would be taken for a pattern.
+const page = readFileSync(source("page.html"), "utf8")
+  .replace("/*STYLE*/", () => style)
+  .replace("/*CORE*/", () => core)
+  .replace("/*SCRIPT*/", () => script.replaceAll("</script", "<\\/script"));
+mkdirSync(dirname(out), { recursive: true });
+writeFileSync(out, page);
+console.log(`${out}: ${page.length} bytes, of which core ${core.length}, script ${script.length}`);

@@ -1,0 +1,439 @@
+// What is edited, and everything that can be done to it. The interface (panel.ts, input.ts) calls this and listens.
+import {
+  elementsOf, emptyAnnotation, extentOf, faceCount, isAnnotation, without, type Annotation, type Element, type Extent,
+  type Region
+} from "./annotation";
+import { Core, ResidualKind, Side, type Info, type Pick, type RegionResidual, type SolveRecord } from "./core";
+import type { Background } from "./data";
+import { moved, toJson, writeMotion, type Handle } from "./handles";
+import { add, length, sub, times, type Vec3 } from "./math";
+import type { View } from "./view";
+
+export const modes = ["fixed", "floating", "moving"] as const;
+
+/** What undo takes back. */
+export interface Snapshot {
+  handles: Handle[];
+  alpha: number;
+  iterations: number;
+  mode: number;
+  off: number[]; // ids of regions
+  annotation: Annotation; // shared between snapshots where it is the same
+}
+
+/** Rms and largest residual of a region, fractions of the diagonal, of the mesh as it is and of the symmetric one. */
+export interface SymmetryChange { id: number; before: [number, number]; after: [number, number] }
+export interface FitReport { converged: boolean; rms: number; stopped_because: string; inlier_ratio: number }
+
+interface Basis { bytes: Uint8Array; annotation: string }
+
+export class Editor {
+  info!: Info;
+  meshName = "mesh";
+  sourceName = "mesh"; // of the user's file, for the command that replays
+  state!: Snapshot;
+  selected = -1;
+  radius = 0.05; // of new handles, fraction of the diagonal
+  comparing = false;
+  busy = "";
+  readonly record: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
+  residual = 0; // worst region's largest, of the shown deformation
+  residualAtVertices = true;
+  freeResidual = 0;
+  blend = 0;
+  fitSteps: { step: number; rms: number }[] = [];
+  fitted = false;
+
+  private meshData: Uint8Array = new Uint8Array();
+  private undone: Snapshot[] = [];
+  private done: Snapshot[] = [];
+  private bases = new Map<string, Basis>();
+  private kept: number[] = []; // ids of the regions in the core's order
+  private motions = new Float64Array(0);
+  private centroids: Vec3[] = [];
+  private stale = false;
+  private handlesStale = false;
+  private rebuilding = 0;
+  private extents = new Map<string, { elements: Element[]; extent: Extent }>();
+  private symmetricReady = false;
+  onChange: () => void = () => {};
+  onError: (message: string) => void = () => {};
+
+  constructor(readonly core: Core, readonly view: View, readonly background: Background) {
+    view.beforeFrame = () => this.solveNow();
+  }
+
+  // Mesh and annotation ------------------------------------------------------------------------------------------
+
+  /** \param basis  prebuilt for the annotation, or null */
+  async open(name: string, data: Uint8Array, annotation: Annotation | null, basis: Uint8Array | null, mode = 1): Promise<void> {
+    this.core.readMesh(name, data); // refuses before anything is lost
+    this.background.stop();
+    this.background.setMesh(name, data);
+    this.meshName = name;
+    this.sourceName = name;
+    this.meshData = data;
+    this.info = this.core.info();
+    this.done = [];
+    this.undone = [];
+    this.bases.clear();
+    this.extents.clear();
+    this.symmetricReady = false;
+    this.blend = 0;
+    this.fitted = false;
+    this.setComparing(false);
+    const taken = annotation ?? emptyAnnotation(this.info.vertices, this.info.faces, this.info.diagonal);
+    this.state = { handles: [], alpha: 100, iterations: 10, mode, off: [], annotation: taken };
+    this.selected = -1;
+    if (basis) this.bases.set(this.basisKey(), { bytes: basis, annotation: JSON.stringify(taken) });
+    this.view.setMesh(this.core);
+    this.view.showScan(null);
+    this.view.showOrbit(null);
+    this.view.showElements("", () => [], this.info);
+    this.view.frame();
+    this.onChange();
+    await new Promise(requestAnimationFrame); // it is seen before the basis is read
+    await this.takeBasis();
+    this.handlesChanged();
+  }
+
+  async openAnnotation(annotation: Annotation): Promise<void> {
+    this.core.readAnnotation("annotation", JSON.stringify(annotation)); // refuses one of another mesh
+    await this.change(state => { state.annotation = annotation; state.off = []; });
+  }
+
+  get regions(): Region[] { return this.state.annotation.regions; }
+
+  /** The place of a region in the core's order; -1 where it is switched off. */
+  coreNumber(id: number): number { return this.kept.indexOf(id); }
+  idOf(number: number): number { return this.kept[number] ?? -1; }
+
+  shape(region: Region): { elements: Element[]; extent: Extent } {
+    const key = `${region.id} ${faceCount(region)} ${region.group} ${region.centre.join()}`;
+    let known = this.extents.get(key);
+    if (!known) {
+      const corner = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+      known = { elements: elementsOf(region),
+                extent: extentOf(region, face => corner.map(weights => this.core.restPoint(face, weights))) };
+      this.extents.set(key, known);
+    }
+    return known;
+  }
+
+  /** Draws planes and axes of some regions. */
+  showRegions(ids: readonly number[]): void {
+    const turn = this.state.handles.length ? JSON.stringify(this.state.handles) : "";
+    this.view.showElements(ids.length ? ids.join() + turn : "", () => ids.flatMap(id => {
+      const region = this.regions.find(other => other.id === id);
+      if (!region) return [];
+      const carried = new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
+      const number = this.coreNumber(id);
+      if (number >= 0) this.core.carried(number, carried);
+      return [{ ...this.shape(region), carried }];
+    }), this.info);
+  }
+
+  markRegion(id: number): void {
+    const number = id < 0 ? -1 : this.coreNumber(id);
+    this.core.markRegion(number);
+    this.view.takeMarks(this.core);
+    this.showRegions(id < 0 ? [] : [id]);
+  }
+
+  // Changes and undo ----------------------------------------------------------------------------------------------
+
+  snapshot(): Snapshot {
+    return { ...this.state, handles: structuredClone(this.state.handles), off: [...this.state.off] };
+  }
+
+  /** Remembers what is there, for undo. */
+  remember(snapshot = this.snapshot()): void {
+    this.done.push(snapshot);
+    if (this.done.length > 200) this.done.shift();
+    this.undone = [];
+  }
+
+  /** A change of anything, which undo takes back. */
+  async change(edit: (state: Snapshot) => void): Promise<void> {
+    this.remember();
+    edit(this.state);
+    await this.restored();
+  }
+
+  async undo(): Promise<void> { await this.swap(this.done, this.undone); }
+  async redo(): Promise<void> { await this.swap(this.undone, this.done); }
+  get canUndo(): boolean { return this.done.length > 0; }
+  get canRedo(): boolean { return this.undone.length > 0; }
+
+  private async swap(from: Snapshot[], to: Snapshot[]): Promise<void> {
+    const snapshot = from.pop();
+    if (!snapshot) return;
+    to.push(this.snapshot());
+    this.state = snapshot;
+    await this.restored();
+  }
+
+  private async restored(): Promise<void> {
+    if (this.selected >= this.state.handles.length) this.selected = -1;
+    await this.takeBasis();
+    this.handlesChanged();
+  }
+
+  // The basis -----------------------------------------------------------------------------------------------------
+
+  private active(): Annotation { return without(this.state.annotation, new Set(this.state.off)); }
+
+  private annotationKeys = new Map<Annotation, number>();
+  private basisKey(): string {
+    const { annotation, off, mode } = this.state;
+    if (!this.annotationKeys.has(annotation)) this.annotationKeys.set(annotation, this.annotationKeys.size);
+    return `${this.annotationKeys.get(annotation)} ${mode} ${[...off].sort((a, b) => a - b).join()}`;
+  }
+
+  private shownKey = "";
+  /** Has the core take the basis of the regions that are on, built in the worker where it is not known. */
+  private async takeBasis(): Promise<void> {
+    const key = this.basisKey();
+    if (key === this.shownKey) return;
+    const turn = ++this.rebuilding;
+    let basis = this.bases.get(key);
+    if (!basis) {
+      this.setBusy("rebuilding the basis");
+      try {
+        const answer = await this.background.run(
+          { kind: "basis", annotation: JSON.stringify(this.active()), mode: this.state.mode, samples: 0 });
+        basis = { bytes: answer.basis, annotation: answer.annotation };
+        this.bases.set(key, basis);
+      } catch (error) {
+        if (turn === this.rebuilding) this.setBusy("");
+        this.failed(error);
+        return;
+      }
+    }
+    if (turn !== this.rebuilding) return; // another change has overtaken this one
+    this.core.readAnnotation("annotation", basis.annotation);
+    this.core.readBasis(basis.bytes);
+    this.shownKey = key;
+    this.kept = (JSON.parse(this.core.annotation()) as Annotation).regions.map(region => region.id);
+    this.info = this.core.info();
+    if (this.comparing) this.core.compare(true);
+    this.setBusy("");
+  }
+
+  private failed(error: unknown): void {
+    const message = error instanceof Error ? error.message : String(error);
+    if (message !== "stopped") this.onError(message);
+  }
+
+  private setBusy(what: string): void {
+    this.busy = what;
+    this.onChange();
+  }
+
+  // Handles -------------------------------------------------------------------------------------------------------
+
+  async addHandle(pick: Pick, pin: boolean): Promise<void> {
+    const centre = this.core.restPoint(pick.face, pick.barycentric);
+    const corners = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(weights => this.core.restPoint(pick.face, weights));
+    const nearest = Math.min(...corners.map(corner => length(sub(corner, centre))));
+    const radius = Math.max(this.radius * this.info.diagonal, 1.0001 * nearest); // takes a vertex at least
+    const count = this.state.handles.filter(handle => handle.pin === pin).length + 1;
+    this.remember();
+    this.state.handles.push({ name: `${pin ? "pin" : "handle"} ${count}`, pin, centre, radius, translation: [0, 0, 0],
+                              rotation: [0, 0, 0, 1], scale: 1 });
+    this.selected = this.state.handles.length - 1;
+    this.handlesChanged();
+  }
+
+  removeHandle(number: number): void {
+    this.remember();
+    this.state.handles.splice(number, 1);
+    this.selected = -1;
+    this.handlesChanged();
+  }
+
+  select(number: number): void {
+    this.selected = number;
+    this.showHandles();
+    this.onChange();
+  }
+
+  /** Their number, places, radii or weight changed: the system is factorised anew. */
+  handlesChanged(): void {
+    this.handlesStale = true;
+    this.stale = true;
+    this.fitted = false;
+    this.view.draw();
+    this.onChange();
+  }
+
+  /** Where they are to go changed. */
+  motionsChanged(): void {
+    this.stale = true;
+    this.showHandles();
+    this.view.draw();
+  }
+
+  toDisplay(point: Vec3): Vec3 { return times(1 / this.info.diagonal, sub(point, this.info.centre)); }
+  toMesh(point: Vec3): Vec3 { return add(times(this.info.diagonal, point), this.info.centre); }
+
+  /** Where a handle's centre is to be, in the display's frame. */
+  target(number: number): Vec3 {
+    const handle = this.state.handles[number]!;
+    const motion = new Float64Array(12);
+    writeMotion(handle, this.centroids[number] ?? handle.centre, motion, 0);
+    return this.toDisplay(moved(motion, 0, handle.centre));
+  }
+
+  showHandles(): void {
+    this.view.showHandles(this.state.handles.map((handle, number) =>
+      ({ point: this.target(number), pin: handle.pin, selected: number === this.selected })));
+    if (this.selected >= 0) this.view.gizmoTarget.position.set(...this.target(this.selected));
+  }
+
+  handlesJson(): string { return toJson(this.state.handles, this.state.alpha, this.state.iterations); }
+
+  /** Called before each frame: at most one solve a frame. */
+  solveNow(): void {
+    if (!this.stale || this.busy) return;
+    this.stale = false;
+    try {
+      this.solve();
+    } catch (error) {
+      this.failed(error);
+    }
+  }
+
+  private solve(): void {
+    const { handles, iterations } = this.state;
+    if (this.handlesStale) {
+      this.handlesStale = false;
+      if (handles.length) this.core.setHandles(this.handlesJson());
+      this.centroids = handles.map((_, number) => this.core.handleCentroid(number));
+      this.motions = new Float64Array(12 * handles.length);
+      this.view.takeMarks(this.core);
+      this.showHandles();
+    }
+    const sides = this.comparing ? [Side.symmetric, Side.free] : [Side.symmetric];
+    if (!handles.length) {
+      this.core.rest();
+      this.record.solve = this.record.lift = this.record.handleError = 0;
+    } else {
+      handles.forEach((handle, number) => writeMotion(handle, this.centroids[number]!, this.motions, 12 * number));
+      const other: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
+      for (const side of sides) {
+        this.core.solve(side, this.motions, iterations, side === Side.symmetric ? this.record : other);
+      }
+    }
+    for (const side of sides) this.view.takePositions(this.core, side);
+    this.measure();
+  }
+
+  private measure(): void {
+    const worst = (list: RegionResidual[]): number => list.reduce((most, entry) => Math.max(most, entry.max), 0);
+    const own = this.core.residuals(ResidualKind.deformation);
+    const exact = own.filter(entry => entry.atVertices);
+    this.residualAtVertices = exact.length > 0 || own.length === 0;
+    this.residual = worst(exact.length ? exact : own);
+    this.freeResidual = this.comparing ? worst(this.core.residuals(ResidualKind.free)) : 0;
+    this.onChange();
+  }
+
+  setComparing(on: boolean): void {
+    if (on === this.comparing) return;
+    this.core.compare(on);
+    this.comparing = on;
+    this.view.setSplit(on);
+    this.handlesChanged();
+  }
+
+  // Symmetrise ----------------------------------------------------------------------------------------------------
+
+  symmetryReport: SymmetryChange[] = [];
+  /** Shows what lies between the mesh as it is (0) and the exactly symmetric one (1). */
+  async setBlend(share: number): Promise<void> {
+    if (!this.symmetricReady) {
+      this.setBusy("looking for the symmetric shape");
+      try {
+        const answer = await this.background.run(
+          { kind: "symmetrize", annotation: JSON.stringify(this.active()) });
+        this.core.setSymmetric(answer.vertices);
+        this.symmetryReport = (JSON.parse(answer.report) as { regions: SymmetryChange[] }).regions;
+        this.symmetricReady = true;
+      } catch (error) {
+        this.failed(error);
+        return;
+      } finally {
+        this.setBusy("");
+      }
+    }
+    this.blend = share;
+    this.core.blend(share);
+    this.view.takePositions(this.core, Side.symmetric);
+    this.onChange();
+  }
+
+  shapeResiduals(): Map<number, RegionResidual> {
+    return new Map(this.core.residuals(ResidualKind.shape).map((entry, number) => [this.idOf(number), entry]));
+  }
+
+  /** Makes the shape that the slider shows the mesh that is edited. */
+  async keepBlend(): Promise<void> {
+    if (!this.symmetricReady || this.blend === 0) return;
+    const { annotation, mode } = this.state;
+    this.core.keepBlend(this.blend);
+    const name = this.meshName.replace(/\.[^.]*$/, "") + "_symmetric.ply";
+    const mesh = this.core.writeMesh("ply", true);
+    const changed = structuredClone(annotation);
+    (changed.mesh as { diagonal: number }).diagonal = this.core.info().diagonal;
+    this.shownKey = "";
+    await this.open(name, mesh, changed, null, mode);
+  }
+
+  // Fit -----------------------------------------------------------------------------------------------------------
+
+  scan: { name: string; data: Uint8Array; points: number } | null = null;
+  fitReport: FitReport | null = null;
+
+  openScan(name: string, data: Uint8Array): void {
+    const points = this.core.readScan(name, data);
+    this.scan = { name, data, points: points.length / 3 };
+    this.fitReport = null;
+    this.fitSteps = [];
+    this.view.showScan(points);
+    this.onChange();
+  }
+
+  async fit(place: boolean): Promise<void> {
+    if (!this.scan || this.busy) return;
+    this.fitSteps = [];
+    this.fitReport = null;
+    this.setBusy("fitting");
+    try {
+      const answer = await this.background.run(
+        { kind: "fit", annotation: JSON.stringify(this.active()), scanName: this.scan.name, scan: this.scan.data, place },
+        step => {
+          if (step.kind !== "fit-step") return;
+          this.core.show(step.vertices);
+          this.view.takePositions(this.core, Side.symmetric);
+          this.fitSteps.push({ step: step.step, rms: step.rms });
+          this.onChange();
+        });
+      this.core.show(answer.vertices);
+      this.view.takePositions(this.core, Side.symmetric);
+      this.fitReport = JSON.parse(answer.report) as FitReport;
+      this.fitted = true;
+    } catch (error) {
+      this.failed(error);
+    } finally {
+      this.setBusy("");
+    }
+  }
+
+  get originalMesh(): Uint8Array { return this.meshData; }
+  readAnnotationText(text: string): Annotation {
+    const value: unknown = JSON.parse(text);
+    if (!isAnnotation(value)) throw new Error("no symmetry annotation");
+    return value;
+  }
+}

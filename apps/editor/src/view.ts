@@ -1,0 +1,392 @@
+// What is drawn: one mesh, or two side by side, handles, planes and axes, the orbit under the cursor, a scan. Drawn when
+// something changed.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
+
+import type { Core } from "./core";
+import { Side } from "./core";
+import type { Element, Extent } from "./annotation";
+import type { Vec3 } from "./math";
+
+export interface Theme { back: string; mesh: string; orbit: string; region: string; handle: string; pin: string; scan: string }
+
+const vertexShader = `
+attribute vec4 marks;
+varying vec3 vNormal;
+varying vec3 vView;
+varying vec4 vMarks;
+void main() {
+  vNormal = normalMatrix * normal;
+  vMarks = marks;
+  vec4 view = modelViewMatrix * vec4(position, 1.0);
+  vView = -view.xyz;
+  gl_Position = projectionMatrix * view;
+}`;
+const fragmentShader = `
+uniform vec3 base, orbitColour, regionColour, handleColour, pinColour;
+uniform float regionShare;
+varying vec3 vNormal;
+varying vec3 vView;
+varying vec4 vMarks;
+void main() {
+  vec3 view = normalize(vView);
+  vec3 normal = dot(vNormal, vNormal) > 0.0 ? normalize(vNormal) : view;
+  bool back = dot(normal, view) < 0.0;
+  if (back) normal = -normal;
+  vec3 colour = base;
+  colour = mix(colour, regionColour, regionShare * smoothstep(0.4, 0.6, vMarks.y) * 0.75);
+  colour = mix(colour, pinColour, smoothstep(0.4, 0.6, vMarks.w) * 0.8);
+  colour = mix(colour, handleColour, smoothstep(0.4, 0.6, vMarks.z) * 0.55);
+  colour = mix(colour, orbitColour, smoothstep(0.4, 0.6, vMarks.x) * 0.85);
+  float key = max(dot(normal, normalize(vec3(0.45, 0.7, 0.75))), 0.0);
+  float fill = max(dot(normal, normalize(vec3(-0.8, 0.1, 0.4))), 0.0);
+  float sky = 0.5 + 0.5 * normal.y;
+  float rim = pow(1.0 - max(dot(normal, view), 0.0), 3.0);
+  float shine = pow(max(dot(reflect(-normalize(vec3(0.45, 0.7, 0.75)), normal), view), 0.0), 28.0);
+  vec3 light = colour * (0.30 + 0.62 * key + 0.18 * fill + 0.16 * sky) + vec3(0.10 * shine + 0.06 * rim);
+  if (back) light *= 0.8;
+  gl_FragColor = vec4(pow(light, vec3(1.0 / 2.2)), 1.0);
+}`;
+
+/** A colour in the shader's linear space. */
+const linear = (colour: string): THREE.Color => new THREE.Color(colour);
+
+export class View {
+  readonly renderer: THREE.WebGLRenderer;
+  readonly camera = new THREE.PerspectiveCamera(35, 1, 0.001, 100);
+  readonly controls: OrbitControls;
+  readonly gizmo: TransformControls;
+  readonly gizmoTarget = new THREE.Object3D();
+  private readonly scene = new THREE.Scene();
+  private readonly freeScene = new THREE.Scene(); // the other half of a comparison
+  private readonly overlay = new THREE.Group();
+  private readonly sides: (THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial> | null)[] = [null, null];
+  private readonly material: THREE.ShaderMaterial;
+  private readonly orbitDots: THREE.InstancedMesh;
+  private readonly mostDots = 600;
+  private readonly handleDots = new THREE.Group();
+  private scan: THREE.Points | null = null;
+  private elementsShown = "";
+  private theme: Theme;
+  private split = false;
+  private pending = false;
+  onFrame: (milliseconds: number) => void = () => {};
+  beforeFrame: () => void = () => {};
+
+  constructor(private readonly canvas: HTMLCanvasElement, theme: Theme) {
+    this.theme = theme;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // the shader has its own curve
+    this.renderer.autoClear = false;
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.set(1.1, -1.5, 0.9);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.zoomToCursor = true;
+    this.controls.mouseButtons = { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.PAN };
+    this.controls.addEventListener("change", () => this.draw());
+    this.gizmo = new TransformControls(this.camera, canvas);
+    this.gizmo.setSize(0.75);
+    this.gizmo.addEventListener("change", () => this.draw());
+    this.material = new THREE.ShaderMaterial({
+      vertexShader, fragmentShader, side: THREE.DoubleSide,
+      uniforms: {
+        base: { value: null }, orbitColour: { value: null }, regionColour: { value: null },
+        handleColour: { value: null }, pinColour: { value: null }, regionShare: { value: 1 }
+      }
+    });
+    this.orbitDots = new THREE.InstancedMesh(new THREE.SphereGeometry(1, 12, 8), new THREE.MeshBasicMaterial(),
+                                             this.mostDots);
+    this.orbitDots.count = 0;
+    this.orbitDots.frustumCulled = false;
+    this.scene.add(this.overlay, this.orbitDots, this.handleDots, this.gizmoTarget, this.gizmo.getHelper());
+    this.setTheme(theme);
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+    this.resize();
+  }
+
+  setTheme(theme: Theme): void {
+    this.theme = theme;
+    const uniforms = this.material.uniforms;
+    uniforms.base!.value = linear(theme.mesh);
+    uniforms.orbitColour!.value = linear(theme.orbit);
+    uniforms.regionColour!.value = linear(theme.region);
+    uniforms.handleColour!.value = linear(theme.handle);
+    uniforms.pinColour!.value = linear(theme.pin);
+    (this.orbitDots.material as THREE.MeshBasicMaterial).color.setStyle(theme.orbit, THREE.LinearSRGBColorSpace);
+    this.elementsShown = "";
+    this.draw();
+  }
+
+  /** A new mesh in both halves. */
+  setMesh(core: Core): void {
+    for (const side of [Side.symmetric, Side.free]) {
+      this.sides[side]?.geometry.dispose();
+      this.sides[side]?.removeFromParent();
+      const geometry = new THREE.BufferGeometry();
+      const count = core.displayVertices();
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(core.triangles()), 1));
+      for (const name of ["position", "normal"]) {
+        const attribute = new THREE.BufferAttribute(new Float32Array(3 * count), 3);
+        attribute.setUsage(THREE.DynamicDrawUsage);
+        geometry.setAttribute(name, attribute);
+      }
+      const marks = new THREE.BufferAttribute(new Uint8Array(4 * count), 4, true);
+      geometry.setAttribute("marks", marks);
+      geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), 10);
+      const mesh = new THREE.Mesh(geometry, this.material);
+      mesh.frustumCulled = false;
+      this.sides[side] = mesh;
+      (side === Side.symmetric ? this.scene : this.freeScene).add(mesh);
+    }
+    this.takePositions(core, Side.symmetric);
+    this.takePositions(core, Side.free);
+    this.takeMarks(core);
+  }
+
+  takePositions(core: Core, side: Side): void {
+    const geometry = this.sides[side]?.geometry;
+    if (!geometry) return;
+    const position = geometry.getAttribute("position") as THREE.BufferAttribute;
+    const normal = geometry.getAttribute("normal") as THREE.BufferAttribute;
+    // The card takes them from the core's memory, without a copy between.
+    position.array = core.positions(side);
+    normal.array = core.normals(side);
+    position.needsUpdate = true;
+    normal.needsUpdate = true;
+    this.draw();
+  }
+
+  takeMarks(core: Core): void {
+    for (const mesh of this.sides) {
+      if (!mesh) continue;
+      const marks = mesh.geometry.getAttribute("marks") as THREE.BufferAttribute;
+      marks.array = core.marks();
+      marks.needsUpdate = true;
+    }
+    this.draw();
+  }
+
+  showOrbit(points: Float32Array | null): void {
+    const count = points ? Math.min(this.mostDots, points.length / 3) : 0;
+    const matrix = new THREE.Matrix4();
+    for (let i = 0; i < count; ++i) {
+      const [x, y, z] = [points![3 * i]!, points![3 * i + 1]!, points![3 * i + 2]!];
+      const size = 0.0035 * this.camera.position.distanceTo(new THREE.Vector3(x, y, z)) * (i === 0 ? 1.5 : 1);
+      matrix.makeScale(size, size, size).setPosition(x, y, z);
+      this.orbitDots.setMatrixAt(i, matrix);
+    }
+    this.orbitDots.count = count;
+    this.orbitDots.instanceMatrix.needsUpdate = true;
+    this.draw();
+  }
+
+  /** Planes and axes, each with the motion that carries it. \param frame  to the display's: (x - centre) / diagonal */
+  showElements(key: string, list: () => { elements: Element[]; extent: Extent; carried: Float64Array }[],
+               frame: { centre: Vec3; diagonal: number }): void {
+    if (key === this.elementsShown) return;
+    this.elementsShown = key;
+    for (const child of [...this.overlay.children]) {
+      child.removeFromParent();
+      child.traverse(object => (object as THREE.Mesh).geometry?.dispose());
+    }
+    const toDisplay = new THREE.Matrix4().makeScale(1 / frame.diagonal, 1 / frame.diagonal, 1 / frame.diagonal)
+      .multiply(new THREE.Matrix4().makeTranslation(-frame.centre[0], -frame.centre[1], -frame.centre[2]));
+    for (const { elements, extent, carried } of key ? list() : []) {
+      const group = new THREE.Group();
+      group.matrixAutoUpdate = false;
+      const m = carried;
+      group.matrix.set(m[0]!, m[1]!, m[2]!, m[3]!, m[4]!, m[5]!, m[6]!, m[7]!, m[8]!, m[9]!, m[10]!, m[11]!, 0, 0, 0, 1)
+        .premultiply(toDisplay);
+      for (const element of elements) this.addElement(group, element, extent);
+      this.overlay.add(group);
+    }
+    this.draw();
+  }
+
+  private addElement(group: THREE.Group, element: Element, extent: Extent): void {
+    const normal = new THREE.Vector3(...element.direction);
+    const centre = new THREE.Vector3(...extent.centre);
+    const point = new THREE.Vector3(...element.point);
+    const radius = 1.12 * extent.radius;
+    const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
+    const colour = new THREE.Color().setStyle(this.theme.region, THREE.LinearSRGBColorSpace);
+    if (element.kind === "plane") {
+      centre.addScaledVector(normal, normal.dot(point) - normal.dot(centre));
+      const disc = new THREE.CircleGeometry(radius, 64);
+      const sheet = new THREE.Mesh(disc, new THREE.MeshBasicMaterial(
+        { color: colour, transparent: true, opacity: 0.10, side: THREE.DoubleSide, depthWrite: false }));
+      const rim = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(
+        Array.from({ length: 96 }, (_, i) => new THREE.Vector3(radius * Math.cos(i * Math.PI / 48),
+                                                               radius * Math.sin(i * Math.PI / 48), 0))),
+                                     new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.8 }));
+      for (const object of [sheet, rim]) {
+        object.quaternion.copy(turn);
+        object.position.copy(centre);
+        group.add(object);
+      }
+    } else if (element.kind === "axis") {
+      const middle = point.clone().addScaledVector(normal, normal.dot(centre) - normal.dot(point));
+      const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.006 * radius, 0.006 * radius, 2.3 * radius, 10),
+                                 new THREE.MeshBasicMaterial({ color: colour }));
+      rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
+      rod.position.copy(middle);
+      group.add(rod);
+    } else {
+      const dot = new THREE.Mesh(new THREE.SphereGeometry(0.03 * radius, 16, 12),
+                                 new THREE.MeshBasicMaterial({ color: colour }));
+      dot.position.copy(point);
+      group.add(dot);
+    }
+  }
+
+  /** Dots where handles are to be, in the display's frame. */
+  showHandles(places: { point: Vec3; pin: boolean; selected: boolean }[]): void {
+    for (const child of [...this.handleDots.children]) child.removeFromParent();
+    for (const { point, pin, selected } of places) {
+      const sprite = new THREE.Sprite(new THREE.SpriteMaterial({
+        map: dotTexture(), sizeAttenuation: false, depthTest: false, transparent: true,
+        color: new THREE.Color().setStyle(pin ? this.theme.pin : this.theme.handle, THREE.LinearSRGBColorSpace)
+      }));
+      const size = selected ? 0.030 : 0.022;
+      sprite.scale.set(size, size, 1);
+      sprite.position.set(...point);
+      sprite.renderOrder = 10;
+      this.handleDots.add(sprite);
+    }
+    this.draw();
+  }
+
+  showScan(points: Float32Array | null): void {
+    this.scan?.geometry.dispose();
+    this.scan?.removeFromParent();
+    this.scan = null;
+    if (points) {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+      this.scan = new THREE.Points(geometry, new THREE.PointsMaterial({
+        size: 2.2, sizeAttenuation: false, color: new THREE.Color().setStyle(this.theme.scan, THREE.LinearSRGBColorSpace)
+      }));
+      this.scan.frustumCulled = false;
+      this.scene.add(this.scan);
+    }
+    this.draw();
+  }
+
+  /** Looks at what lies within a sphere, in the display's frame. */
+  frame(centre: Vec3 = [0, 0, 0], radius = 0.52): void {
+    const width = this.split ? this.canvas.clientWidth / 2 : this.canvas.clientWidth;
+    const aspect = Math.max(0.1, width / Math.max(1, this.canvas.clientHeight));
+    const half = Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, aspect);
+    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
+    this.controls.target.set(...centre);
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, radius / half * 1.02 + radius * 0.3);
+    this.controls.update();
+    this.draw();
+  }
+
+  setSplit(on: boolean): void {
+    this.split = on;
+    this.resize();
+  }
+
+  resize(): void {
+    const parent = this.canvas.parentElement!;
+    const width = Math.max(1, parent.clientWidth), height = Math.max(1, parent.clientHeight);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = (this.split ? width / 2 : width) / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Pixel to device coordinates of the half that it lies in. */
+  device(x: number, y: number): THREE.Vector2 {
+    const box = this.canvas.getBoundingClientRect();
+    const width = this.split ? box.width / 2 : box.width;
+    const left = x - box.left;
+    return new THREE.Vector2((left % width) / width * 2 - 1, 1 - (y - box.top) / box.height * 2);
+  }
+
+  private readonly caster = new THREE.Raycaster();
+  private readonly rayNumbers = new Float64Array(6);
+  /** Origin and unit direction in the display's frame. */
+  ray(x: number, y: number): Float64Array {
+    this.caster.setFromCamera(this.device(x, y), this.camera);
+    const { origin, direction } = this.caster.ray;
+    this.rayNumbers.set([origin.x, origin.y, origin.z, direction.x, direction.y, direction.z]);
+    return this.rayNumbers;
+  }
+
+  /** Where a point is on the screen, in pixels; of the left half where there are two. */
+  screen(point: Vec3): [number, number] {
+    const box = this.canvas.getBoundingClientRect();
+    const width = this.split ? box.width / 2 : box.width;
+    const seen = new THREE.Vector3(...point).project(this.camera);
+    return [box.left + (seen.x + 1) / 2 * width, box.top + (1 - seen.y) / 2 * box.height];
+  }
+
+  /** The point on the plane through `through`, parallel to the screen, that is seen at a pixel. */
+  onViewPlane(x: number, y: number, through: Vec3): Vec3 {
+    const normal = this.camera.getWorldDirection(new THREE.Vector3());
+    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(...through));
+    this.caster.setFromCamera(this.device(x, y), this.camera);
+    const point = this.caster.ray.intersectPlane(plane, new THREE.Vector3()) ?? new THREE.Vector3(...through);
+    return [point.x, point.y, point.z];
+  }
+
+  draw(): void {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      const start = performance.now();
+      this.beforeFrame();
+      this.render();
+      this.onFrame(performance.now() - start);
+    });
+  }
+
+  private readonly back = new THREE.Color();
+  render(): void {
+    const { renderer } = this;
+    this.back.setStyle(this.theme.back, THREE.LinearSRGBColorSpace);
+    const size = renderer.getSize(new THREE.Vector2());
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, size.x, size.y);
+    renderer.setClearColor(this.back);
+    renderer.clear();
+    if (!this.split) {
+      renderer.render(this.scene, this.camera);
+      return;
+    }
+    renderer.setScissorTest(true);
+    renderer.setViewport(0, 0, size.x / 2, size.y);
+    renderer.setScissor(0, 0, size.x / 2, size.y);
+    renderer.render(this.scene, this.camera);
+    renderer.setViewport(size.x / 2, 0, size.x / 2, size.y);
+    renderer.setScissor(size.x / 2, 0, size.x / 2, size.y);
+    renderer.clearDepth();
+    renderer.render(this.freeScene, this.camera);
+    renderer.setScissorTest(false);
+  }
+}
+
+let texture: THREE.Texture | undefined;
+/** A disc with a ring. */
+function dotTexture(): THREE.Texture {
+  if (texture) return texture;
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 64;
+  const context = canvas.getContext("2d")!;
+  context.beginPath();
+  context.arc(32, 32, 28, 0, 2 * Math.PI);
+  context.fillStyle = "#ffffff";
+  context.fill();
+  context.lineWidth = 5;
+  context.strokeStyle = "rgba(0,0,0,0.55)";
+  context.stroke();
+  texture = new THREE.CanvasTexture(canvas);
+  return texture;
+}

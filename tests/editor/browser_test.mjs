@@ -1,0 +1,227 @@
+// The page in Debian's Chromium, driven as a person would.
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+import { check, diagonal, finish, folder, largestDifference, orbifit, plyFile, plyVertices } from "./support.mjs";
+
+const browserPath = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
+if (!browserPath) {
+  console.log("SKIPPED: there is no Chromium");
+  process.exit(77);
+}
+const require = createRequire(join(process.env.EDITOR_MODULES, "package.json"));
+const { chromium } = require("playwright-core");
+const pictures = process.env.EDITOR_PICTURES; // a folder for screenshots, or none
+if (pictures) mkdirSync(pictures, { recursive: true });
+
+orbifit("generate", "chair", "-o", ".", "--quiet");
+orbifit("detect", "chair.ply", "-o", "chair.json", "--quiet");
+const made = orbifit("edit", "chair.ply", "chair.json", "-o", "chair.html", "--json", "--quiet");
+check(made.bytes_without_mesh <= 1.5e6, `the page without a mesh has ${made.bytes_without_mesh} bytes`);
+const rest = plyFile("chair.ply");
+const size = diagonal(rest);
+
+const browser = await chromium.launch({
+  executablePath: browserPath,
+  args: ["--headless", "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+});
+process.on("exit", () => { try { browser.process?.()?.kill(); } catch { /* gone */ } });
+const context = await browser.newContext({ viewport: { width: 1300, height: 800 }, acceptDownloads: true });
+const page = await context.newPage();
+const complaints = [];
+page.on("console", message => {
+  // What drawing in software has to say of itself is not the page's.
+  if (["error", "warning"].includes(message.type()) && !/GL Driver Message|swiftshader/i.test(message.text())) complaints.push(message.text());
+});
+page.on("pageerror", error => complaints.push(String(error)));
+
+await page.goto(pathToFileURL(join(folder, "chair.html")).href);
+await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 60000 });
+check(complaints.length === 0, `opens from disk without errors or warnings ${complaints.join("; ")}`);
+
+const picture = async name => {
+  const bytes = await page.screenshot();
+  if (pictures) writeFileSync(join(pictures, `${name}.png`), bytes);
+  return bytes;
+};
+const settled = async () => {
+  await page.waitForFunction(() => !globalThis.orbifit.editor.busy, null, { timeout: 60000 });
+  await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+};
+/** All that is asked of the page's editor. */
+const ask = (call, argument) => page.evaluate(call, argument);
+const shown = async () => Float64Array.from(await ask(() => {
+  const { editor } = globalThis.orbifit;
+  return [...editor.core.vertices(0, editor.info.vertices)];
+}));
+
+// Not blank: many colours where the mesh is.
+await settled();
+const first = await picture("first");
+const colours = await ask(() => {
+  const { view } = globalThis.orbifit;
+  view.render();
+  const gl = view.renderer.getContext();
+  const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const seen = new Set();
+  for (let i = 0; i < pixels.length; i += 4) seen.add(pixels[i] << 16 | pixels[i + 1] << 8 | pixels[i + 2]);
+  return seen.size;
+});
+check(colours > 50, `the picture is not blank: ${colours} colours, ${first.length} bytes`);
+
+// A point of a front leg that is seen.
+const seen = await ask(() => {
+  const { editor, view } = globalThis.orbifit;
+  const box = document.getElementById("canvas").getBoundingClientRect();
+  let best = null;
+  for (let y = box.bottom - 40; y > box.top + box.height / 2 && !best; y -= 6) {
+    for (let x = box.left + 40; x < box.right - 40 && !best; x += 6) {
+      const pick = editor.core.pick(view.ray(x, y));
+      if (pick && editor.core.orbit(pick, 0.02).length >= 12) best = [x + 3, y - 3];
+    }
+  }
+  editor.core.clearOrbit();
+  return best;
+});
+check(seen !== null, "a foot is seen");
+await page.mouse.move(...seen);
+await settled();
+const hover = await ask(() => ({ dots: globalThis.orbifit.view.orbitDots.count, planes: globalThis.orbifit.view.overlay.children.length }));
+check(hover.dots >= 2 && hover.planes >= 1, `hovering lights up the orbit: ${hover.dots} points, elements of ${hover.planes} regions`);
+await picture("hover");
+
+await page.mouse.click(...seen);
+await settled();
+check(await ask(() => globalThis.orbifit.editor.state.handles.length) === 1, "a click places a handle");
+const before = await shown();
+const handleAt = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(0)));
+const goal = [handleAt[0] + 70, handleAt[1] + 25];
+await page.mouse.move(...handleAt);
+await page.mouse.down();
+await page.mouse.move(handleAt[0] + 30, handleAt[1] + 10, { steps: 3 });
+await page.mouse.move(...goal, { steps: 3 });
+await page.mouse.up();
+await settled();
+const reached = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(0)));
+const missed = Math.hypot(reached[0] - goal[0], reached[1] - goal[1]);
+check(missed < 3, `a drag takes the handle to ${missed.toFixed(2)} pixels from the cursor`);
+const dragged = await shown();
+check(largestDifference(before, dragged) > 0.01 * size, "the mesh follows");
+const residual = await ask(() => globalThis.orbifit.editor.residual);
+check(residual < 1e-6, `residual of what is shown: ${residual.toExponential(1)} of the diagonal`);
+// Those that follow: far more vertices than the handle has, on all sides.
+let followers = 0;
+for (let i = 0; i < dragged.length; i += 3) {
+  if (Math.hypot(dragged[i] - before[i], dragged[i + 1] - before[i + 1], dragged[i + 2] - before[i + 2]) > 0.01 * size) ++followers;
+}
+console.log(`       ${followers} vertices moved; ${JSON.stringify(await ask(() => globalThis.orbifit.editor.record))}`);
+await picture("dragged");
+
+await page.keyboard.press("Control+z");
+await settled();
+check(largestDifference(await shown(), before) === 0, "undo restores bit for bit");
+await page.keyboard.press("Control+Shift+z");
+await settled();
+check(largestDifference(await shown(), dragged) === 0, "redo too");
+
+// The export replays.
+const download = async action => {
+  const [file] = await Promise.all([page.waitForEvent("download"), page.click(`[data-do=${action}]`)]);
+  return readFileSync(await file.path());
+};
+writeFileSync(join(folder, "handles.json"), await download("save-handles"));
+orbifit("deform", "chair.ply", "chair.json", "--handles", "handles.json", "-o", "replayed.ply", "--quiet");
+const replayed = largestDifference(plyFile("replayed.ply"), dragged) / size;
+check(replayed < 1e-6, `orbifit deform replays handles.json to ${replayed.toExponential(1)} of the diagonal`);
+const exported = plyVertices(await download("save-ply"));
+check(largestDifference(exported, dragged) === 0, "the mesh that is exported is the one that is shown");
+for (const ending of ["obj", "glb"]) check((await download(`save-${ending}`)).length > 1000, `exports ${ending}`);
+
+// Comparison.
+await page.click("[data-do=compare]");
+await settled();
+const sides = await ask(() => ({ own: globalThis.orbifit.editor.residual, free: globalThis.orbifit.editor.freeResidual }));
+check(sides.own < 1e-6 && sides.free > 1e-4, `compare: ${sides.own.toExponential(1)} with symmetries, ${sides.free.toExponential(1)} without`);
+await picture("compare");
+await page.click("[data-do=compare]");
+await settled();
+
+// Regions off: what follows changes, and the edit of the rest is what the native program does without them.
+const boxes = await page.$$(".region input[type=checkbox]");
+check(boxes.length > 0, `${boxes.length} regions are listed`);
+const ids = await ask(() => [...document.querySelectorAll(".region")].map(row => Number(row.dataset.id)));
+await page.hover(".region");
+await settled();
+await picture("region");
+await boxes[0].click();
+await settled();
+const other = await shown();
+check(largestDifference(other, dragged) > 0.003 * size, "switching a region off changes what follows");
+const annotation = await download("save-annotation");
+writeFileSync(join(folder, "kept.json"), annotation);
+check(!JSON.parse(annotation).regions.some(region => region.id === ids[0]), "the annotation that is downloaded lacks it");
+orbifit("deform", "chair.ply", "kept.json", "--handles", "handles.json", "-o", "without.ply", "--quiet");
+const without = largestDifference(plyFile("without.ply"), other) / size;
+check(without < 1e-6, `that replays too, to ${without.toExponential(1)} of the diagonal, from a basis built in the page`);
+await page.keyboard.press("Control+z");
+await settled();
+check(largestDifference(await shown(), dragged) === 0, "undo switches it on again, bit for bit");
+
+// Bad input: a message, and nothing lost.
+const drop = (name, text) => ask(({ name, text }) => {
+  const data = new DataTransfer();
+  data.items.add(new File([text], name));
+  window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+}, { name, text });
+const refusal = async (name, text, pattern) => {
+  await drop(name, text);
+  await page.waitForFunction(() => !document.getElementById("message").hidden, null, { timeout: 20000 });
+  const message = await ask(() => document.querySelector("#message span").textContent);
+  check(pattern.test(message), `${name}: "${message}"`);
+  check(largestDifference(await shown(), dragged) === 0, "nothing is lost");
+  await page.click("[data-do=message]");
+};
+await refusal("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nend_header\n", /broken\.ply/);
+await refusal("notes.txt", "hello", /notes\.txt/);
+orbifit("generate", "wheel", "-o", ".", "--quiet");
+orbifit("detect", "wheel.ply", "-o", "wheel.json", "--quiet");
+await refusal("wheel.json", readFileSync(join(folder, "wheel.json"), "utf8"), /annotation|mesh|vertices|faces/);
+
+// A scan, and the fit.
+orbifit("scan", "replayed.ply", "--views", "2", "-o", "scan.ply", "--quiet");
+orbifit("convert", "scan.ply", "scan.xyz", "--quiet");
+await drop("scan.xyz", readFileSync(join(folder, "scan.xyz"), "utf8"));
+await settled();
+await page.click("[data-do=fit]");
+await page.waitForFunction(() => globalThis.orbifit.editor.fitReport !== null, null, { timeout: 120000 });
+await settled();
+const fit = await ask(() => ({ report: globalThis.orbifit.editor.fitReport, steps: globalThis.orbifit.editor.fitSteps }));
+check(fit.report.converged && fit.steps.length > 10 && fit.steps.at(-1).rms < fit.steps[0].rms,
+      `the fit converges, seen in ${fit.steps.length} steps: rms ${fit.steps[0].rms.toExponential(1)} to ${fit.report.rms.toExponential(1)}`);
+await picture("fit");
+
+// Other sizes and colours.
+if (pictures) {
+  await page.click("[data-do=theme]");
+  await settled();
+  await picture("dark");
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await settled();
+  await picture("tablet");
+}
+check(complaints.length === 0, `no errors or warnings until the end ${complaints.join("; ")}`);
+
+// Without WebGL there is a message.
+const bare = await browser.newContext();
+await bare.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+const plain = await bare.newPage();
+await plain.goto(pathToFileURL(join(folder, "chair.html")).href);
+await plain.waitForFunction(() => !document.getElementById("message").hidden, null, { timeout: 30000 });
+check(/WebGL/.test(await plain.textContent("#message")), "without WebGL the page says so");
+
+await browser.close();
+finish();
