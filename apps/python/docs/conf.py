@@ -9,8 +9,8 @@ extensions = ["sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 html_theme = "furo"
 html_title = f"Orbifit {release}: Python"
 autodoc_member_order = "groupwise"
-autodoc_default_options = {"members": True, "special-members": "__init__", "exclude-members": "__init__, __new__"}
-autodoc_type_aliases = {}
+autodoc_default_options = {"members": True}
+autoclass_content = "both"
 python_use_unqualified_type_names = True
 
 

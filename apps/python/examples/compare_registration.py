@@ -8,10 +8,11 @@ within a distance that shrinks as targets of its deform_as_rigid_as_possible(). 
 """
 
 import csv
+import importlib
 import sys
 import time
 from pathlib import Path
-from typing import Any, Callable, List, Optional, Tuple
+from typing import Any, Callable, List, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -40,7 +41,7 @@ def non_rigid(o3d: Any, mesh: orbifit.Mesh, scan: orbifit.PointCloud) -> Array:
     moved = rigid(o3d, mesh, scan)
     tree = o3d.geometry.KDTreeFlann(scan.to_open3d())
     chosen = np.linspace(0, len(moved) - 1, 300).astype(int)
-    for reach in np.linspace(0.06, 0.02, 4) * mesh.diagonal:
+    for reach in np.linspace(0.15, 0.03, 5) * mesh.diagonal:
         shape = mesh.with_vertices(moved).to_open3d()
         handles, targets = [], []
         for vertex in chosen:
@@ -48,6 +49,8 @@ def non_rigid(o3d: Any, mesh: orbifit.Mesh, scan: orbifit.PointCloud) -> Array:
             if count and squared < reach**2:
                 handles.append(vertex)
                 targets.append(scan.points[nearest])
+        if not handles:
+            break
         shape = shape.deform_as_rigid_as_possible(
             o3d.utility.IntVector(handles), o3d.utility.Vector3dVector(np.array(targets)), max_iter=10
         )
@@ -66,11 +69,10 @@ def main(out: Path) -> None:
         return orbifit.fit(mesh, scan, annotation, pose=np.eye(4)).mesh.vertices
 
     methods: List[Tuple[str, Callable[[Any, orbifit.Mesh, orbifit.PointCloud], Array]]] = [("Orbifit", ours)]
-    o3d: Optional[Any]
+    o3d: Any = None
     try:
-        import open3d as o3d
+        o3d = importlib.import_module("open3d")
     except ImportError:
-        o3d = None
         print("Open3D is not installed: only ours is run")
     if o3d is not None:
         methods += [("Open3D, rigid", rigid), ("Open3D, as rigid as possible", non_rigid)]

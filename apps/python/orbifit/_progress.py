@@ -11,10 +11,10 @@ def bar(wanted: bool) -> Optional[Callable[[str, float], None]]:
         from tqdm.auto import tqdm
     except ImportError:
         return None
-    shown: Any = tqdm(total=1.0, bar_format="{desc}: {percentage:3.0f}%|{bar}| {elapsed}", leave=False)
+    shown: Any = tqdm(total=1.0, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}", leave=False)
 
     def tell(stage: str, fraction: float) -> None:
-        shown.set_description(stage, refresh=False)
+        shown.set_description_str(stage, refresh=False)
         shown.n = fraction
         shown.refresh()
 
