@@ -14,7 +14,7 @@ const source = name => join(here, "src", name);
 const options = {
   bundle: true, minify: true, write: false, target: "es2022", charset: "utf8", legalComments: "none", logLevel: "warning",
   absWorkingDir: here, alias: { "editor-core": join(folder, "editor_core.mjs") },
-  define: { "import.meta.url": '""' } // where the module's file would be; the page carries it in itself
+  define: { "import.meta.url": '"file:///"' } // where the module's file would be; the page carries it in itself
 };
 const bundled = async (entry, more) => {
   const result = await build({ ...options, ...more, entryPoints: [source(entry)] });
