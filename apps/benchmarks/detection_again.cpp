@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "orbifit/datasets_tools/spoil.h"
-#include "base/random.h"
 
+#include "base/random.h"
 #include "detection.h"
 
 namespace orbifit::benchmarks {

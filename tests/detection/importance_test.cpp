@@ -70,7 +70,9 @@ TEST(Importance, ListsNothingTwiceUnlessAskedFor) {
     table.list(all);
     ASSERT_EQ(table.annotation.regions.size(), all ? 2U : 1U);
     EXPECT_EQ(table.annotation.regions[0].name, "C4v");
-    if (all) EXPECT_LT(*table.annotation.regions[1].importance, 1e-6);
+    if (all) {
+      EXPECT_LT(*table.annotation.regions[1].importance, 1e-6);
+    }
   }
 }
 

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "domains/region_residual.h"
-
 #include "shapes.h"
 
 namespace orbifit {

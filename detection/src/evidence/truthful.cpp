@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "domains/region_residual.h"
-
 #include "evidence/policy.h"
 #include "surface/near_cells.h"
 #include "surface/surface_grid.h"

@@ -8,9 +8,9 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
-#include "domains/region_residual.h"
 #include "orbifit/model/run_context.h"
 
+#include "domains/region_residual.h"
 #include "surface/surface_patch.h"
 
 namespace orbifit {

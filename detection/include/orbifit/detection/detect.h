@@ -32,12 +32,12 @@ struct DetectOptions {
 
 /// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of
 /// its connected components and sets of congruent components, and the congruences among components as patterns. Every
-/// element of a returned group was verified against the surface: no listed face is taken farther than the tolerance from
-/// its region (of continuous groups less the facets' sagitta, and where parts of the solid stand on it nothing counts as missing). Ordered by importance, what
-/// each saves of the surface given those before it; images of one another follow one another; parents set. The result
-/// is the same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance
-/// asks for; the search itself depends on how much shape there is at the size of the tolerance. \throw InputError when
-/// the mesh has no area
+/// element of a returned group was verified against the surface: no listed face is taken farther than the tolerance
+/// from its region (of continuous groups less the facets' sagitta; where parts of the solid stand on a region nothing
+/// of it is missing). Ordered by importance, what each saves of the surface given those before it; images of one
+/// another follow one another; parents set. The result is the same for any number of threads. Costs O(F log F), for
+/// each region too, for meshes finer than the tolerance asks for; the search itself depends on how much shape there is
+/// at the size of the tolerance. \throw InputError when the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 
 }  // namespace orbifit

@@ -10,6 +10,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
 #include "orbifit/model/run_context.h"
+
 #include "geometry/surface_index.h"
 
 namespace orbifit {
