@@ -14,7 +14,7 @@ const source = name => join(here, "src", name);
 const options = {
   bundle: true, minify: true, write: false, target: "es2022", charset: "utf8", legalComments: "none", logLevel: "warning",
   absWorkingDir: here, alias: { "editor-core": join(folder, "editor_core.mjs") },
-  define: { "import.meta.url": '""' } // where the module's file would be; the page carries it in itself
+  define: { "import.meta.url": '"file:///"' } // where the module's file would be; the page carries it in itself
 };
 const bundled = async (entry, more) => {
   const result = await build({ ...options, ...more, entryPoints: [source(entry)] });
@@ -29,16 +29,16 @@ const workerCode = {
     setup.onLoad({ filter: /.*/, namespace: "worker-code" }, () => ({ contents: worker, loader: "text" }));
   }
 };
-const script = await bundled("main.ts", { format: "esm", plugins: [workerCode] });
+const packed = bytes => Buffer.from(gzipSync(bytes, { level: 9, mtime: 0 })).toString("base64");
+const script = packed(Buffer.from(await bundled("main.ts", { format: "iife", plugins: [workerCode] })));
 const style = (await bundled("style.css", {})).trim();
-const wasm = gzipSync(readFileSync(join(folder, "editor_core.wasm")), { level: 9, mtime: 0 });
-const core = Buffer.from(wasm).toString("base64");
+const core = packed(readFileSync(join(folder, "editor_core.wasm")));
 
 // Functions, since a text with $ in it would be taken for a pattern.
 const page = readFileSync(source("page.html"), "utf8")
   .replace("/*STYLE*/", () => style)
   .replace("/*CORE*/", () => core)
-  .replace("/*SCRIPT*/", () => script.replaceAll("</script", "<\\/script"));
+  .replace("/*SCRIPT*/", () => script);
 mkdirSync(dirname(out), { recursive: true });
 writeFileSync(out, page);
 console.log(`${out}: ${page.length} bytes, of which core ${core.length}, script ${script.length}`);

@@ -13,7 +13,6 @@
 #include "orbifit/subspace/deformer.h"
 
 #include "geometry/vertex_grid.h"
-
 #include "parts.h"
 #include "subspaces.h"
 
@@ -32,7 +31,7 @@ std::vector<int> joined(std::vector<int> a, const std::vector<int>& b) {
   return a;
 }
 
-std::vector<int> all_faces(const Mesh& mesh) {
+std::vector<int> every_face(const Mesh& mesh) {
   std::vector<int> result(static_cast<std::size_t>(mesh.faces.rows()));
   for (std::size_t f = 0; f < result.size(); ++f) result[f] = static_cast<int>(f);
   return result;
@@ -91,7 +90,7 @@ GeneratedModel aeroplane() {
     }
   }
   model.truth = empty_annotation(mesh, 0.005);
-  declare(model, "Cs", Vector3d::Zero(), frame_about(Vector3d::UnitX()), all_faces(mesh), "whole");
+  declare(model, "Cs", Vector3d::Zero(), frame_about(Vector3d::UnitX()), every_face(mesh), "whole");
   for (std::size_t side = 0; side < 2; ++side) {
     const Vector3d centre(side == 0 ? kEngine : -kEngine, 0.2, -0.06);
     declare(model, "C4", centre, frame_about(Vector3d::UnitY()), engines[side], "engine");
@@ -120,7 +119,7 @@ GeneratedModel armchair() {
   GroupFrame frame;
   frame << Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ();
   model.truth = empty_annotation(mesh, 0.005);
-  declare(model, "Cs", Vector3d::Zero(), frame_about(Vector3d::UnitX()), all_faces(mesh), "whole");
+  declare(model, "Cs", Vector3d::Zero(), frame_about(Vector3d::UnitX()), every_face(mesh), "whole");
   declare(model, "C5v", Vector3d::Zero(), frame, base, "base");
   declare(model, "Cinfv", Vector3d::Zero(), frame_about(Vector3d::UnitZ()), pillar, "column");
   set_parents(model.truth.regions);
@@ -131,20 +130,20 @@ GeneratedModel armchair() {
 double worst_of_mesh(const GeneratedModel& model, const Subspace& subspace, const SubspaceState& state) {
   const Points& rest = model.mesh.vertices;
   const Points moved = rest + vertex_displacements(subspace, state);
-  const VertexGrid grid(rest, 1e-9 * subspace.diagonal);
+  const VertexGrid grid(rest, 1e-9 * subspace->diagonal);
   double worst = 0;
   int pairs = 0;
   for (std::size_t i = 0; i < model.truth.regions.size(); ++i) {
     const Region& region = model.truth.regions[i];
-    const Motion carried = carried_motion(subspace, state, static_cast<int>(i));
+    const Motion carried = region_motion(subspace, state, static_cast<int>(i));
     const std::vector<int> inside = vertices_of_faces(model.mesh, region.faces);
-    for (const Motion& element : subspace.regions->test_elements(static_cast<int>(i))) {
+    for (const Motion& element : subspace->regions->test_elements(static_cast<int>(i))) {
       for (const int v : inside) {
         const Vector3d due = conjugate(carried, element)(moved.row(v).transpose());
         double least = -1;
         grid.visit(element(rest.row(v).transpose()), [&](int other) {
           if (!std::ranges::binary_search(inside, other)) return;
-          const double apart = (moved.row(other).transpose() - due).norm() / subspace.diagonal;
+          const double apart = (moved.row(other).transpose() - due).norm() / subspace->diagonal;
           if (least < 0 || apart < least) least = apart;
         });
         if (least < 0) continue;
@@ -157,25 +156,25 @@ double worst_of_mesh(const GeneratedModel& model, const Subspace& subspace, cons
   return worst;
 }
 
-struct Case {
+struct NestedCase {
   const char* name;
   GeneratedModel (*make)();
   Vector3d held, turned;  // where the handles are
 };
 
-const Case kCases[] = {{"aeroplane", aeroplane, {0.36, 0.4, -0.06}, {-0.9, 0.2, 0.03}},
-                       {"armchair", armchair, {0.1, 0.25, 0.08}, {0.2, -0.26, 1.05}}};
+const NestedCase kNestedCases[] = {{"aeroplane", aeroplane, {0.36, 0.4, -0.06}, {-0.9, 0.2, 0.03}},
+                                   {"armchair", armchair, {0.1, 0.25, 0.08}, {0.2, -0.26, 1.05}}};
 
 class NestedModel : public testing::TestWithParam<std::tuple<int, GroupMode>> {};
 
 TEST_P(NestedModel, IsExactAfterADragThatTurns) {
-  const Case& chosen = kCases[static_cast<std::size_t>(std::get<0>(GetParam()))];
+  const NestedCase& chosen = kNestedCases[static_cast<std::size_t>(std::get<0>(GetParam()))];
   const GroupMode mode = std::get<1>(GetParam());
   const GeneratedModel model = chosen.make();
   const ConsistentAnnotation consistent = consistent_annotation(model.mesh, model.truth, RunContext{});
   ASSERT_TRUE(consistent.left_out.empty()) << to_string(consistent.left_out.front());
   const Subspace subspace = subspace_of(model, mode, 0.05);
-  const double size = subspace.diagonal;
+  const double size = subspace->diagonal;
   Deformer deformer(subspace, model.mesh);
   deformer.set_handles(
       {handle_at(model.mesh, chosen.held, 0.08 * size), handle_at(model.mesh, chosen.turned, 0.08 * size)}, 100);
@@ -196,13 +195,15 @@ TEST_P(NestedModel, IsExactAfterADragThatTurns) {
   EXPECT_LT(worst_of_mesh(model, subspace, result.state), 1e-12);
 }
 
+std::string nested_case_name(const testing::TestParamInfo<NestedModel::ParamType>& tested) {
+  return std::string(kNestedCases[static_cast<std::size_t>(std::get<0>(tested.param))].name) + "_" +
+         to_string(std::get<1>(tested.param));
+}
+
 INSTANTIATE_TEST_SUITE_P(Modes, NestedModel,
                          testing::Combine(testing::Range(0, 2),
                                           testing::Values(GroupMode::fixed, GroupMode::floating, GroupMode::moving)),
-                         [](const testing::TestParamInfo<NestedModel::ParamType>& info) {
-                           return std::string(kCases[std::get<0>(info.param)].name) + "_" +
-                                  to_string(std::get<1>(info.param));
-                         });
+                         nested_case_name);
 
 // A rotation conjugates a motion also where that does not fix the region's centre exactly, as by the digits of a file.
 TEST(NestedModel, AGroupOffItsCentreByRoundingTurnsExactly) {

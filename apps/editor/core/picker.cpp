@@ -1,5 +1,7 @@
 #include "picker.h"
 
+#include <Eigen/Geometry>
+
 #include "geometry/surface_index.h"
 #include "symmetry/moving_surface.h"
 

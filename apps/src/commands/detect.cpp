@@ -39,10 +39,6 @@ double area_fraction(const Eigen::VectorXd& areas, const std::vector<int>& faces
   return areas.sum() > 0 ? area / areas.sum() : 0;
 }
 
-nlohmann::ordered_json importance(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-}
-
 nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh) {
   const Eigen::VectorXd areas = face_areas(mesh);
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
@@ -52,7 +48,6 @@ nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh
                        {"group", region.group.symbol()},
                        {"faces", region.faces.size()},
                        {"area_fraction", area_fraction(areas, region.faces)},
-                       {"importance", importance(region.importance)},
                        {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
                        {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
   }
@@ -62,70 +57,37 @@ nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh
                         {"name", pattern.name},
                         {"kind", to_string(pattern.kind)},
                         {"instances", pattern.instances.size()},
-                        {"importance", importance(pattern.importance)},
                         {"residual", {{"rms", pattern.residual.rms}, {"max", pattern.residual.max}}}});
   }
   return {{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
-}
-
-// How many regions from this one on are images of one another: they have the importance of all in common.
-std::size_t family_size(const std::vector<Region>& regions, std::size_t first) {
-  std::size_t end = first + 1;
-  while (end < regions.size() && regions[first].importance && regions[end].importance == regions[first].importance &&
-         regions[end].group == regions[first].group) {
-    ++end;
-  }
-  return end - first;
-}
-
-// "4 x rod" of "rod 1 of 4, upper left".
-std::string family_name(const Region& first, std::size_t count) {
-  const std::string tail = " 1 of " + std::to_string(count);
-  return count == 1 ? first.name : std::to_string(count) + " x " + first.name.substr(0, first.name.find(tail));
-}
-
-// One line for each set of regions that are images of one another.
-std::string region_table(const SymmetryAnnotation& found, const Mesh& mesh) {
-  const Eigen::VectorXd areas = face_areas(mesh);
-  // What is left by rounding is no news here; `check` shows every digit.
-  const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
-  TextTable table({"region", "group", "area %", "saves %", "parent", "residual max %", "name"});
-  for (std::size_t i = 0; i < found.regions.size();) {
-    const Region& region = found.regions[i];
-    const std::size_t count = family_size(found.regions, i);
-    double area = 0;
-    double residual = 0;
-    for (std::size_t k = i; k < i + count; ++k) {
-      area += area_fraction(areas, found.regions[k].faces);
-      residual = std::max(residual, found.regions[k].residual.max);
-    }
-    const std::string last = count > 1 ? "-" + std::to_string(found.regions[i + count - 1].id) : "";
-    table.add({std::to_string(region.id) + last, region.group.symbol(), percent(area),
-               region.importance ? percent(*region.importance) : "-",
-               region.parent ? std::to_string(*region.parent) : "-", percent(residual), family_name(region, count)});
-    i += count;
-  }
-  return table.text();
 }
 
 std::string to_text(const SymmetryAnnotation& found, const Mesh& mesh) {
   if (found.regions.empty() && found.patterns.empty()) {
     return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
   }
+  const Eigen::VectorXd areas = face_areas(mesh);
+  // What is left by rounding is no news here; `check` shows every digit.
   const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
-  std::string text = found.regions.empty() ? "" : region_table(found, mesh);
+  std::string text;
+  if (!found.regions.empty()) {
+    TextTable table({"region", "group", "area %", "faces", "parent", "residual max %", "name"});
+    for (const Region& region : found.regions) {
+      table.add({std::to_string(region.id), region.group.symbol(), percent(area_fraction(areas, region.faces)),
+                 std::to_string(region.faces.size()), region.parent ? std::to_string(*region.parent) : "-",
+                 percent(region.residual.max), region.name});
+    }
+    text += table.text();
+  }
   if (!found.patterns.empty()) {
-    TextTable table({"pattern", "kind", "instances", "saves %", "residual max %", "name"});
+    TextTable table({"pattern", "kind", "instances", "residual max %", "name"});
     for (const Pattern& pattern : found.patterns) {
       table.add({std::to_string(pattern.id), to_string(pattern.kind), std::to_string(pattern.instances.size()),
-                 pattern.importance ? percent(*pattern.importance) : "-", percent(pattern.residual.max), pattern.name});
+                 percent(pattern.residual.max), pattern.name});
     }
     text += (text.empty() ? "" : "\n") + table.text();
   }
-  return text +
-         "Saves: of the surface that does not follow from the lines before. Residuals are in percent of the "
-         "diagonal, " +
-         short_number(diagonal(mesh.vertices), 6) + ".\n";
+  return text + "Residuals are in percent of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
 }
 
 // Every region's colour on the faces for which it is the smallest region; clay elsewhere.
@@ -283,7 +245,6 @@ CommandBody detect(CLI::App& app) {
   app.add_option("--samples", options.samples,
                  "Number of surface samples on which symmetries of the whole mesh are verified")
       ->capture_default_str();
-  app.add_flag("--all", options.all, "List also what saves next to nothing beside what is listed before it");
   app.add_option("--preview", arguments->preview,
                  "Pictures of all regions and patterns to write: one sheet (.png) or a page (.html)")
       ->type_name("FILE");
@@ -292,7 +253,7 @@ CommandBody detect(CLI::App& app) {
          "--explain", arguments->explain,
          "Folder to write what each stage kept and dropped, for which reason, and how long it took; created if missing")
       ->type_name("DIR");
-  add_up_option(app, arguments->up, "Upward direction, for names and the preview; kept in the annotation");
+  add_up_option(app, arguments->up, "Upward direction, drawn in the preview and kept in the annotation");
   return [arguments](CommandContext& context) {
     arguments->options.validate();
     if (!arguments->up.empty()) to_direction("--up", arguments->up);
@@ -304,7 +265,6 @@ CommandBody detect(CLI::App& app) {
     context.run.check();
     Explanation explanation;
     DetectOptions chosen = arguments->options;
-    chosen.up = picture_up(arguments->up, mesh, arguments->mesh, nullptr);
     RunContext run = context.run;
     std::optional<StageTimes> times;
     if (!arguments->explain.empty()) {

@@ -15,6 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kContinuousAngles = 20;
 constexpr double kFarOff = 2;  // tolerances
 
 Vector3d row(const Points& points, std::size_t i) {
@@ -83,6 +84,45 @@ double largest_blot(const SurfacePatch& patch, const std::vector<std::size_t>& f
 }
 
 }  // namespace
+
+std::vector<Motion> judged_motions(const PointGroup& group, const GroupFrame& frame, const Vector3d& centre) {
+  std::vector<Motion> result;
+  if (!group.continuous()) {
+    const std::vector<Eigen::Matrix3d> all = elements(group, frame);
+    for (std::size_t i = 1; i < all.size(); ++i) result.push_back(Motion::about(all[i], centre));
+    return result;
+  }
+  using Family = PointGroup::Family;
+  const Vector3d x = frame.col(0);
+  const Vector3d z = frame.col(2);
+  std::vector<Eigen::Matrix3d> rotations;
+  if (group.family == Family::K || group.family == Family::Kh) {
+    for (int k = 1; k <= kContinuousAngles; ++k) {
+      const double height = 1 - (2 * k - 1.0) / kContinuousAngles;
+      const double turn = 2 * std::numbers::pi * k / std::numbers::phi;
+      const double radius = std::sqrt(1 - height * height);
+      const Vector3d axis = frame * Vector3d(radius * std::cos(turn), radius * std::sin(turn), height);
+      rotations.push_back(axis_rotation(axis, 0.3 + 2.5 * k / kContinuousAngles));
+    }
+  } else {
+    for (int k = 1; k <= kContinuousAngles; ++k) {
+      const double turns = k / std::numbers::phi;
+      rotations.push_back(axis_rotation(z, 2 * std::numbers::pi * (turns - std::floor(turns))));
+    }
+  }
+  std::vector<Eigen::Matrix3d> cosets{Eigen::Matrix3d::Identity()};
+  const Eigen::Matrix3d vertical = Eigen::Matrix3d::Identity() - 2 * x * x.transpose();
+  const Eigen::Matrix3d horizontal = Eigen::Matrix3d::Identity() - 2 * z * z.transpose();
+  if (group.family == Family::Cinfv || group.family == Family::Dinfh) cosets.push_back(vertical);
+  if (group.family == Family::Cinfh || group.family == Family::Dinfh) cosets.push_back(horizontal);
+  if (group.family == Family::Dinf || group.family == Family::Dinfh)
+    cosets.push_back(axis_rotation(x, std::numbers::pi));
+  if (group.family == Family::Kh) cosets.emplace_back(-Eigen::Matrix3d::Identity());
+  for (const Eigen::Matrix3d& coset : cosets) {
+    for (const Eigen::Matrix3d& rotation : rotations) result.push_back(Motion::about(rotation * coset, centre));
+  }
+  return result;
+}
 
 Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motions, double tolerance, int samples,
                     double give_up_below, const RunContext& context) {

@@ -8,12 +8,15 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
-#include "domains/region_residual.h"
 #include "orbifit/model/run_context.h"
 
 #include "surface/surface_patch.h"
 
 namespace orbifit {
+
+/// The motions on which a group is judged: all elements but the identity of a finite group; for a continuous one a
+/// fixed set of rotations by irrational fractions of a turn, combined with the representatives of its cosets.
+std::vector<Motion> judged_motions(const PointGroup& group, const GroupFrame& frame, const Eigen::Vector3d& centre);
 
 /// How much of a patch a set of motions maps onto the patch.
 struct Verification {

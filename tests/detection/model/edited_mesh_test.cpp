@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, EditedMesh,
                                          Sample{"BigPly", ".ply", binary_ply(true)}, Sample{"Off", ".off", kOff},
                                          Sample{"AsciiStl", ".stl", kAsciiStl},
                                          Sample{"BinaryStl", ".stl", binary_stl()}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& sample) { return sample.param.name; });
 
 class EditedFile : public testing::Test {
  protected:

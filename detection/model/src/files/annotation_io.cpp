@@ -198,13 +198,6 @@ class AnnotationReader {
     return result;
   }
 
-  std::optional<double> importance(const Json& object, const std::string& where) const {
-    if (!object.contains("importance")) return std::nullopt;
-    const double result = number(object, "importance", where);
-    if (!(result >= 0 && result <= 1)) refuse(path(where, "importance"), "must be from 0 to 1");
-    return result;
-  }
-
   // Runs that people wrote out of order or touching mean the same set; only runs outside the mesh mean nothing.
   std::vector<int> faces(const Json& object, const std::string& where) const {
     const Json& runs = list(object, "faces", where);
@@ -277,7 +270,6 @@ class AnnotationReader {
       result.parent = identifier(object, "parent", where);
     }
     result.residual = residual(object, where);
-    result.importance = importance(object, where);
     check_group(result, where);
     return result;
   }
@@ -373,7 +365,6 @@ class AnnotationReader {
       refuse(path(where, "instances") + "[0].motion", "must be the identity");
     }
     result.residual = residual(object, where);
-    result.importance = importance(object, where);
     return result;
   }
 

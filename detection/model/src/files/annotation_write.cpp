@@ -81,10 +81,6 @@ class AnnotationWriter {
     text_ += values.empty() ? "],\n" : "\n      ],\n";
   }
 
-  void importance(const std::optional<double>& value) {
-    if (value) text_ += ",\n      \"importance\": " + number(*value);
-  }
-
   void region(const Region& value) {
     text_ += "    {\n      \"id\": " + std::to_string(value.id) + ",\n      \"name\": " + string(value.name) + ",\n";
     text_ += "      \"group\": \"" + value.group.symbol() + "\",\n      \"centre\": " + vector(value.centre) + ",\n";
@@ -93,9 +89,7 @@ class AnnotationWriter {
     motions("elements", value.elements);
     text_ += "      \"faces\": " + runs(value.faces) + ",\n      \"parent\": ";
     text_ +=
-        (value.parent ? std::to_string(*value.parent) : "null") + ",\n      " + residual(value.residual);
-    importance(value.importance);
-    text_ += "\n    }";
+        (value.parent ? std::to_string(*value.parent) : "null") + ",\n      " + residual(value.residual) + "\n    }";
   }
 
   void pattern(const Pattern& value) {
@@ -108,9 +102,7 @@ class AnnotationWriter {
                ",\n          \"faces\": " + runs(value.instances[i].faces) + " }";
     }
     text_ +=
-        std::string(value.instances.empty() ? "" : "\n      ") + "],\n      " + residual(value.residual);
-    importance(value.importance);
-    text_ += "\n    }";
+        std::string(value.instances.empty() ? "" : "\n      ") + "],\n      " + residual(value.residual) + "\n    }";
   }
 
   std::string text_;

@@ -34,7 +34,7 @@ std::vector<std::string> write_edited_mesh(const fs::path& file, const fs::path&
   }
   const std::string content = read_file(source);
   MeshBuilder builder(source.string());
-  mesh_reader(source)(source, content, builder);
+  mesh_reader(ending)(source, content, builder);
   const Mesh rest = builder.finish();
   if (rest.vertices.rows() != edited.vertices.rows() || rest.faces != edited.faces) {
     throw InputError(source.string(), "", "has changed since it was read: its vertices or faces are others");
