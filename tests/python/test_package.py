@@ -64,7 +64,7 @@ def test_pip_installs_what_was_built(tmp_path):
     build = pathlib.Path(os.environ.get("ORBIFIT_BUILD", ""))
     if not (build / "CMakeCache.txt").is_file():
         pytest.skip("ORBIFIT_BUILD names no build folder")
-    run(sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-index", "--quiet", "--target", tmp_path / "site",
+    run(sys.executable, "-m", "pip", "install", "--no-build-isolation", "--no-index", "--no-deps", "--quiet", "--target", tmp_path / "site",
         "--config-settings", f"build-dir={build}", PYTHON)
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     environment["PYTHONPATH"] = str(tmp_path / "site")

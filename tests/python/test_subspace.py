@@ -79,13 +79,16 @@ def test_options_are_refused_with_their_rule(mesh, annotation):
 
 
 def test_radius_field_refines(mesh, annotation):
-    base = 0.1 * mesh.diagonal
+    base = 0.04 * mesh.diagonal
     foot = mesh.vertices[mesh.vertices[:, 2].argmin()]
-    radii = orbifit.radius_field(mesh, base, areas=[(foot, base, 0.5)])
+    radii = orbifit.radius_field(mesh, base, areas=[(foot, 4 * base, 0.5)])
     assert radii.min() == pytest.approx(0.5 * base) and radii.max() == pytest.approx(base)
-    coarse = orbifit.Subspace(mesh, annotation, radius=base)
-    fine = orbifit.Subspace(mesh, annotation, radius=base, relative_radii=radii / base)
-    assert len(fine.samples) > len(coarse.samples)
+
+    def samples_near(**options):
+        samples = orbifit.Subspace(mesh, annotation, radius=base, **options).samples
+        return (np.linalg.norm(samples - foot, axis=1) < 3 * base).sum()
+
+    assert samples_near(relative_radii=radii / base) > 1.5 * samples_near()
 
 
 def test_symmetrize_takes_noise_out(mesh, annotation):

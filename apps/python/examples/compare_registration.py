@@ -40,17 +40,22 @@ def non_rigid(o3d: Any, mesh: orbifit.Mesh, scan: orbifit.PointCloud) -> Array:
     """As-rigid-as-possible onto the nearest points of the scan, again and again, after the rigid one."""
     moved = rigid(o3d, mesh, scan)
     tree = o3d.geometry.KDTreeFlann(scan.to_open3d())
+    parts = np.asarray(mesh.to_open3d().cluster_connected_triangles()[0])
+    corners = np.asarray(mesh.faces)
     chosen = np.linspace(0, len(moved) - 1, 300).astype(int)
-    for reach in np.linspace(0.15, 0.03, 5) * mesh.diagonal:
+    for reach in np.linspace(0.06, 0.02, 5) * mesh.diagonal:
         shape = mesh.with_vertices(moved).to_open3d()
-        handles, targets = [], []
+        handles, targets, taken = [], [], set()
         for vertex in chosen:
             count, (nearest, *_), (squared, *_) = tree.search_knn_vector_3d(moved[vertex], 1)
-            if count and squared < reach**2:
+            if count and squared < reach**2 and nearest not in taken:  # two vertices in one place: singular again
+                taken.add(nearest)
                 handles.append(vertex)
                 targets.append(scan.points[nearest])
-        if not handles:
-            break
+        for part in np.unique(parts):  # Open3D's system is singular where a connected part has no handle
+            if not np.isin(handles, corners[parts == part]).any():
+                handles.append(corners[parts == part][0, 0])
+                targets.append(moved[handles[-1]])
         shape = shape.deform_as_rigid_as_possible(
             o3d.utility.IntVector(handles), o3d.utility.Vector3dVector(np.array(targets)), max_iter=10
         )

@@ -17,8 +17,9 @@ namespace {
 /// A deformer that several threads may use: solves at once, new handles alone.
 class KeptDeformer {
  public:
-  KeptDeformer(SubspacePointer of, const DeformerOptions& options, RunContext& context)
-      : of_(std::move(of)), deformer_(of_->subspace, *of_->mesh, options, context) {}
+  /// \param threads  the deformer keeps a context, so it is given one that outlives this call: of threads alone
+  KeptDeformer(SubspacePointer of, const DeformerOptions& options, int threads)
+      : of_(std::move(of)), deformer_(of_->subspace, *of_->mesh, options, context_of(threads)) {}
 
   void set_handles(const std::vector<Handle>& handles, double alpha) {
     if (handles.empty()) throw UsageError("handles is empty");
@@ -49,6 +50,12 @@ class KeptDeformer {
   std::size_t contacts() const { return deformer_.contacts(); }
 
  private:
+  static RunContext context_of(int threads) {
+    RunContext context;
+    context.threads = threads;
+    return context;
+  }
+
   SubspacePointer of_;
   Deformer deformer_;
   std::shared_mutex mutex_;
@@ -183,18 +190,19 @@ void define_deformer(py::module_& module) {
       module, "Deformer",
       "Edits a mesh with handles within its symmetric subspace: factorise once for a set of handles, solve as often as "
       "they move. Threads may solve at once.")
-      .def(py::init([](const SubspacePointer& subspace, const std::string& laplacian, bool contacts, std::uint64_t seed,
-                       std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
+      .def(py::init([](const SubspacePointer& subspace, const std::string& laplacian, bool contacts,
+                       std::optional<int> threads) {
              const DeformerOptions options{laplacian_from(laplacian), contacts};
-             return run({seed, threads, timeout, progress}, [&](RunContext& context) {
-               return std::make_shared<KeptDeformer>(subspace, options, context);
+             return run({1, threads, {}, Progress(py::none())}, [&](RunContext& context) {
+               return std::make_shared<KeptDeformer>(subspace, options, context.threads);
              });
            }),
            py::arg("subspace"), py::kw_only(), py::arg("laplacian") = "graph", py::arg("contacts") = true,
-           seed_argument(), threads_argument(), timeout_argument(), progress_argument(),
+           threads_argument(),
            "Args:\n"
            "    laplacian: of the samples: 'graph', 'cotangent' or 'point'.\n"
-           "    contacts: parts that touch at rest stay in touch; not in mode 'fixed'.\n" ORBIFIT_RUN_DOC)
+           "    contacts: parts that touch at rest stay in touch; not in mode 'fixed'.\n"
+           "    threads: to use; all cores if not given.")
       .def(
           "set_handles",
           [](KeptDeformer& deformer, const py::iterable& handles, double alpha) {
