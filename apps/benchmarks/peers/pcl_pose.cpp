@@ -20,8 +20,7 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
 using Features = pcl::PointCloud<pcl::FPFHSignature33>;
 
-// What PCL's tutorial "Robust pose estimation of rigid objects" sets, whose leaf of 5 mm is 1/50 of its object; but a
-// similarity of 0.9 there, for scans of the very object, suits no shape whose lengths differ by a third.
+// What PCL's tutorial "Robust pose estimation of rigid objects" sets, whose leaf of 5 mm is 1/50 of its object.
 constexpr double kLeaf = 0.02;            // of the template's diagonal
 constexpr double kNormalRadius = 2;       // in leaves, as all that follows
 constexpr double kFeatureRadius = 5;      //
@@ -29,7 +28,6 @@ constexpr double kInlierDistance = 2.5;   //
 constexpr int kIterations = 50000;        //
 constexpr int kSamples = 3;               // correspondences of a hypothesis
 constexpr int kRandomness = 5;            // one of so many nearest features
-constexpr float kSimilarity = 0.7F;       // of the polygons of those points' distances
 constexpr float kInlierFraction = 0.25F;  // of the template, which a view shows half of
 constexpr int kIcpIterations = 100;
 constexpr int kTemplatePoints = 50000;  // before VoxelGrid: a dozen or more a leaf
@@ -90,7 +88,8 @@ Features::Ptr features_of(const Cloud::Ptr& cloud, double leaf, int threads) {
 }
 
 // Template -> scan.
-std::optional<Eigen::Matrix4f> rough_pose(const Cloud::Ptr& model, const Cloud::Ptr& scene, double leaf, int threads) {
+std::optional<Eigen::Matrix4f> rough_pose(const Cloud::Ptr& model, const Cloud::Ptr& scene, double leaf, int threads,
+                                          double similarity) {
   pcl::SampleConsensusPrerejective<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33> search;
   search.setInputSource(model);
   search.setSourceFeatures(features_of(model, leaf, threads));
@@ -99,7 +98,7 @@ std::optional<Eigen::Matrix4f> rough_pose(const Cloud::Ptr& model, const Cloud::
   search.setMaximumIterations(kIterations);
   search.setNumberOfSamples(kSamples);
   search.setCorrespondenceRandomness(kRandomness);
-  search.setSimilarityThreshold(kSimilarity);
+  search.setSimilarityThreshold(static_cast<float>(similarity));
   search.setMaxCorrespondenceDistance(kInlierDistance * leaf);
   search.setInlierFraction(kInlierFraction);
   Cloud aligned;
@@ -123,7 +122,8 @@ Eigen::Matrix4f refined_pose(const Cloud::Ptr& model, const Cloud::Ptr& scene, d
 
 }  // namespace
 
-std::optional<Similarity> pcl_pose(const Mesh& mesh, const PointCloud& scan, double scale, const RunContext& context) {
+std::optional<Similarity> pcl_pose(const Mesh& mesh, const PointCloud& scan, double scale, const RunContext& context,
+                                   double similarity) {
   const int threads = context.threads > 0 ? context.threads : 0;  // 0: as many as there are, for PCL as well
   const double leaf = kLeaf * scale * diagonal(mesh.vertices);
   // Single precision: the scan is looked at where it is near the origin.
@@ -131,7 +131,7 @@ std::optional<Similarity> pcl_pose(const Mesh& mesh, const PointCloud& scan, dou
   const Cloud::Ptr model = sampled(mesh, scale, leaf, context);
   const Cloud::Ptr scene = scanned(scan, origin, leaf, threads);
   std::srand(static_cast<unsigned>(context.seed));  // PCL draws its samples by rand()
-  const std::optional<Eigen::Matrix4f> rough = rough_pose(model, scene, leaf, threads);
+  const std::optional<Eigen::Matrix4f> rough = rough_pose(model, scene, leaf, threads, similarity);
   if (!rough) return std::nullopt;
   const Eigen::Matrix4d pose = refined_pose(model, scene, leaf, *rough).cast<double>();
   // Single precision leaves a rotation that is one to seven digits.

@@ -66,7 +66,7 @@ std::vector<std::uint32_t> smooth_corners(const Mesh& mesh) {
     const Spoke& b = spokes[i];
     if (a.centre != b.centre || a.other != b.other) continue;
     if (normals.row(a.corner / 3).dot(normals.row(b.corner / 3)) < smooth) continue;
-    const auto [low, high] = std::minmax(root_of(parents, a.corner), root_of(parents, b.corner));
+    const auto [low, high] = std::minmax({root_of(parents, a.corner), root_of(parents, b.corner)});
     parents[high] = low;
   }
   for (std::uint32_t corner = 0; corner < corners; ++corner) parents[corner] = root_of(parents, corner);

@@ -25,7 +25,7 @@ TEST(PclPose, FindsAShapeThatIsTheTemplateItself) {
   for (Points* points : {&scan.points, &scan.viewpoints}) {
     for (Eigen::Index p = 0; p < points->rows(); ++p) points->row(p) = truth(points->row(p).transpose()).transpose();
   }
-  const std::optional<Similarity> found = pcl_pose(mesh, scan, truth.scale, context);
+  const std::optional<Similarity> found = pcl_pose(mesh, scan, truth.scale, context, 0.9);
   ASSERT_TRUE(found.has_value());
   double farthest = 0;
   for (const auto& vertex : mesh.vertices.rowwise()) {

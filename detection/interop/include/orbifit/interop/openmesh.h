@@ -45,13 +45,20 @@ inline bool runs_upwards(const Mesh& mesh, int face, const HalfEdgePair& edge) {
   return false;
 }
 
-// All edges in ascending order of their vertices; connectivity is by vertex numbers, as in OpenMesh.
+inline bool has_repeated_vertex(const Mesh& mesh, int face) {
+  const auto corners = mesh.faces.row(face);
+  return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
+
+// All edges in ascending order of their vertices; connectivity is by vertex numbers, as in OpenMesh. Faces with a
+// vertex twice have none.
 inline std::vector<HalfEdgePair> edges_of(const Mesh& mesh) {
   std::vector<std::array<int, 3>> uses;  // lower vertex, higher vertex, face
   for (int f = 0; f < mesh.faces.rows(); ++f) {
+    if (has_repeated_vertex(mesh, f)) continue;
     for (int k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax({mesh.faces(f, k), mesh.faces(f, (k + 1) % 3)});
-      if (low != high) uses.push_back({low, high, f});
+      uses.push_back({low, high, f});
     }
   }
   std::ranges::sort(uses);
@@ -155,10 +162,7 @@ inline void refuse(const std::vector<OpenMeshObstacle>& obstacles) {
 inline std::vector<OpenMeshObstacle> openmesh_obstacles(const Mesh& mesh) {
   std::vector<OpenMeshObstacle> obstacles;
   for (int f = 0; f < mesh.faces.rows(); ++f) {
-    const auto corners = mesh.faces.row(f);
-    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
-      obstacles.push_back({{f}, "has a vertex twice"});
-    }
+    if (interop_detail::has_repeated_vertex(mesh, f)) obstacles.push_back({{f}, "has a vertex twice"});
   }
   interop_detail::Fans fans(mesh);
   for (const interop_detail::HalfEdgePair& edge : interop_detail::edges_of(mesh)) {
