@@ -48,7 +48,8 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark real meshes --annotations detected --csv real.csv\n"
             "orbifit-benchmark real chair.obj --modes moving --stage-limit 60",
             benchmarks::real},
-    Command{"batch", "How many items a second a batch does on one and on two processors, and what it costs beside them.",
+    Command{"batch",
+            "How many items a second a batch does on one and on two processors, and what it costs beside them.",
             "orbifit-benchmark batch\n"
             "orbifit-benchmark batch --models 100 --task info --json batch.json",
             benchmarks::batch},

@@ -8,7 +8,6 @@
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
-
 #include "lettering.h"
 #include "paste.h"
 

@@ -133,7 +133,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"UpShort", "scan cube.ply --up 0 1 -o out.ply", 2, "--up: wrong number of values"},
         Refusal{"Ending", "scan cube.ply -o out.obj", 2, "out.obj: the ending must be .ply, .pcd, .xyz or .pts"},
         Refusal{"OverwritesInput", "scan cube.ply -o cube.ply", 2, "would overwrite the input cube.ply"},
-        Refusal{"Region", "render cube.ply --annotation cube.json --region 7 -o out.png", 2, "--region: the annotation has no region 7; there are 0 (cube)"}),
+        Refusal{"Region", "render cube.ply --annotation cube.json --region 7 -o out.png", 2,
+                "--region: the annotation has no region 7; there are 0 (cube)"}),
     test_name);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -167,7 +167,8 @@ class PairResidual {
         images_(mesh.vertices, kMet * subspace->diagonal),
         field_(subspace, state, context) {
     if (subspace->lift_kind != LiftKind::orbit) return;
-    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v) sets_.push_back(set_of_vertex(subspace->orbits, v));
+    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v)
+      sets_.push_back(set_of_vertex(subspace->orbits, v));
   }
 
   /// Images at vertices are measured at once, others by finish().

@@ -10,7 +10,8 @@ namespace orbifit {
 /// A file of that name is "./-".
 bool is_standard_stream(const std::filesystem::path& file);
 
-/// The whole file, or all of standard input. \throw InputError when it is missing, not a regular file, unreadable or empty
+/// The whole file, or all of standard input. \throw InputError when it is missing, not a regular file, unreadable or
+/// empty
 std::string read_file(const std::filesystem::path& file);
 
 /// Writes under a temporary name beside `file`, then renames: the file appears whole or not at all. To standard output

@@ -57,7 +57,7 @@ struct SymmetryAnnotation {
   int mesh_vertices = 0;
   int mesh_faces = 0;
   double mesh_diagonal = 0;
-  double tolerance = 0.005;  ///< the detector's, as a fraction of the diagonal
+  double tolerance = 0.005;                          ///< the detector's, as a fraction of the diagonal
   std::optional<Eigen::Vector3d> up = std::nullopt;  ///< unit: where up is as the shape stands, if somebody said so
   std::vector<Region> regions;
   std::vector<Pattern> patterns;
