@@ -9,7 +9,7 @@
 namespace orbifit {
 namespace {
 
-// Each takes longer than the moments below on any machine: millions of samples, pixels or steps.
+// Each takes longer than the moments below.
 class StoppedWork : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
@@ -18,7 +18,6 @@ class StoppedWork : public testing::TestWithParam<std::string> {
     before_ = program_.folder().listing();
   }
 
-  // The exit of a hang, which a timer of its own ends, is another.
   void expect_stopped(const ProgramResult& result, int code, const std::string& said) {
     EXPECT_EQ(result.code, code) << result.errors;
     EXPECT_NE(result.errors.find("orbifit: " + said), std::string::npos) << result.errors;
@@ -47,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, StoppedWork,
                                          "scan chair.ply --views 60 --width 4096 --height 4096 -o out.ply",
                                          "render chair.ply --width 4096 --height 4096 -o out.png",
                                          "fit chair.ply scan.ply -o out.obj --report out.json"),
-                         [](const auto& info) { return info.param.substr(0, info.param.find(' ')); });
+                         [](const auto& command) { return command.param.substr(0, command.param.find(' ')); });
 
 }  // namespace
 }  // namespace orbifit
