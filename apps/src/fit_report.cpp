@@ -90,6 +90,10 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
                           {"covered", placement.visible_coverage},
                           {"score", placement.score()}});
   }
+  nlohmann::ordered_json landmarks = nlohmann::ordered_json::array();
+  for (const LandmarkAgreement& each : result.landmarks) {
+    landmarks.push_back({{"vertex", each.vertex}, {"residual", each.residual}, {"left_out", each.left_out}});
+  }
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
   for (const RegionResidual& region : symmetry.regions) {
     regions.push_back({{"id", region.id},
@@ -121,6 +125,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},
+          {"landmarks", landmarks},
           {"hidden_fraction", result.hidden_fraction},
           {"symmetry",
            {{"field_residual", result.field_residual}, {"worst_excess", symmetry.worst_excess}, {"regions", regions}}},

@@ -13,7 +13,6 @@ namespace orbifit {
 namespace {
 
 constexpr double kFirstReach = 0.15;  // of the diagonal: correspondences farther apart are none, at the start
-constexpr double kLastReach = 0.04;   // and at the end
 // Offsets far above the robust scale hardly count. It shrinks last: parts that the soft template has yet to reach
 // would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
 constexpr double kFirstRobust = 0.05;
@@ -67,7 +66,7 @@ double FitLoop::stiffness_for(double noise) const {
 
 FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   CorrespondenceOptions options;
-  options.max_distance = (kFirstReach + (kLastReach - kFirstReach) * now.progress) * size_;
+  options.max_distance = reach_of(now);
   options.signed_normals = views_.signed_normals;
   // Far points are left out while the template is far; in the end the robust weights judge each by itself.
   options.trim = options_.trim + (1 - options_.trim) * now.progress;
@@ -77,6 +76,7 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   options.robust_scale = robust;
   options.every = now.every;
   Matches result;
+  add_pulls(state, now, result);
   result.points = to_template(state.pose, scan_.points);
   result.pairs = find_correspondences(surface_, result.points, normals_to_template(state.pose, scan_.normals), options,
                                       context_, &likely_);
@@ -106,13 +106,25 @@ double FitLoop::share_of(const Matches& matches, int every) const {
   return static_cast<double>(system_.samples()) / std::max(1.0, every * matches.of_scan + silhouettes);
 }
 
+double FitLoop::reach_of(const Stage& now) const {
+  return (kFirstReach + (kLastReach - kFirstReach) * now.progress) * size_;
+}
+
+void FitLoop::add_pulls(const FitState& state, const Stage& now, Matches& matches) const {
+  matches.pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
+  for (std::size_t i = 0; i < matches.pulls.size(); ++i) {
+    Pull& pull = matches.pulls[i];
+    const double distance = (deformed_.vertices.row(pull.vertex).transpose() - pull.target).norm();
+    const bool landmark = i < input_.landmarks.size();
+    matches.pull_energy += pull.weight * (landmark ? robust_error(distance, reach_of(now)) : distance * distance);
+    if (landmark) pull.weight *= robust_weight(distance, reach_of(now));
+  }
+}
+
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
   const double regularity = system_.regularity(state.q) + system_.growth_cost(std::log(unit(state)));
-  double result = share * matches.energy + now.stiffness * regularity + system_.symmetry_energy(state.q) +
-                  system_.contact_energy(state.q);
-  for (const Pull& pull : pulls_towards(input_, state.pose, options_.landmark_weight)) {
-    result += pull.weight * (deformed_.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm();
-  }
+  const double result = share * matches.energy + matches.pull_energy + now.stiffness * regularity +
+                        system_.symmetry_energy(state.q) + system_.contact_energy(state.q);
   return result / (unit(state) * unit(state));
 }
 
@@ -124,10 +136,9 @@ void FitLoop::move_to(const FitState& state) {
 
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
                    FitIteration& record) {
-  const auto pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
   const DeformationSystem::Hold hold{now.stiffness, damping, state.q, now.scale_open, -std::log(unit(state))};
   const DeformationSystem::Solution solution =
-      system_.solve(matches.pairs, share, matches.points, pulls, hold, context_);
+      system_.solve(matches.pairs, share, matches.points, matches.pulls, hold, context_);
   const Points before = system_.samples_at(state.q);
   state.q = solution.q;
   const Motion back = inverse(solution.scan_step);

@@ -11,10 +11,15 @@
 #include "registration/correspondences.h"
 #include "scan/scan_preparation.h"
 #include "solver/deformation_system.h"
+#include "solver/pulls.h"
 #include "solver/scan_views.h"
 #include "symmetry/moving_surface.h"
 
 namespace orbifit {
+
+/// Of the diagonal: in the end correspondences farther apart are none, and landmarks farther from their targets hardly
+/// count.
+inline constexpr double kLastReach = 0.04;
 
 /// Where a fit has come to.
 struct FitState {
@@ -51,12 +56,18 @@ class FitLoop {
     double rms = 0;     // fraction of the diagonal
     double spread = 0;  // likewise, of the distances, whatever the outliers
     double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared units of now
+    std::vector<Pull> pulls;
+    double pull_energy = 0;  // of landmarks, robust, and handles
   };
   Stage stage(int iteration) const;
   // The least that offsets of this size from the surface, fractions of the diagonal, warrant.
   double stiffness_for(double noise) const;
   Matches match(const FitState& state, const Stage& now);
   double share_of(const Matches& matches, int every) const;
+  // Farther apart than this, places that belong together count for little or nothing: template units.
+  double reach_of(const Stage& now) const;
+  // The landmarks, each by how near it is, and the handles, which are to be followed.
+  void add_pulls(const FitState& state, const Stage& now, Matches& matches) const;
   double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
   FitIteration record_of(const Matches& matches, const Stage& now, double energy) const;
   // One solve from there. \param share of each pair; what the record says of the step is filled in

@@ -78,25 +78,40 @@ Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const Surfac
 }  // namespace
 
 std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
-                                      const Similarity& given, const PlacementOptions& options,
+                                      double slack, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context) {
-  constexpr double kNear = 0.12;  // of the diagonal
-  constexpr int kMore = 2;        // points, since planes among them go
+  constexpr int kMore = 2;  // points, where planes among them go
   constexpr Eigen::Index kFewestNear = 10;
-  const Mesh& mesh = surface.mesh();
-  const double size = diagonal(mesh.vertices);
-  const PointCloud near = points_near(surface.index, size, cloud, pose, kNear, context);
+  const double size = diagonal(surface.mesh().vertices);
+  const double reach = kNearTemplate + slack;
+  const PointCloud near = points_near(surface.index, size, cloud, pose, reach, context);
   if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) return std::nullopt;
-  ScanPreparationOptions more = preparation;
-  more.most_points *= kMore;
+  const auto rid_of_planes = [&](const PreparedScan& scan) {
+    return without_planes(surface.index, size, scan, pose, options.reach, context);
+  };
+  PreparedScan prepared = prepare_scan(near, preparation, context);
   PlacedScan result;
-  result.scan = without_planes(surface.index, size, prepare_scan(near, more, context), pose, options.reach, context);
+  result.scan = rid_of_planes(prepared);
+  if (result.scan.points.rows() < prepared.points.rows()) {
+    ScanPreparationOptions more = preparation;
+    more.most_points *= kMore;
+    result.scan = rid_of_planes(prepare_scan(near, more, context));
+  }
   if (result.scan.points.rows() < kFewestNear) return std::nullopt;
-  const Shares shares = shares_of(cloud, result.scan, surface.index, pose, kNear * size * pose.scale, context);
+  const Shares shares = shares_of(cloud, result.scan, surface.index, pose, reach * size * pose.scale, context);
   result.overlap = shares.used;
   result.torn_off = shares.torn_off;
-  result.scale_open = !near_given(mesh, pose, given);
-  result.pose = result.scale_open ? pose : align_rigidly(surface, result.scan, given, context);
+  result.pose = pose;
+  return result;
+}
+
+std::optional<PlacedScan> found_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
+                                     const Similarity& given, const PlacementOptions& options,
+                                     const ScanPreparationOptions& preparation, const RunContext& context) {
+  std::optional<PlacedScan> result = placed_scan(surface, cloud, pose, 0, options, preparation, context);
+  if (!result) return result;
+  result->scale_open = !near_given(surface.mesh(), pose, given);
+  if (!result->scale_open) result->pose = align_rigidly(surface, result->scan, given, context);
   return result;
 }
 

@@ -24,11 +24,23 @@ struct PlacedScan {
   std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
 };
 
-/// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain.
-/// \param surface  the template's \param given  rough pose: where the placement is much the same, its scale is kept
+/// Of the posed template's diagonal: what is farther from a template in the pose of its rest shape is not of it, be it
+/// a point of a scan or a place where one of its vertices is said to be.
+inline constexpr double kNearTemplate = 0.12;
+
+/// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain. This
+/// is done wherever the pose comes from.
+/// \param surface  the template's \param slack  of the diagonal: how much farther a point may be, where parts of the
+///   template are known to be elsewhere
 /// \return none where all of the scan is of something else \throw InputError as prepare_scan() does
 std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
-                                      const Similarity& given, const PlacementOptions& options,
+                                      double slack, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context);
+
+/// The same for a pose that was found. Where it is much the same as the rough pose, that one's scale is kept, and else
+/// it is open. \param given  the rough pose
+std::optional<PlacedScan> found_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
+                                     const Similarity& given, const PlacementOptions& options,
+                                     const ScanPreparationOptions& preparation, const RunContext& context);
 
 }  // namespace orbifit

@@ -46,6 +46,7 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   found.iterations_in_all += result.iterations_in_all;
   found.placements = std::move(result.placements);
   found.groups = std::move(result.groups);
+  found.landmarks = std::move(result.landmarks);
   found.dropped = std::move(result.dropped);
   result = std::move(found);
 }

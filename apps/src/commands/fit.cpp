@@ -116,7 +116,7 @@ CommandBody fit(CLI::App& app) {
     if (limited && !(arguments->max_residual >= 0)) {
       throw UsageError("--max-residual is " + short_number(arguments->max_residual) + ": must be at least 0");
     }
-    chosen.place = !arguments->aligned && arguments->landmarks.empty() && arguments->handles.empty();
+    chosen.place = !arguments->aligned && arguments->handles.empty();
     chosen.align = !arguments->aligned;
     chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
