@@ -20,6 +20,8 @@ namespace orbifit {
 
 namespace {
 
+constexpr double kSameShape = 0.001;  // of the diagonal: landmarks that agree so well are of a shape that is the same
+
 // Rotations that bring the whole template onto itself: poses that differ by one of them are one to the scan, but not
 // to a landmark. The identity among them.
 std::vector<Motion> rotations_of(const SymmetryAnnotation& annotation, const Mesh& mesh) {
@@ -95,6 +97,17 @@ double slack_of(const FitInput& input, const LandmarkConsensus& said, const Simi
   return std::max(said.largest_residual, std::sqrt(squared) / diagonal(input.mesh.vertices));
 }
 
+// The pose with scale in which the template as it is explains most of the scan near the given one: from there it is
+// told what is the template's, whose lengths may be others. The given one where that is another place.
+Similarity best_explaining(const MatchSurface& surface, const PreparedScan& scan, const Similarity& given) {
+  constexpr int kEnough = 1500;
+  const auto count = static_cast<int>(scan.points.rows());
+  std::vector<int> some;
+  for (int i = 0; i < count; i += std::max(1, count / kEnough)) some.push_back(i);
+  const Similarity found = align_with_scale(surface, scan, some, given, {});
+  return near_given(surface.mesh(), found, given) ? found : given;
+}
+
 PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const LandmarkConsensus& said,
                        const FitOptions& options, const ScanPreparationOptions& preparation,
                        const RunContext& context) {
@@ -104,10 +117,14 @@ PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const
   whole.scan = prepare_scan(input.scan, preparation, context);
   if (refined) pose = align_rigidly(surface, whole.scan, pose, context);
   whole.pose = pose;
-  const double slack = slack_of(input, said, pose);
+  const Similarity best = best_explaining(surface, whole.scan, pose);
   std::optional<PlacedScan> placed =
-      placed_scan(surface, input.scan, pose, slack, options.placement, preparation, context);
+      placed_scan(surface, input.scan, best, slack_of(input, said, best), options.placement, preparation, context);
   if (!placed) return whole;
+  placed->pose = pose;
+  // Landmarks of another shape tell its size no better than they fit it.
+  placed->scale_open =
+      !input.landmarks.empty() && said.largest_residual > kSameShape && !near_given(surface.mesh(), pose, input.pose);
   // Other things may have drawn it aside.
   if (refined && placed->overlap < 1) placed->pose = align_rigidly(surface, placed->scan, pose, context);
   return std::move(*placed);

@@ -14,18 +14,6 @@ namespace orbifit {
 
 namespace {
 
-// Whether a placement says that the scan is about where it was said to be, in the template's units: then its scale is
-// that of the shapes, which differ, and not of the units.
-bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& given) {
-  constexpr double kTurn = 0.3;     // radians
-  constexpr double kOffset = 0.15;  // of the diagonal
-  constexpr double kScale = 0.35;   // of its logarithm
-  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
-  return std::abs(std::log(found.scale / given.scale)) < kScale &&
-         axis_angle(found.linear * given.linear.transpose()).angle < kTurn &&
-         (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
-}
-
 struct Shares {
   double used = 0;  // of the scan's points, that stand where points were kept; planes that were taken out leave none
   double torn_off = 0;  // far from the template, and yet joined to those by others like them
@@ -76,6 +64,16 @@ Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const Surfac
 }
 
 }  // namespace
+
+bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& given) {
+  constexpr double kTurn = 0.3;     // radians
+  constexpr double kOffset = 0.15;  // of the diagonal
+  constexpr double kScale = 0.35;   // of its logarithm
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  return std::abs(std::log(found.scale / given.scale)) < kScale &&
+         axis_angle(found.linear * given.linear.transpose()).angle < kTurn &&
+         (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
+}
 
 std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
                                       double slack, const PlacementOptions& options,

@@ -28,6 +28,10 @@ struct PlacedScan {
 /// a point of a scan or a place where one of its vertices is said to be.
 inline constexpr double kNearTemplate = 0.12;
 
+/// Whether a placement says that the scan is about where it was said to be, in the template's units: then its scale is
+/// that of the shapes, which differ, and not of the units.
+bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& given);
+
 /// Leaves of the scan what may be the template's in a pose: what is near, without planes that it does not explain. This
 /// is done wherever the pose comes from.
 /// \param surface  the template's \param slack  of the diagonal: how much farther a point may be, where parts of the
