@@ -14,6 +14,7 @@
 #include "fit_starts.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
+#include "joined_scans.h"
 #include "other_scale.h"
 #include "placed_scan.h"
 #include "relaxation.h"
@@ -79,6 +80,7 @@ void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions&
   if (worth(grown) <= worth(best.result) + kWorthwhile) return;
   FitState back = with_scale(best.start.pose.scale, grown.pose, {grown.q, grown.basis}, system.subspace(), input.mesh);
   const int level = static_cast<int>(kSofter * options.levels);
+  back.others = grown.others;
   FitResult shrunk = fit_from(std::move(back), level, input, *other, system, options, context);
   const int in_all = before + grown.iterations_in_all + shrunk.iterations_in_all;
   best.start = *other;
@@ -174,6 +176,24 @@ FitInput with_landmarks(const FitInput& input, const std::vector<char>& chosen) 
   return result;
 }
 
+// Of several scans: what each saw of the others' parts of the shape is told anew where the fit has put them.
+void settle_scans(const FitInput& input, const FitOptions& options, const RunContext& context, Best& best) {
+  if (input.others.empty()) return;
+  PlacedScan again = rejoined(best.start, best.result.pose, best.result.others);
+  again.views = views_of(input, again, context);
+  FitSystem system(*input.subspace, input.mesh, options.stretch,
+                   contacts_to_keep(*input.subspace, input.mesh, options, context));
+  FitResult found = fit_from(input, again, system, options, context);
+  found.iterations_in_all += best.result.iterations_in_all;
+  if (worth(found) > worth(best.result) - kWorthwhile) {
+    best = {std::move(found), std::move(again)};
+  }
+  for (std::size_t k = 0; k < best.start.others.size(); ++k) {
+    best.result.others[k] = best.result.others[k] * best.start.others[k];
+  }
+  best.result.other_used = best.start.other_used;
+}
+
 Trial trial_of(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
                StageClock& clock) {
   FitStarts starts = find_starts(input, options, doubt_landmarks, context, clock);
@@ -184,6 +204,7 @@ Trial trial_of(const FitInput& input, const FitOptions& options, bool doubt_land
     clock.finished("subspace");
   }
   Best best = best_of(std::move(starts.places), agreed, *agreed.subspace, options, context);
+  settle_scans(agreed, options, context, best);
   best.result.placements = std::move(starts.placements);
   clock.finished("fit");
   return {std::move(agreed), std::move(best)};

@@ -35,11 +35,12 @@ constexpr const char* kUsedUp = "the iterations allowed are used up";
 
 }  // namespace
 
-FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
-                 const FitOptions& options, const RunContext& context)
+FitLoop::FitLoop(const FitInput& input, const PlacedScan& start, DeformationSystem& system, const FitOptions& options,
+                 const RunContext& context)
     : input_(input),
-      scan_(scan),
-      views_(views),
+      start_(start),
+      scan_(start.scan),
+      views_(*start.views),
       system_(system),
       options_(options),
       context_(context),
@@ -77,9 +78,11 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   options.every = now.every;
   Matches result;
   add_pulls(state, now, result);
-  result.points = to_template(state.pose, scan_.points);
-  result.pairs = find_correspondences(surface_, result.points, normals_to_template(state.pose, scan_.normals), options,
-                                      context_, &likely_);
+  const bool several = !state.others.empty();
+  const PreparedScan put = several ? with_others_moved(start_, state.others) : PreparedScan{};
+  result.points = to_template(state.pose, several ? put.points : scan_.points);
+  const Points normals = normals_to_template(state.pose, several ? put.normals : scan_.normals);
+  result.pairs = find_correspondences(surface_, result.points, normals, options, context_, &likely_);
   result.of_scan = static_cast<int>(result.pairs.size());
   result.rms = weighted_rms(result.pairs) / size_;
   result.spread = typical_distance(result.pairs) / size_;
@@ -93,9 +96,13 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.energy *= now.every;
   if (now.progress >= kSilhouetteFrom && views_.silhouette.knows_viewpoints()) {
     if (!cut_off_) cut_off_ = views_.silhouette.cut_off(deformed_, surface_, state.pose, context_);
-    if (*cut_off_) return result;
-    result.energy +=
-        views_.silhouette.add(deformed_, surface_, result.points, state.pose, robust, result.pairs, context_);
+    if (!*cut_off_) {
+      result.energy +=
+          views_.silhouette.add(deformed_, surface_, result.points, state.pose, robust, result.pairs, context_);
+    }
+  }
+  if (several) {
+    for (Correspondence& pair : result.pairs) pair.view = start_.view_of[static_cast<std::size_t>(pair.scan_point)];
   }
   return result;
 }
@@ -136,11 +143,15 @@ void FitLoop::move_to(const FitState& state) {
 
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
                    FitIteration& record) {
-  const DeformationSystem::Hold hold{now.stiffness, damping, state.q, now.scale_open, -std::log(unit(state))};
+  const DeformationSystem::Hold hold{
+      now.stiffness, damping, state.q, now.scale_open, -std::log(unit(state)), static_cast<int>(state.others.size())};
   const DeformationSystem::Solution solution =
       system_.solve(matches.pairs, share, matches.points, matches.pulls, hold, context_);
   const Points before = system_.samples_at(state.q);
   state.q = solution.q;
+  for (std::size_t k = 0; k < state.others.size(); ++k) {
+    state.others[k] = conjugate(state.pose, solution.other_steps[k]) * state.others[k];
+  }
   const Motion back = inverse(solution.scan_step);
   const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
   state.pose = state.pose * Similarity{1, back.linear, back.translation} *
@@ -210,6 +221,7 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
 
 std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std::vector<FitIteration>& iterations) {
   first_scale_ = state.pose.scale;
+  state.others.resize(start_.others.size());
   move_to(state);
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(0);

@@ -8,6 +8,7 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
+#include "placed_scan.h"
 #include "registration/correspondences.h"
 #include "scan/scan_preparation.h"
 #include "solver/deformation_system.h"
@@ -25,6 +26,8 @@ inline constexpr double kLastReach = 0.04;
 struct FitState {
   Similarity pose;    ///< template -> scan
   Eigen::VectorXd q;  ///< of the system's unknowns
+  /// Of the scans but the first, from where they were put at the start; empty where they are as they were put.
+  std::vector<Motion> others = {};
 };
 
 /// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it. Then the
@@ -33,9 +36,9 @@ struct FitState {
 /// holds still instead of swaying from one iteration to the next.
 class FitLoop {
  public:
-  /// All references are kept. \param views  of the same scan \param system  turned as the iterations go
-  FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
-          const FitOptions& options, const RunContext& context);
+  /// All references are kept. \param start  its scan and views \param system  turned as the iterations go
+  FitLoop(const FitInput& input, const PlacedScan& start, DeformationSystem& system, const FitOptions& options,
+          const RunContext& context);
 
   /// Improves the state in place. \param first_level  of FitOptions::levels, where to begin \param scale_open  whether
   /// the template's scale is sought as well, once it is soft \return why it stopped
@@ -80,6 +83,7 @@ class FitLoop {
   double unit(const FitState& state) const { return first_scale_ / state.pose.scale; }
 
   const FitInput& input_;
+  const PlacedScan& start_;
   const PreparedScan& scan_;
   const ScanViews& views_;
   DeformationSystem& system_;

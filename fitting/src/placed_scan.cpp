@@ -75,6 +75,23 @@ bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& giv
          (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
 }
 
+PreparedScan with_others_moved(const PlacedScan& start, const std::vector<Motion>& moves) {
+  PreparedScan result = start.scan;
+  if (moves.empty()) return result;
+  for (std::size_t i = 0; i < start.view_of.size(); ++i) {
+    const int view = start.view_of[i];
+    if (view == 0) continue;
+    const Motion& move = moves[static_cast<std::size_t>(view - 1)];
+    const auto row = static_cast<Eigen::Index>(i);
+    result.points.row(row) = move(result.points.row(row).transpose()).transpose();
+    result.normals.row(row) = (move.linear * result.normals.row(row).transpose()).transpose();
+    if (result.viewpoints.rows() == result.points.rows()) {
+      result.viewpoints.row(row) = move(result.viewpoints.row(row).transpose()).transpose();
+    }
+  }
+  return result;
+}
+
 std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
                                       double slack, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context) {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "orbifit/fitting/placement.h"
 #include "orbifit/model/mesh.h"
@@ -22,7 +23,14 @@ struct PlacedScan {
   double torn_off = 0;      ///< share that is not, being far from the template, but hangs together with those
   bool scale_open = false;  ///< nothing is known of the scale: the pose's is that of the template as it is
   std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
+  /// Where several scans are one: each of the others into the frame of the first, and of each point its scan's number.
+  std::vector<Motion> others = {};
+  std::vector<char> other_used = {};  ///< of the others: the template was found in it
+  std::vector<int> view_of = {};
 };
+
+/// The start's scan with the points of the other scans moved. \param moves  one for each of PlacedScan::others, or none
+PreparedScan with_others_moved(const PlacedScan& start, const std::vector<Motion>& moves);
 
 /// Of the posed template's diagonal: what is farther from a template in the pose of its rest shape is not of it, be it
 /// a point of a scan or a place where one of its vertices is said to be.

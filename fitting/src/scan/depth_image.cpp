@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
@@ -92,7 +92,11 @@ void check_camera(const std::filesystem::path& file, const GreyImage& image, con
 }  // namespace
 
 bool is_depth_image(const std::filesystem::path& file) {
-  return !is_standard_stream(file) && is_png(read_file(file));
+  if (is_standard_stream(file)) return false;
+  std::string beginning(sizeof(kPngSignature) - 1, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  return stream && is_png(beginning);
 }
 
 PointCloud read_depth_image(const std::filesystem::path& file, const DepthCamera& camera,

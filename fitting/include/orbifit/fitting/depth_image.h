@@ -25,7 +25,7 @@ struct DepthCamera {
 PointCloud read_depth_image(const std::filesystem::path& file, const DepthCamera& camera,
                             const std::filesystem::path& mask = {});
 
-/// Whether a file is a PNG, by its first bytes. \throw InputError when it cannot be read
+/// Whether a file is a PNG, by its first bytes; a file that cannot be read is none.
 bool is_depth_image(const std::filesystem::path& file);
 
 /// Reads {"camera_to_world": [[[r, r, r, t], [r, r, r, t], [r, r, r, t]], ...]}: of each depth image, in their order,

@@ -73,6 +73,8 @@ struct FitResult {
   SymmetryAnnotation rest_annotation;  ///< the template's, as it was kept
   SymmetryAnnotation annotation;       ///< the same, carried along into the scan's frame
   Similarity pose;                     ///< template -> scan
+  std::vector<Motion> others;          ///< of FitInput::others each into the scan's frame
+  std::vector<char> other_used;        ///< of each, whether it took part: a scan in which nothing is found does not
   std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
   Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
@@ -117,9 +119,14 @@ struct FitInput {
   /// Told after each step of the iterations: its record, the pose, and the vertices then, #V by 3, in the template's
   /// frame. Where several starts are tried each of their steps is told, by several threads where the context has them.
   std::function<void(const FitIteration&, const Similarity&, const Points&)> watch = nullptr;
+  /// More scans of the same object, each in a frame of its own, all at one scale: they have one shape together and a
+  /// pose each. Kept by pointer.
+  std::vector<const PointCloud*> others = {};
 
   /// The same to be fitted with another annotation, which is kept by reference.
-  FitInput with(const SymmetryAnnotation& other) const { return {mesh, other, scan, pose, landmarks, handles}; }
+  FitInput with(const SymmetryAnnotation& other) const {
+    return {mesh, other, scan, pose, landmarks, handles, nullptr, nullptr, others};
+  }
 };
 
 /// Deforms a template to a scan within its symmetric subspace (docs/method.md 7): alternates correspondences and
