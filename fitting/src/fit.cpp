@@ -29,6 +29,7 @@ namespace {
 // onto which the template was put as well as can be, leaves more.
 constexpr double kLeastOfPlaced = 0.8;
 constexpr double kLeastSeen = 0.04;    // of the fitted surface: an edge lies along any line
+constexpr double kSofter = 0.75;       // of the levels: where fits of a shape that is known begin
 constexpr double kWell = 0.995;        // confidence from which another scale is not tried
 constexpr double kWorthwhile = 0.005;  // what another scale, or a place that suits the template less, must explain more
 
@@ -71,7 +72,6 @@ struct Best {
 // the template's thickness, unless that explains less by more than it had to explain more.
 void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions& options, const RunContext& context,
                      Best& best) {
-  constexpr double kSofter = 0.75;  // of the levels
   const std::optional<PlacedScan> other = at_other_scale(input, best.start);
   if (!other) return;
   FitResult grown = fit_from(input, *other, system, options, context);
@@ -176,18 +176,22 @@ FitInput with_landmarks(const FitInput& input, const std::vector<char>& chosen) 
   return result;
 }
 
-// Of several scans: what each saw of the others' parts of the shape is told anew where the fit has put them.
-void settle_scans(const FitInput& input, const FitOptions& options, const RunContext& context, Best& best) {
+// With the other scans, once the first one has told the shape well enough to find them by it: from the template's rest
+// shape and from that shape, whichever explains more.
+void fit_all_scans(const FitInput& input, const FitOptions& options, const RunContext& context, Best& best) {
   if (input.others.empty()) return;
-  PlacedScan again = rejoined(best.start, best.result.pose, best.result.others);
-  again.views = views_of(input, again, context);
+  const FitResult first = std::move(best.result);
+  best.start = join_scans(input, best.start, first, options, context);
   FitSystem system(*input.subspace, input.mesh, options.stretch,
                    contacts_to_keep(*input.subspace, input.mesh, options, context));
-  FitResult found = fit_from(input, again, system, options, context);
-  found.iterations_in_all += best.result.iterations_in_all;
-  if (worth(found) > worth(best.result) - kWorthwhile) {
-    best = {std::move(found), std::move(again)};
-  }
+  best.result = fit_from(input, best.start, system, options, context);
+  FitState state = with_scale(best.start.pose.scale, first.pose, {first.q, first.basis}, *input.subspace, input.mesh);
+  FitResult further = fit_from(std::move(state), static_cast<int>(kSofter * options.levels), input, best.start, system,
+                               options, context);
+  const int in_all = first.iterations_in_all + best.result.iterations_in_all + further.iterations_in_all;
+  if (worth(further) > worth(best.result) + kWorthwhile) best.result = std::move(further);
+  best.result.iterations_in_all = in_all;
+  if (best.result.confidence < kWell) try_other_scale(input, system, options, context, best);
   for (std::size_t k = 0; k < best.start.others.size(); ++k) {
     best.result.others[k] = best.result.others[k] * best.start.others[k];
   }
@@ -204,7 +208,7 @@ Trial trial_of(const FitInput& input, const FitOptions& options, bool doubt_land
     clock.finished("subspace");
   }
   Best best = best_of(std::move(starts.places), agreed, *agreed.subspace, options, context);
-  settle_scans(agreed, options, context, best);
+  fit_all_scans(agreed, options, context, best);
   best.result.placements = std::move(starts.placements);
   clock.finished("fit");
   return {std::move(agreed), std::move(best)};

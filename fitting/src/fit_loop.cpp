@@ -101,7 +101,7 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
           views_.silhouette.add(deformed_, surface_, result.points, state.pose, robust, result.pairs, context_);
     }
   }
-  if (several) {
+  if (several && now.others_open) {
     for (Correspondence& pair : result.pairs) pair.view = start_.view_of[static_cast<std::size_t>(pair.scan_point)];
   }
   return result;
@@ -143,13 +143,17 @@ void FitLoop::move_to(const FitState& state) {
 
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
                    FitIteration& record) {
-  const DeformationSystem::Hold hold{
-      now.stiffness, damping, state.q, now.scale_open, -std::log(unit(state)), static_cast<int>(state.others.size())};
+  const DeformationSystem::Hold hold{now.stiffness,
+                                     damping,
+                                     state.q,
+                                     now.scale_open,
+                                     -std::log(unit(state)),
+                                     now.others_open ? static_cast<int>(state.others.size()) : 0};
   const DeformationSystem::Solution solution =
       system_.solve(matches.pairs, share, matches.points, matches.pulls, hold, context_);
   const Points before = system_.samples_at(state.q);
   state.q = solution.q;
-  for (std::size_t k = 0; k < state.others.size(); ++k) {
+  for (std::size_t k = 0; k < solution.other_steps.size(); ++k) {
     state.others[k] = conjugate(state.pose, solution.other_steps[k]) * state.others[k];
   }
   const Motion back = inverse(solution.scan_step);
@@ -242,6 +246,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   std::string reason = kUsedUp;
   now.every = 1;
   now.scale_open = scale_open;
+  now.others_open = true;
   for (const double robust : kSettling) {
     now.robust = robust * size_;
     // Settled once, the fit has reached what it had left unexplained for being on its way.

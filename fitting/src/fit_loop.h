@@ -51,6 +51,7 @@ class FitLoop {
     double robust = 0;  // Geman-McClure's scale, template units as the fit began
     int every = 1;      // each so manieth point of the scan is looked at
     bool scale_open = false;
+    bool others_open = false;  // whether the other scans move
   };
   struct Matches {
     std::vector<Correspondence> pairs;  // those of silhouettes after those of the scan

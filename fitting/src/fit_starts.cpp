@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "joined_scans.h"
 #include "placement/surface_placements.h"
 #include "quiet_context.h"
 #include "registration/alignment.h"
@@ -21,7 +20,6 @@ namespace orbifit {
 
 namespace {
 
-constexpr int kFewestOfAScan = 500;   // points of each of several scans
 constexpr double kSameShape = 0.001;  // of the diagonal: landmarks that agree so well are of a shape that is the same
 
 // Rotations that bring the whole template onto itself: poses that differ by one of them are one to the scan, but not
@@ -135,7 +133,7 @@ PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const
 FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
                     StageClock& clock) {
   ScanPreparationOptions preparation;
-  preparation.most_points = std::max(kFewestOfAScan, options.scan_points / (1 + static_cast<int>(input.others.size())));
+  preparation.most_points = options.scan_points;
   const MatchSurface surface(input.mesh);
   LandmarkConsensus said = landmark_consensus(input.mesh, input.landmarks, kNearTemplate);
   if (doubt_landmarks) said.pose = input.pose;
@@ -152,17 +150,10 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt
     result.agrees = said.agrees;
     clock.finished("scan");
   }
-  join_scans(input, surface, options, preparation, context, result.places);
-  if (!input.others.empty()) clock.finished("other scans");
   return result;
 }
 
 }  // namespace
-
-std::shared_ptr<const ScanViews> views_of(const FitInput& input, const PlacedScan& start, const RunContext& context) {
-  if (start.others.empty()) return std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, context);
-  return std::make_shared<const ScanViews>(input.mesh, joined_cloud(input, start), start.scan, context);
-}
 
 FitStarts find_starts(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
                       StageClock& clock) {
@@ -171,7 +162,7 @@ FitStarts find_starts(const FitInput& input, const FitOptions& options, bool dou
   parallel_for(context, result.places.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       PlacedScan& start = result.places[i];
-      start.views = views_of(input, start, own);
+      start.views = std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, own);
     }
   });
   return result;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "orbifit/fitting/fit.h"
@@ -25,8 +24,5 @@ struct FitStarts {
 /// prepare_scan() does
 FitStarts find_starts(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
                       StageClock& clock);
-
-/// What the viewpoints of a start's scans saw.
-std::shared_ptr<const ScanViews> views_of(const FitInput& input, const PlacedScan& start, const RunContext& context);
 
 }  // namespace orbifit

@@ -52,81 +52,41 @@ void append(const PlacedScan& part, const Motion& into, int view, PlacedScan& al
   all.view_of.resize(static_cast<std::size_t>(scan.points.rows()), view);
 }
 
-// Where the template is in another scan, at the scale of the first.
-struct OtherPose {
-  Similarity pose;
-  bool one_frame = false;
+// What all scans make out together: means over their points.
+struct Overlaps {
+  double points = 0, used = 0, torn_off = 0;
+
+  void add(const PointCloud& cloud, const PlacedScan& part) {
+    const auto count = static_cast<double>(cloud.points.rows());
+    points += count;
+    used += count * part.overlap;
+    torn_off += count * part.torn_off;
+  }
 };
 
-OtherPose other_pose(const std::vector<Placement>& found, const Mesh& mesh, const Similarity& first, double tie) {
-  for (const Placement& placement : found) {
-    if (placement.score() < tie * found.front().score()) break;
-    if (near_given(mesh, placement.pose, first)) return {first, true};
-  }
-  return {rescaled(found.front().pose, first.scale, mesh), false};
+// Where the shape is in another scan, at its own scale. Where it is as well supported where the first scan has it, the
+// two scans have one frame.
+std::optional<PlacedScan> place_in(const PointCloud& cloud, const MatchSurface& surface,
+                                   const SymmetryAnnotation& annotation, const FitOptions& options,
+                                   const ScanPreparationOptions& preparation, const RunContext& context) {
+  const std::vector<Placement> found =
+      find_placements(surface, annotation, cloud, options.placement, context, Similarity{});
+  if (found.empty()) return std::nullopt;
+  const bool one_frame = std::ranges::any_of(found, [&](const Placement& placement) {
+    return placement.score() >= options.tie * found.front().score() &&
+           near_given(surface.mesh(), placement.pose, Similarity{});
+  });
+  const Similarity pose = one_frame ? Similarity{} : rescaled(found.front().pose, 1, surface.mesh());
+  std::optional<PlacedScan> part = placed_scan(surface, cloud, pose, 0, options.placement, preparation, context);
+  if (part && !one_frame) part->pose = align_rigidly(surface, part->scan, pose, context);
+  return part;
 }
 
-PlacedScan joined(const FitInput& input, const MatchSurface& surface, const FitOptions& options,
-                  const ScanPreparationOptions& preparation, const std::vector<std::vector<Placement>>& found,
-                  const RunContext& context, const PlacedScan& first) {
-  PlacedScan result = first;
-  result.view_of.assign(static_cast<std::size_t>(first.scan.points.rows()), 0);
-  auto weight = static_cast<double>(input.scan.points.rows());
-  double overlap = weight * first.overlap;
-  double torn_off = weight * first.torn_off;
-  for (std::size_t k = 0; k < input.others.size(); ++k) {
-    result.others.emplace_back();
-    result.other_used.push_back(0);
-    if (found[k].empty()) continue;
-    const PointCloud& cloud = *input.others[k];
-    const auto [pose, one_frame] = other_pose(found[k], surface.mesh(), first.pose, options.tie);
-    const std::optional<PlacedScan> part =
-        placed_scan(surface, cloud, pose, 0, options.placement, preparation, context);
-    if (!part) continue;
-    const Similarity refined = one_frame ? pose : align_rigidly(surface, part->scan, pose, context);
-    const Similarity into = first.pose * inverse(refined);
-    result.others.back() = {into.linear, into.translation};
-    result.other_used.back() = 1;
-    append(*part, result.others.back(), static_cast<int>(k) + 1, result);
-    const auto count = static_cast<double>(cloud.points.rows());
-    weight += count;
-    overlap += count * part->overlap;
-    torn_off += count * part->torn_off;
-  }
-  result.overlap = overlap / weight;
-  result.torn_off = torn_off / weight;
-  return result;
-}
-
-}  // namespace
-
-void join_scans(const FitInput& input, const MatchSurface& surface, const FitOptions& options,
-                const ScanPreparationOptions& preparation, const RunContext& context, std::vector<PlacedScan>& places) {
-  if (input.others.empty()) return;
-  std::vector<std::vector<Placement>> found;
-  for (const PointCloud* cloud : input.others) {
-    found.push_back(
-        find_placements(surface, input.annotation, *cloud, options.placement, context, places.front().pose));
-  }
-  for (PlacedScan& place : places) {
-    place = joined(input, surface, options, preparation, found, context, place);
-  }
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    if (places.front().other_used[k] != 0) continue;
-    context.message("left out scan " + std::to_string(k + 2) + ": the template is not found in it");
-  }
-}
-
-PlacedScan rejoined(const PlacedScan& start, const Similarity& pose, const std::vector<Motion>& moves) {
-  PlacedScan result = start;
-  result.scan = with_others_moved(start, moves);
-  result.pose = pose;
-  for (std::size_t k = 0; k < moves.size(); ++k) result.others[k] = moves[k] * start.others[k];
-  return result;
-}
-
+// What the viewpoints that are known saw, in the frame of the first scan.
 PointCloud joined_cloud(const FitInput& input, const PlacedScan& start) {
   PointCloud result;
+  result.points.resize(0, 3);
+  result.viewpoints.resize(0, 3);
   const auto add = [&](const PointCloud& cloud, const Motion& into) {
     const Points viewpoints = each_its_own(cloud.viewpoints, cloud.points.rows());
     if (viewpoints.rows() != cloud.points.rows()) return;
@@ -137,6 +97,41 @@ PointCloud joined_cloud(const FitInput& input, const PlacedScan& start) {
   for (std::size_t k = 0; k < start.others.size(); ++k) {
     if (start.other_used[k] != 0) add(*input.others[k], start.others[k]);
   }
+  return result;
+}
+
+}  // namespace
+
+PlacedScan join_scans(const FitInput& input, const PlacedScan& start, const FitResult& fitted,
+                      const FitOptions& options, const RunContext& context) {
+  constexpr int kFewest = 500;  // points of one of the scans
+  ScanPreparationOptions preparation;
+  preparation.most_points = std::max(kFewest, options.scan_points / (1 + static_cast<int>(input.others.size())));
+  const MatchSurface surface(fitted.fitted);
+  PlacedScan result = start;
+  if (auto own = placed_scan(surface, input.scan, Similarity{}, 0, options.placement, preparation, context)) {
+    own->pose = start.pose;
+    own->scale_open = start.scale_open;
+    result = std::move(*own);
+  }
+  Overlaps overlaps;
+  overlaps.add(input.scan, result);
+  result.view_of.assign(static_cast<std::size_t>(result.scan.points.rows()), 0);
+  for (std::size_t k = 0; k < input.others.size(); ++k) {
+    const auto part = place_in(*input.others[k], surface, fitted.annotation, options, preparation, context);
+    const Similarity into = part ? inverse(part->pose) : Similarity{};
+    result.others.push_back({into.linear, into.translation});
+    result.other_used.push_back(part ? 1 : 0);
+    if (part) {
+      append(*part, result.others.back(), static_cast<int>(k) + 1, result);
+      overlaps.add(*input.others[k], *part);
+    } else {
+      context.message("left out scan " + std::to_string(k + 2) + ": the shape of scan 1 is not found in it");
+    }
+  }
+  result.overlap = overlaps.used / overlaps.points;
+  result.torn_off = overlaps.torn_off / overlaps.points;
+  result.views = std::make_shared<const ScanViews>(input.mesh, joined_cloud(input, result), result.scan, context);
   return result;
 }
 
