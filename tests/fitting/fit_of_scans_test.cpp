@@ -20,7 +20,9 @@ Points moved(const Points& points, const Motion& motion) {
 // A chair seen from one side, and from the other after it has been moved.
 class TwoScans : public testing::Test {
  protected:
-  TwoScans() : template_(generate("chair")), truth_(generate("chair", {{"seat_width", 0.5}, {"leg_height", 0.5}})) {
+  TwoScans()
+      : template_(generate("chair")),
+        truth_(generate("chair", {{"seat_width", 0.5}, {"seat_depth", 0.5}, {"leg_height", 0.5}})) {
     ScanOptions scanner;
     scanner.noise = 0.001;
     first_ = virtual_scan(truth_.mesh, scanner, context_);
