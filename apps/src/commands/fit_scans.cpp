@@ -55,8 +55,8 @@ void append(const PointCloud& more, PointCloud& all) {
 void check_depth_options(const ScanArguments& arguments, std::size_t images, std::size_t extrinsics) {
   const auto for_each = [&](const std::string& option, std::size_t count) {
     if (count > 0 && count != images) {
-      throw UsageError(std::to_string(count) + " given by " + option + " for " + std::to_string(images) +
-                       " depth images: must be one for each");
+      throw UsageError(std::to_string(count) + " given by " + option + " for " +
+                       count_of(static_cast<long long>(images), "depth image") + ": must be one for each");
     }
   };
   if (images > 0 && arguments.intrinsics.empty()) {
