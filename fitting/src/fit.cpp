@@ -132,7 +132,7 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
     }
   }
   best->result.iterations_in_all = iterations;
-  if (best->result.confidence * (1 - best->result.cut_off) < kWell) {
+  if (!options.fixed_scale && best->result.confidence * (1 - best->result.cut_off) < kWell) {
     systems.share(1, context, [&](std::size_t, FitSystem& system, const RunContext& own) {
       try_other_scale(input, system, options, own, *best);
     });
@@ -191,7 +191,7 @@ void fit_all_scans(const FitInput& input, const FitOptions& options, const RunCo
   const int in_all = first.iterations_in_all + best.result.iterations_in_all + further.iterations_in_all;
   if (worth(further) > worth(best.result) + kWorthwhile) best.result = std::move(further);
   best.result.iterations_in_all = in_all;
-  if (best.result.confidence < kWell) try_other_scale(input, system, options, context, best);
+  if (!options.fixed_scale && best.result.confidence < kWell) try_other_scale(input, system, options, context, best);
   for (std::size_t k = 0; k < best.start.others.size(); ++k) {
     best.result.others[k] = best.result.others[k] * best.start.others[k];
   }

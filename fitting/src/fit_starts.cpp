@@ -60,9 +60,10 @@ FitStarts found_starts(const FitInput& input, const MatchSurface& surface, const
                        const FitOptions& options, const ScanPreparationOptions& preparation,
                        const RunContext& context) {
   FitStarts result;
+  PlacementOptions placement = options.placement;
+  if (options.fixed_scale) placement.scale = input.pose.scale;
   const Similarity given = input.landmarks.empty() ? input.pose : said.pose;
-  std::vector<Placement> found =
-      find_placements(surface, input.annotation, input.scan, options.placement, context, given);
+  std::vector<Placement> found = find_placements(surface, input.annotation, input.scan, placement, context, given);
   choose_by_landmarks(input, found);
   // Side by side; others in place of those that have too little of the scan near them.
   std::size_t tied = 0;
@@ -78,7 +79,9 @@ FitStarts found_starts(const FitInput& input, const MatchSurface& surface, const
       }
     });
     for (auto& each : placed) {
-      if (each) result.places.push_back(std::move(*each));
+      if (!each) continue;
+      each->scale_open = each->scale_open && !options.fixed_scale;
+      result.places.push_back(std::move(*each));
     }
     first += count;
   }
@@ -123,8 +126,8 @@ PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const
   if (!placed) return whole;
   placed->pose = pose;
   // Landmarks of another shape tell its size no better than they fit it.
-  placed->scale_open =
-      !input.landmarks.empty() && said.largest_residual > kSameShape && !near_given(surface.mesh(), pose, input.pose);
+  placed->scale_open = !options.fixed_scale && !input.landmarks.empty() && said.largest_residual > kSameShape &&
+                       !near_given(surface.mesh(), pose, input.pose);
   // Other things may have drawn it aside.
   if (refined && placed->overlap < 1) placed->pose = align_rigidly(surface, placed->scan, pose, context);
   return std::move(*placed);
@@ -135,7 +138,8 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
   const MatchSurface surface(input.mesh);
-  LandmarkConsensus said = landmark_consensus(input.mesh, input.landmarks, kNearTemplate);
+  LandmarkConsensus said = landmark_consensus(input.mesh, input.landmarks, kNearTemplate,
+                                              options.fixed_scale ? std::optional(input.pose.scale) : std::nullopt);
   if (doubt_landmarks) said.pose = input.pose;
   FitStarts result;
   if (options.place && (doubt_landmarks || !said.determined) && input.handles.empty()) {

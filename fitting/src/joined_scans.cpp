@@ -30,12 +30,6 @@ Points each_its_own(const Points& viewpoints, Eigen::Index count) {
   return viewpoints.replicate(count, 1);
 }
 
-// At another scale about the template's middle.
-Similarity rescaled(const Similarity& pose, double scale, const Mesh& mesh) {
-  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
-  return {scale, pose.linear, pose(centre) - scale * (pose.linear * centre)};
-}
-
 void append(const PlacedScan& part, const Motion& into, int view, PlacedScan& all) {
   PreparedScan& scan = all.scan;
   const Eigen::Index before = scan.points.rows();
@@ -69,14 +63,15 @@ struct Overlaps {
 std::optional<PlacedScan> place_in(const PointCloud& cloud, const MatchSurface& surface,
                                    const SymmetryAnnotation& annotation, const FitOptions& options,
                                    const ScanPreparationOptions& preparation, const RunContext& context) {
-  const std::vector<Placement> found =
-      find_placements(surface, annotation, cloud, options.placement, context, Similarity{});
+  PlacementOptions same_size = options.placement;
+  same_size.scale = 1;  // all scans have that of the first
+  const std::vector<Placement> found = find_placements(surface, annotation, cloud, same_size, context, Similarity{});
   if (found.empty()) return std::nullopt;
   const bool one_frame = std::ranges::any_of(found, [&](const Placement& placement) {
     return placement.score() >= options.tie * found.front().score() &&
            near_given(surface.mesh(), placement.pose, Similarity{});
   });
-  const Similarity pose = one_frame ? Similarity{} : rescaled(found.front().pose, 1, surface.mesh());
+  const Similarity pose = one_frame ? Similarity{} : found.front().pose;
   std::optional<PlacedScan> part = placed_scan(surface, cloud, pose, 0, options.placement, preparation, context);
   if (part && !one_frame) part->pose = align_rigidly(surface, part->scan, pose, context);
   return part;

@@ -100,5 +100,17 @@ TEST_F(TwoScans, OfWhichOneShowsNothingOfTheShapeNameIt) {
   EXPECT_LT(error(two), error(one) + 0.003);
 }
 
+TEST_F(TwoScans, OfAKnownSizeAreFittedAtThatSize) {
+  first_ = moved_;
+  options_.fixed_scale = true;
+  const FitResult found = fitted({});
+  ASSERT_TRUE(found.converged) << found.stopped_because;
+  EXPECT_EQ(found.pose.scale, 1);
+  for (const Placement& placement : found.placements) EXPECT_NEAR(placement.pose.scale, 1, 1e-12);
+  first_.points *= 1000;  // in other units it is not
+  first_.viewpoints *= 1000;
+  EXPECT_FALSE(fitted({}).converged);
+}
+
 }  // namespace
 }  // namespace orbifit

@@ -30,6 +30,7 @@ struct FitArguments {
   std::string mesh, annotation, output, report, html, landmarks, handles, annotation_output;
   std::vector<double> up;
   ScanArguments scans;
+  std::string scale = "any";
   bool aligned = false;
   bool no_contacts = false;
   std::vector<int> without;
@@ -107,6 +108,9 @@ CommandBody fit(CLI::App& app) {
                  "Vertices of the template and their positions in the scan (.json)")
       ->type_name("FILE");
   app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
+  app.add_option("--scale", arguments->scale, "Size of the template in the scan: any, or that of its file (fixed)")
+      ->check(CLI::IsMember({"any", "fixed"}))
+      ->capture_default_str();
   app.add_flag("--aligned", arguments->aligned,
                "The scan is in the template's frame: the pose is neither sought nor refined");
   app.add_option(
@@ -132,6 +136,7 @@ CommandBody fit(CLI::App& app) {
     }
     chosen.place = !arguments->aligned && arguments->handles.empty();
     chosen.align = !arguments->aligned;
+    chosen.fixed_scale = arguments->scale == "fixed";
     chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();

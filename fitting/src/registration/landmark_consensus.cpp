@@ -90,17 +90,18 @@ bool determine_pose(const Mesh& mesh, const std::vector<Landmark>& landmarks) {
   return !on_a_line(own) && !on_a_line(targets);
 }
 
-LandmarkConsensus landmark_consensus(const Mesh& mesh, const std::vector<Landmark>& landmarks, double tolerance) {
+LandmarkConsensus landmark_consensus(const Mesh& mesh, const std::vector<Landmark>& landmarks, double tolerance,
+                                     const std::optional<double>& scale) {
   LandmarkConsensus result;
   result.agrees.assign(landmarks.size(), 1);
   if (landmarks.empty()) return result;
-  result.pose = align_landmarks(mesh, landmarks);
+  result.pose = align_landmarks(mesh, landmarks, scale);
   if (landmarks.size() >= kFewestThatContradict) {
     double least = landmark_sum(mesh, landmarks, result.pose, tolerance);
     for (const std::vector<std::size_t>& triple : triples_of(landmarks.size())) {
       const std::vector<Landmark> three{landmarks[triple[0]], landmarks[triple[1]], landmarks[triple[2]]};
       if (!determine_pose(mesh, three)) continue;
-      const Similarity pose = align_landmarks(mesh, three);
+      const Similarity pose = align_landmarks(mesh, three, scale);
       const double sum = landmark_sum(mesh, landmarks, pose, tolerance);
       if (sum >= least) continue;
       least = sum;
@@ -113,7 +114,7 @@ LandmarkConsensus landmark_consensus(const Mesh& mesh, const std::vector<Landmar
       // No majority: nothing is known of which are wrong, and the scan has to say.
       if (same || 2 * kept.size() <= landmarks.size() || !determine_pose(mesh, kept)) break;
       result.agrees = std::move(agrees);
-      result.pose = align_landmarks(mesh, kept);
+      result.pose = align_landmarks(mesh, kept, scale);
     }
   }
   const std::vector<Landmark> kept = some_of(landmarks, result.agrees);

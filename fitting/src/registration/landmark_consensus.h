@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "orbifit/fitting/landmarks.h"
@@ -19,8 +20,9 @@ struct LandmarkConsensus {
 /// The pose in which most landmarks lie near their targets: of the poses of all triples, or of random ones where there
 /// are many (RANSAC, Fischler and Bolles 1981), the one of least robust error, refined by those that agree. Three or
 /// fewer contradict one another no less than they agree, so all of them are believed.
-/// \param tolerance  of the posed template's diagonal: how far shapes of one kind differ
-LandmarkConsensus landmark_consensus(const Mesh& mesh, const std::vector<Landmark>& landmarks, double tolerance);
+/// \param tolerance  of the posed template's diagonal: how far shapes of one kind differ \param scale  where it is known
+LandmarkConsensus landmark_consensus(const Mesh& mesh, const std::vector<Landmark>& landmarks, double tolerance,
+                                     const std::optional<double>& scale = {});
 
 /// Distance of a landmark's vertex from its target in a pose, fraction of the posed template's diagonal.
 double landmark_residual(const Mesh& mesh, const Landmark& landmark, const Similarity& pose);

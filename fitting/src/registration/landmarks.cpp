@@ -39,6 +39,11 @@ std::vector<Landmark> read_landmarks(const std::filesystem::path& file, const Me
       if (!coordinate.is_number()) fail(key + ".target", "must be three numbers");
       landmark.target[k] = coordinate.get<double>();
     }
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      const std::string other = "landmarks[" + std::to_string(i) + "]";
+      if (landmarks[i].vertex == landmark.vertex) fail(key + ".vertex", "is that of " + other + " too");
+      if (landmarks[i].target == landmark.target) fail(key + ".target", "is that of " + other + " too");
+    }
     landmarks.push_back(landmark);
   }
   if (landmarks.empty()) fail("landmarks", "is empty");

@@ -33,7 +33,8 @@ struct FitOptions {
   /// Find the pose first, whatever it is, where landmarks do not determine it; the rough one is one candidate.
   bool place = false;
   PlacementOptions placement;
-  double tie = 0.8;   ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
+  bool fixed_scale = false;  ///< the template has the size that FitInput::pose says, wherever it is found
+  double tie = 0.8;          ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
   int max_tried = 8;  ///< of those, by their score: where there are more than `max_tied` short fits choose among them
   int max_tied = 3;   ///< placements fitted in full, >= 1, <= max_tried
   bool judge_groups = false;  ///< compare with a fit without groups: see GroupAgreement; takes as long again
