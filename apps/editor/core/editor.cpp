@@ -231,19 +231,7 @@ int editor_compare(EditorSession* session, int on) {
 
 int editor_residuals(EditorSession* session, int kind, double* numbers) {
   return guarded(-1, [&] {
-    const auto answers = kind == 2 ? session->shape_residuals() : session->residuals(side_of(kind));
-    for (std::size_t r = 0; r < answers.size(); ++r) {
-      numbers[3 * r] = answers[r].residual.rms;
-      numbers[3 * r + 1] = answers[r].residual.max;
-      numbers[3 * r + 2] = answers[r].at_vertices ? 1 : 0;
-    }
-    return static_cast<int>(answers.size());
-  });
-}
-
-int editor_field_residuals(EditorSession* session, double* numbers) {
-  return guarded(-1, [&] {
-    const std::vector<orbifit::Residual> residuals = session->field_residuals();
+    const auto residuals = kind == 2 ? session->shape_residuals() : session->residuals(side_of(kind));
     for (std::size_t r = 0; r < residuals.size(); ++r) {
       numbers[2 * r] = residuals[r].rms;
       numbers[2 * r + 1] = residuals[r].max;

@@ -51,11 +51,9 @@ int editor_solve(struct EditorSession* session, int side, const double* motions,
 int editor_rest(struct EditorSession* session);
 int editor_show(struct EditorSession* session, const double* vertices);
 int editor_compare(struct EditorSession* session, int on);
-/* 3 numbers a region: rms, max, 1 where images are vertices. kind: 0 of the deformation, 1 of the one without
+/* 2 numbers a region: rms and max, fractions of the diagonal. kind: 0 of the deformation, 1 of the one without
    symmetries, 2 of the shape shown. \return the number of regions */
 int editor_residuals(struct EditorSession* session, int kind, double* numbers);
-/* 2 numbers a region: rms, max; exact and slow. */
-int editor_field_residuals(struct EditorSession* session, double* numbers);
 /* 12 numbers: what carries the region's group. */
 int editor_carried(struct EditorSession* session, int region, double* motion);
 

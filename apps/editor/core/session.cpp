@@ -15,6 +15,8 @@ namespace orbifit::editor {
 
 namespace {
 
+constexpr int kFieldPairs = 500;  // of each region: a field that is not exact shows in the first few
+
 using Clock = std::chrono::steady_clock;
 
 double milliseconds(Clock::time_point from, Clock::time_point to) {
@@ -179,21 +181,18 @@ Motion Session::carried(int region) const {
   return region_motion(*edited.subspace, edited.state, region);
 }
 
-std::vector<ResidualPairs::Answer> Session::residuals(Side side) {
-  if (side == kFree) return pairs().of_free_deformation(need(side).vertices);
-  std::vector<Motion> motions;
-  for (std::size_t r = 0; r < annotation_.regions.size(); ++r) motions.push_back(carried(static_cast<int>(r)));
-  return pairs().of_deformation(need(side).vertices, motions);
-}
-
-std::vector<Residual> Session::field_residuals() {
-  Edited& edited = need(kSymmetric);
+std::vector<Residual> Session::residuals(Side side) {
+  const Edited& edited = need(side);
   if (edited.state.q.size() == 0) return std::vector<Residual>(annotation_.regions.size());
-  return orbifit::field_residuals(subspace(), mesh_, annotation_, edited.state, context);
+  if (side == kSymmetric) return field_residuals(subspace(), mesh_, annotation_, edited.state, context, kFieldPairs);
+  const Points& images = pairs().images();
+  const std::vector<int> nowhere(static_cast<std::size_t>(images.rows()), 0);  // this side has no regions
+  return pairs().of_displacement(edited.vertices,
+                                 displacement_field(*edited.subspace, edited.state, images, nowhere, context));
 }
 
-std::vector<ResidualPairs::Answer> Session::shape_residuals() {
-  return pairs().of_shape(need(kSymmetric).vertices);
+std::vector<Residual> Session::shape_residuals() {
+  return pairs().of_shape(need(kSymmetric).vertices, context);
 }
 
 void Session::write_shown(const std::string& file) const {

@@ -36,7 +36,6 @@ export interface SolveRecord {
 export interface RegionResidual {
   rms: number;
   max: number;
-  atVertices: boolean;
 }
 
 export interface Pick {
@@ -196,10 +195,8 @@ export class Core {
 
   residuals(kind: ResidualKind): RegionResidual[] {
     const count = this.checked(this.module._editor_residuals!(this.session, kind, this.scratch));
-    const numbers = this.numbers(3 * count);
-    return Array.from({ length: count }, (_, r) => ({
-      rms: numbers[3 * r]!, max: numbers[3 * r + 1]!, atVertices: numbers[3 * r + 2] === 1
-    }));
+    const numbers = this.numbers(2 * count);
+    return Array.from({ length: count }, (_, r) => ({ rms: numbers[2 * r]!, max: numbers[2 * r + 1]! }));
   }
   /** 3 by 4, by row; written into `motion`. */
   carried(region: number, motion: Float64Array): void {

@@ -37,8 +37,7 @@ export class Editor {
   comparing = false;
   busy = "";
   readonly record: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
-  residual = 0; // worst region's largest, of the shown deformation
-  residualAtVertices = true;
+  residual = 0; // worst region's largest, of the deformation that was measured last
   freeResidual = 0;
   blend = 0;
   fitSteps: { step: number; rms: number }[] = [];
@@ -326,16 +325,33 @@ export class Editor {
       }
     }
     for (const side of sides) this.view.takePositions(this.core, side);
-    this.measure();
+    this.measureSoon();
+    this.onChange();
   }
 
+  private measuring = 0; // a timer's
+  private measured = 0; // when
+  private measuringTook = 0; // ms
+  /** Measures now, where that takes a tenth of the time at most, and in any case once nothing has moved for a while. */
+  private measureSoon(): void {
+    clearTimeout(this.measuring);
+    this.measuring = 0;
+    const cheap = this.measuringTook < 8 && performance.now() - this.measured > 10 * this.measuringTook;
+    if (cheap && this.measured > 0) this.measure();
+    else this.measuring = window.setTimeout(() => this.measure(), 120);
+  }
+
+  /** Whether the residuals are those of what is shown. */
+  get isMeasured(): boolean { return this.measuring === 0 && !this.stale; }
+
   private measure(): void {
+    this.measuring = 0;
     const worst = (list: RegionResidual[]): number => list.reduce((most, entry) => Math.max(most, entry.max), 0);
-    const own = this.core.residuals(ResidualKind.deformation);
-    const exact = own.filter(entry => entry.atVertices);
-    this.residualAtVertices = exact.length > 0 || own.length === 0;
-    this.residual = worst(exact.length ? exact : own);
+    const start = performance.now();
+    this.residual = worst(this.core.residuals(ResidualKind.deformation));
     this.freeResidual = this.comparing ? worst(this.core.residuals(ResidualKind.free)) : 0;
+    this.measured = performance.now();
+    this.measuringTook = this.measured - start;
     this.onChange();
   }
 

@@ -123,7 +123,7 @@ export class Panel {
     const parts: string[] = [];
     const { solve, lift } = editor.record;
     if (editor.state.handles.length) {
-      parts.push(`residual <b>${editor.residualAtVertices ? "" : "≈ "}${share(editor.residual)}</b>`);
+      parts.push(`residual <b>${share(editor.residual)}</b>`);
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
       if (this.frames.length > 1) parts.push(`<b>${this.frames.length}</b> frames/s`);
     } else {
