@@ -50,6 +50,7 @@ const picture = async name => {
 const settled = async () => {
   await page.waitForFunction(() => !globalThis.orbifit.editor.busy, null, { timeout: 60000 });
   await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForFunction(() => globalThis.orbifit.editor.isMeasured, null, { timeout: 60000 });
 };
 /** All that is asked of the page's editor. */
 const ask = (call, argument) => page.evaluate(call, argument);
@@ -73,32 +74,51 @@ const colours = await ask(() => {
 });
 check(colours > 50, `the picture is not blank: ${colours} colours, ${first.length} bytes`);
 
-// A point of a front leg that is seen.
-const seen = await ask(() => {
+/** A point of the picture, looked for from the bottom or the top, whose orbit has so many points. */
+const find = (fromTop, images) => ask(({ fromTop, images }) => {
   const { editor, view } = globalThis.orbifit;
   const box = document.getElementById("canvas").getBoundingClientRect();
   let best = null;
-  for (let y = box.bottom - 40; y > box.top + box.height / 2 && !best; y -= 6) {
+  for (let row = 40; row < box.height / 2 && !best; row += 6) {
+    const y = fromTop ? box.top + row : box.bottom - row;
     for (let x = box.left + 40; x < box.right - 40 && !best; x += 6) {
       const pick = editor.core.pick(view.ray(x, y));
-      if (pick && editor.core.orbit(pick, 0.02).length >= 12) best = [x + 3, y - 3];
+      if (pick && editor.core.orbit(pick, 0.02).length >= 3 * images) best = [x + 3, fromTop ? y + 3 : y - 3];
     }
   }
   editor.core.clearOrbit();
   return best;
-});
+}, { fromTop, images });
+
+// A point of a front leg that is seen, and of the back, which is held: with one handle alone the chair moves as a whole.
+const seen = await find(false, 4);
+const back = await find(true, 2);
 check(seen !== null, "a foot is seen");
+// The largest region that takes the leg to the others.
+const id = await ask(([x, y]) => {
+  const { editor, view } = globalThis.orbifit;
+  const faces = region => region.faces.reduce((sum, run) => sum + run[1], 0);
+  return editor.core.regionsOf(editor.core.pick(view.ray(x, y)).face)
+    .map(number => editor.regions.find(region => region.id === editor.idOf(number)))
+    .filter(region => region.elements.length >= 8).sort((a, b) => faces(b) - faces(a))[0].id;
+}, seen);
 await page.mouse.move(...seen);
 await settled();
 const hover = await ask(() => ({ dots: globalThis.orbifit.view.orbitDots.count, planes: globalThis.orbifit.view.overlay.children.length }));
 check(hover.dots >= 2 && hover.planes >= 1, `hovering lights up the orbit: ${hover.dots} points, elements of ${hover.planes} regions`);
 await picture("hover");
 
+const handles = () => ask(() => structuredClone(globalThis.orbifit.editor.state.handles));
+await page.mouse.move(...back);
+await settled();
+await page.keyboard.press("p");
+await settled();
+check((await handles()).length === 1 && (await handles())[0].pin, "P pins what is under the cursor");
 await page.mouse.click(...seen);
 await settled();
-check(await ask(() => globalThis.orbifit.editor.state.handles.length) === 1, "a click places a handle");
+check((await handles()).length === 2, "a click places a handle");
 const before = await shown();
-const handleAt = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(0)));
+const handleAt = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(1)));
 const goal = [handleAt[0] + 70, handleAt[1] + 25];
 await page.mouse.move(...handleAt);
 await page.mouse.down();
@@ -106,7 +126,7 @@ await page.mouse.move(handleAt[0] + 30, handleAt[1] + 10, { steps: 3 });
 await page.mouse.move(...goal, { steps: 3 });
 await page.mouse.up();
 await settled();
-const reached = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(0)));
+const reached = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(1)));
 const missed = Math.hypot(reached[0] - goal[0], reached[1] - goal[1]);
 check(missed < 3, `a drag takes the handle to ${missed.toFixed(2)} pixels from the cursor`);
 const dragged = await shown();
@@ -153,17 +173,17 @@ await settled();
 // Regions off: what follows changes, and the edit of the rest is what the native program does without them.
 const boxes = await page.$$(".region input[type=checkbox]");
 check(boxes.length > 0, `${boxes.length} regions are listed`);
-const ids = await ask(() => [...document.querySelectorAll(".region")].map(row => Number(row.dataset.id)));
-await page.hover(".region");
+const row = page.locator(`.region[data-id="${id}"]`);
+await row.hover();
 await settled();
 await picture("region");
-await boxes[0].click();
+await row.locator("input[type=checkbox]").click();
 await settled();
 const other = await shown();
 check(largestDifference(other, dragged) > 0.003 * size, "switching a region off changes what follows");
 const annotation = await download("save-annotation");
 writeFileSync(join(folder, "kept.json"), annotation);
-check(!JSON.parse(annotation).regions.some(region => region.id === ids[0]), "the annotation that is downloaded lacks it");
+check(!JSON.parse(annotation).regions.some(region => region.id === id), "the annotation that is downloaded lacks it");
 orbifit("deform", "chair.ply", "kept.json", "--handles", "handles.json", "-o", "without.ply", "--quiet");
 const without = largestDifference(plyFile("without.ply"), other) / size;
 check(without < 1e-6, `that replays too, to ${without.toExponential(1)} of the diagonal, from a basis built in the page`);

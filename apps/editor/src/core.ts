@@ -84,6 +84,13 @@ export class Core {
     return new Float64Array(this.memory as ArrayBuffer, at, count);
   }
 
+  private all = new Float64Array(0);
+  /** The whole memory. */
+  private doubles(): Float64Array {
+    if (this.all.buffer !== this.memory) this.all = new Float64Array(this.memory as ArrayBuffer);
+    return this.all;
+  }
+
   /** Calls with a file's name as the second argument. */
   private withName(call: (session: number, name: number, ...rest: number[]) => number, file: string,
                    ...rest: number[]): number {
@@ -148,12 +155,17 @@ export class Core {
                            3 * this.displayTriangles());
   }
   positions(side: Side): Float32Array {
-    return new Float32Array(this.memory as ArrayBuffer, this.module._editor_positions!(this.session, side),
-                            3 * this.displayVertices());
+    return this.floats(side, this.module._editor_positions!(this.session, side), 3 * this.displayVertices());
   }
   normals(side: Side): Float32Array {
-    return new Float32Array(this.memory as ArrayBuffer, this.module._editor_normals!(this.session, side),
-                            3 * this.displayVertices());
+    return this.floats(2 + side, this.module._editor_normals!(this.session, side), 3 * this.displayVertices());
+  }
+  private readonly kept: Float32Array[] = [];
+  /** A view of the memory, the same as the last with this number where that is still right: a frame makes none. */
+  private floats(number: number, at: number, count: number): Float32Array {
+    const known = this.kept[number];
+    if (known?.buffer === this.memory && known.byteOffset === at && known.length === count) return known;
+    return this.kept[number] = new Float32Array(this.memory as ArrayBuffer, at, count);
   }
   marks(): Uint8Array {
     return new Uint8Array(this.memory as ArrayBuffer, this.module._editor_marks!(this.session),
@@ -178,14 +190,15 @@ export class Core {
       this.motionsRoom = 2 * motions.length;
       this.motionsAt = this.module._editor_allocate(8 * this.motionsRoom);
     }
-    this.numbers(motions.length, this.motionsAt).set(motions);
+    this.doubles().set(motions, this.motionsAt / 8);
     this.checked(this.module._editor_solve!(this.session, side, this.motionsAt, motions.length / 12, iterations,
                                             this.scratch));
-    const numbers = this.numbers(4);
-    record.solve = numbers[0]!;
-    record.lift = numbers[1]!;
-    record.show = numbers[2]!;
-    record.handleError = numbers[3]!;
+    const numbers = this.doubles();
+    const at = this.scratch / 8;
+    record.solve = numbers[at]!;
+    record.lift = numbers[at + 1]!;
+    record.show = numbers[at + 2]!;
+    record.handleError = numbers[at + 3]!;
   }
   rest(): void { this.checked(this.module._editor_rest!(this.session)); }
   show(vertices: Float64Array): void {

@@ -50,12 +50,15 @@ export class Editor {
   private kept: number[] = []; // ids of the regions in the core's order
   private motions = new Float64Array(0);
   private centroids: Vec3[] = [];
+  private readonly motion = new Float64Array(12);
+  private readonly freeRecord: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
   private stale = false;
   private handlesStale = false;
   private rebuilding = 0;
   private extents = new Map<string, { elements: Element[]; extent: Extent }>();
   private symmetricReady = false;
   onChange: () => void = () => {};
+  onSolved: () => void = () => {}; // the vertices or what is measured of them changed, nothing else
   onError: (message: string) => void = () => {};
 
   constructor(readonly core: Core, readonly view: View, readonly background: Background) {
@@ -135,7 +138,7 @@ export class Editor {
   markRegion(id: number): void {
     const number = id < 0 ? -1 : this.coreNumber(id);
     this.core.markRegion(number);
-    this.view.takeMarks(this.core);
+    this.view.marksChanged();
     this.showRegions(id < 0 ? [] : [id]);
   }
 
@@ -279,14 +282,17 @@ export class Editor {
   /** Where a handle's centre is to be, in the display's frame. */
   target(number: number): Vec3 {
     const handle = this.state.handles[number]!;
-    const motion = new Float64Array(12);
+    const motion = this.motion;
     writeMotion(handle, this.centroids[number] ?? handle.centre, motion, 0);
     return this.toDisplay(moved(motion, 0, handle.centre));
   }
 
   showHandles(): void {
-    this.view.showHandles(this.state.handles.map((handle, number) =>
-      ({ point: this.target(number), pin: handle.pin, selected: number === this.selected })));
+    const { handles } = this.state;
+    this.view.showHandles(handles.length);
+    for (let number = 0; number < handles.length; ++number) {
+      this.view.showHandle(number, this.target(number), handles[number]!.pin, number === this.selected);
+    }
     if (this.selected >= 0) this.view.gizmoTarget.position.set(...this.target(this.selected));
   }
 
@@ -310,23 +316,23 @@ export class Editor {
       if (handles.length) this.core.setHandles(this.handlesJson());
       this.centroids = handles.map((_, number) => this.core.handleCentroid(number));
       this.motions = new Float64Array(12 * handles.length);
-      this.view.takeMarks(this.core);
+      this.view.marksChanged();
       this.showHandles();
     }
-    const sides = this.comparing ? [Side.symmetric, Side.free] : [Side.symmetric];
     if (!handles.length) {
       this.core.rest();
       this.record.solve = this.record.lift = this.record.handleError = 0;
     } else {
-      handles.forEach((handle, number) => writeMotion(handle, this.centroids[number]!, this.motions, 12 * number));
-      const other: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
-      for (const side of sides) {
-        this.core.solve(side, this.motions, iterations, side === Side.symmetric ? this.record : other);
+      for (let number = 0; number < handles.length; ++number) {
+        writeMotion(handles[number]!, this.centroids[number]!, this.motions, 12 * number);
       }
+      this.core.solve(Side.symmetric, this.motions, iterations, this.record);
+      if (this.comparing) this.core.solve(Side.free, this.motions, iterations, this.freeRecord);
     }
-    for (const side of sides) this.view.takePositions(this.core, side);
+    this.view.positionsChanged(Side.symmetric);
+    if (this.comparing) this.view.positionsChanged(Side.free);
     this.measureSoon();
-    this.onChange();
+    this.onSolved();
   }
 
   private measuring = 0; // a timer's
@@ -338,12 +344,19 @@ export class Editor {
     this.measuring = 0;
     const cheap = this.measuringTook < 8 && performance.now() - this.measured > 10 * this.measuringTook;
     if (cheap && this.measured > 0) this.measure();
-    else this.measuring = window.setTimeout(() => this.measure(), 120);
+    else this.measuring = window.setTimeout(this.measureNow, 120);
   }
 
   /** Whether the residuals are those of what is shown. */
   get isMeasured(): boolean { return this.measuring === 0 && !this.stale; }
 
+  private readonly measureNow = (): void => {
+    try {
+      this.measure();
+    } catch (error) {
+      this.failed(error);
+    }
+  };
   private measure(): void {
     this.measuring = 0;
     const worst = (list: RegionResidual[]): number => list.reduce((most, entry) => Math.max(most, entry.max), 0);
@@ -352,7 +365,7 @@ export class Editor {
     this.freeResidual = this.comparing ? worst(this.core.residuals(ResidualKind.free)) : 0;
     this.measured = performance.now();
     this.measuringTook = this.measured - start;
-    this.onChange();
+    this.onSolved();
   }
 
   setComparing(on: boolean): void {
@@ -385,7 +398,7 @@ export class Editor {
     }
     this.blend = share;
     this.core.blend(share);
-    this.view.takePositions(this.core, Side.symmetric);
+    this.view.positionsChanged(Side.symmetric);
     this.onChange();
   }
 
@@ -431,12 +444,12 @@ export class Editor {
         step => {
           if (step.kind !== "fit-step") return;
           this.core.show(step.vertices);
-          this.view.takePositions(this.core, Side.symmetric);
+          this.view.positionsChanged(Side.symmetric);
           this.fitSteps.push({ step: step.step, rms: step.rms });
           this.onChange();
         });
       this.core.show(answer.vertices);
-      this.view.takePositions(this.core, Side.symmetric);
+      this.view.positionsChanged(Side.symmetric);
       this.fitReport = JSON.parse(answer.report) as FitReport;
       this.fitted = true;
     } catch (error) {

@@ -127,7 +127,7 @@ export class Input {
   private lookAt(pick: Pick): void {
     const { editor } = this;
     editor.view.showOrbit(editor.core.orbit(pick, editor.radius * editor.info.diagonal));
-    editor.view.takeMarks(editor.core);
+    editor.view.marksChanged();
     editor.showRegions(editor.core.regionsOf(pick.face).map(number => editor.idOf(number)));
   }
 
@@ -136,7 +136,7 @@ export class Input {
     this.hovered = null;
     this.editor.core.clearOrbit();
     this.editor.view.showOrbit(null);
-    this.editor.view.takeMarks(this.editor.core);
+    this.editor.view.marksChanged();
     this.editor.showRegions([]);
   }
 

@@ -135,6 +135,7 @@ function wire(editor: Editor, input: Input, view: View, panel: Panel): void {
     panel.update();
     if (editor.state?.handles.length) element("hint").hidden = true;
   };
+  editor.onSolved = () => panel.solved();
   view.onFrame = () => panel.frame();
   input.onTool = () => {
     for (const name of ["move", "rotate", "scale"]) {

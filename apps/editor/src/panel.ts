@@ -39,7 +39,9 @@ function ordered(regions: readonly Region[]): { region: Region; depth: number }[
 
 export class Panel {
   private listed = "";
-  private frames: number[] = [];
+  private readonly frames = new Float64Array(256); // when the last ones were, in a ring
+  private drawn = 0; // frames so far
+  private readoutWaits = 0; // a timer's
 
   constructor(private readonly editor: Editor) {
     const slider = (id: string, use: (value: number) => void, done: () => void = () => {}): void => {
@@ -113,10 +115,25 @@ export class Panel {
 
   /** Frames of the last second. */
   frame(): void {
-    const now = performance.now();
-    this.frames.push(now);
-    while (this.frames.length && this.frames[0]! < now - 1000) this.frames.shift();
+    this.frames[this.drawn++ % this.frames.length] = performance.now();
   }
+  private framesOfLastSecond(): number {
+    const since = performance.now() - 1000;
+    let count = 0;
+    for (let i = Math.max(0, this.drawn - this.frames.length); i < this.drawn; ++i) {
+      if (this.frames[i % this.frames.length]! >= since) ++count;
+    }
+    return count;
+  }
+
+  /** The numbers that follow a drag: ten times a second, which is as often as one reads. */
+  solved(): void {
+    if (!this.readoutWaits) this.readoutWaits = window.setTimeout(this.readoutNow, 100);
+  }
+  private readonly readoutNow = (): void => {
+    this.readoutWaits = 0;
+    this.readout();
+  };
 
   private readout(): void {
     const { editor } = this;
@@ -125,7 +142,8 @@ export class Panel {
     if (editor.state.handles.length) {
       parts.push(`residual <b>${share(editor.residual)}</b>`);
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
-      if (this.frames.length > 1) parts.push(`<b>${this.frames.length}</b> frames/s`);
+      const frames = this.framesOfLastSecond();
+      if (frames > 1) parts.push(`<b>${frames}</b> frames/s`);
     } else {
       parts.push("no handles yet");
     }
