@@ -26,7 +26,7 @@ class EditorCoreTest : public testing::Test {
     write_annotation(folder_.file("chair.json"), chair_.truth);
     ASSERT_EQ(editor_read_mesh(session_, path("chair.ply").c_str()), 0) << editor_error();
     ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str()), 0) << editor_error();
-    ASSERT_EQ(editor_build_basis(session_, 1, 0), 0) << editor_error();
+    ASSERT_EQ(editor_build_basis(session_, 1, 0, 0, 0, 0), 0) << editor_error();
   }
   void TearDown() override { editor_free(session_); }
 

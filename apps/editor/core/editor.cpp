@@ -122,10 +122,18 @@ int editor_write_mesh(EditorSession* session, const char* file, int at_rest) {
   return done([&] { at_rest != 0 ? session->write_rest(file) : session->write_shown(file); });
 }
 
-int editor_build_basis(EditorSession* session, int mode, int samples) {
+int editor_build_basis(EditorSession* session, int mode, int lift, double radius, int samples, int sharp) {
   return done([&] {
     if (mode < 0 || mode > 2) throw orbifit::UsageError("mode: 0, 1 or 2");
-    session->build_basis(static_cast<orbifit::GroupMode>(mode), samples);
+    if (lift < 0 || lift > 1) throw orbifit::UsageError("lift: 0 or 1");
+    orbifit::SubspaceOptions options;
+    options.mode = static_cast<orbifit::GroupMode>(mode);
+    options.lift = lift == 0 ? orbifit::LiftKind::orbit : orbifit::LiftKind::paper;
+    options.radius = radius;
+    options.samples = samples;
+    options.sharp_features_first = sharp != 0;
+    options.validate();
+    session->build_basis(options);
   });
 }
 

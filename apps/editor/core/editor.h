@@ -25,8 +25,9 @@ int editor_read_annotation(struct EditorSession* session, const char* file);
 int editor_read_basis(struct EditorSession* session, const char* file);
 int editor_write_basis(struct EditorSession* session, const char* file);
 int editor_write_mesh(struct EditorSession* session, const char* file, int at_rest);
-/* mode: 0 fixed, 1 floating, 2 moving; samples: 0 chooses. */
-int editor_build_basis(struct EditorSession* session, int mode, int samples);
+/* mode: 0 fixed, 1 floating, 2 moving; lift: 0 orbit, 1 paper; radius, mesh units, and samples: 0 chooses;
+   sharp: 1 places samples on sharp edges first. */
+int editor_build_basis(struct EditorSession* session, int mode, int lift, double radius, int samples, int sharp);
 /* The annotation as it is kept, as JSON. */
 const char* editor_annotation(struct EditorSession* session);
 /* Counts, sizes and the basis as JSON. */

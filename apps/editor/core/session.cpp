@@ -71,10 +71,7 @@ void Session::read_basis(const std::string& file) {
   symmetric_side_.handles_set = false;
 }
 
-void Session::build_basis(GroupMode mode, int samples) {
-  SubspaceOptions options;
-  options.mode = mode;
-  options.samples = samples;
+void Session::build_basis(const SubspaceOptions& options) {
   auto subspace = std::make_unique<Subspace>(build_subspace(mesh_, annotation_, options, context));
   free_.reset();
   symmetric_side_.deformer.reset();

@@ -45,7 +45,7 @@ class Session {
   /// Made consistent as `orbifit deform` does. \throw InputError
   void read_annotation(const std::string& file);
   void read_basis(const std::string& file);
-  void build_basis(GroupMode mode, int samples);
+  void build_basis(const SubspaceOptions& options);
   void write_basis(const std::string& file) const;
 
   const Mesh& mesh() const { return mesh_; }

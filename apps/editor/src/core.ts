@@ -26,6 +26,15 @@ export interface Info {
   degrees_of_freedom?: number;
 }
 
+/** How a basis is sampled, as `orbifit edit` was told; 0 chooses. */
+export interface Sampling {
+  lift: number; // 0 orbit, 1 paper
+  radius: number; // mesh units
+  samples: number;
+  sharp: boolean;
+}
+export const usualSampling: Sampling = { lift: 0, radius: 0, samples: 0, sharp: false };
+
 export interface SolveRecord {
   solve: number;
   lift: number;
@@ -142,8 +151,8 @@ export class Core {
     return this.written("written." + ending,
                         file => this.withName(this.module._editor_write_mesh!, file, atRest ? 1 : 0));
   }
-  buildBasis(mode: number, samples: number): void {
-    this.checked(this.module._editor_build_basis!(this.session, mode, samples));
+  buildBasis(mode: number, { lift, radius, samples, sharp }: Sampling): void {
+    this.checked(this.module._editor_build_basis!(this.session, mode, lift, radius, samples, sharp ? 1 : 0));
   }
   annotation(): string { return this.text(this.module._editor_annotation!(this.session)); }
   info(): Info { return JSON.parse(this.text(this.module._editor_info!(this.session))) as Info; }

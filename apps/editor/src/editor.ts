@@ -3,7 +3,9 @@ import {
   elementsOf, emptyAnnotation, extentOf, faceCount, isAnnotation, without, type Annotation, type Element, type Extent,
   type Region
 } from "./annotation";
-import { Core, ResidualKind, Side, type Info, type Pick, type RegionResidual, type SolveRecord } from "./core";
+import {
+  Core, ResidualKind, Side, usualSampling, type Info, type Pick, type RegionResidual, type Sampling, type SolveRecord
+} from "./core";
 import type { Background } from "./data";
 import { moved, toJson, writeMotion, type Handle } from "./handles";
 import { add, length, sub, times, type Vec3 } from "./math";
@@ -33,6 +35,7 @@ export class Editor {
   sourceName = "mesh"; // of the user's file, for the command that replays
   state!: Snapshot;
   selected = -1;
+  sampling: Sampling = usualSampling;
   radius = 0.05; // of new handles, fraction of the diagonal
   comparing = false;
   busy = "";
@@ -80,6 +83,7 @@ export class Editor {
     this.undone = [];
     this.bases.clear();
     this.extents.clear();
+    this.sampling = usualSampling;
     this.symmetricReady = false;
     this.blend = 0;
     this.fitted = false;
@@ -89,12 +93,16 @@ export class Editor {
     this.selected = -1;
     if (basis) this.bases.set(this.basisKey(), { bytes: basis, annotation: JSON.stringify(taken) });
     this.view.setMesh(this.core);
+    this.scan = null;
+    this.fitReport = null;
+    this.fitSteps = [];
     this.view.showScan(null);
     this.view.showOrbit(null);
     this.view.showElements("", () => [], this.info);
     this.view.frame();
-    this.onChange();
-    await new Promise(requestAnimationFrame); // it is seen before the basis is read
+    this.setBusy("reading the basis");
+    // The mesh is seen first: what follows a frame's callbacks directly still comes before it is shown.
+    await new Promise(shown => requestAnimationFrame(() => setTimeout(shown)));
     await this.takeBasis();
     this.handlesChanged();
   }
@@ -203,7 +211,7 @@ export class Editor {
       this.setBusy("rebuilding the basis");
       try {
         const answer = await this.background.run(
-          { kind: "basis", annotation: JSON.stringify(this.active()), mode: this.state.mode, samples: 0 });
+          { kind: "basis", annotation: JSON.stringify(this.active()), mode: this.state.mode, sampling: this.sampling });
         basis = { bytes: answer.basis, annotation: answer.annotation };
         this.bases.set(key, basis);
       } catch (error) {
@@ -431,6 +439,15 @@ export class Editor {
     this.fitSteps = [];
     this.view.showScan(points);
     this.onChange();
+  }
+
+  /** The mesh is then again what the handles make of it. */
+  closeScan(): void {
+    this.scan = null;
+    this.fitReport = null;
+    this.fitSteps = [];
+    this.view.showScan(null);
+    this.handlesChanged();
   }
 
   async fit(place: boolean): Promise<void> {

@@ -214,19 +214,22 @@ export class View {
     }
     const toDisplay = new THREE.Matrix4().makeScale(1 / frame.diagonal, 1 / frame.diagonal, 1 / frame.diagonal)
       .multiply(new THREE.Matrix4().makeTranslation(-frame.centre[0], -frame.centre[1], -frame.centre[2]));
-    for (const { elements, extent, carried } of key ? list() : []) {
+    const shown = key ? list() : [];
+    const regions = shown.length; // the more sheets lie over one another, the fainter each is
+    for (const { elements, extent, carried } of shown) {
       const group = new THREE.Group();
       group.matrixAutoUpdate = false;
       const m = carried;
       group.matrix.set(m[0]!, m[1]!, m[2]!, m[3]!, m[4]!, m[5]!, m[6]!, m[7]!, m[8]!, m[9]!, m[10]!, m[11]!, 0, 0, 0, 1)
         .premultiply(toDisplay);
-      for (const element of elements) this.addElement(group, element, extent);
+      const planes = elements.filter(element => element.kind === "plane").length;
+      for (const element of elements) this.addElement(group, element, extent, Math.min(0.1, 0.2 / (planes * regions)));
       this.overlay.add(group);
     }
     this.draw();
   }
 
-  private addElement(group: THREE.Group, element: Element, extent: Extent): void {
+  private addElement(group: THREE.Group, element: Element, extent: Extent, opacity: number): void {
     const normal = new THREE.Vector3(...element.direction);
     const centre = new THREE.Vector3(...extent.centre);
     const point = new THREE.Vector3(...element.point);
@@ -237,7 +240,7 @@ export class View {
       centre.addScaledVector(normal, normal.dot(point) - normal.dot(centre));
       const disc = new THREE.CircleGeometry(radius, 64);
       const sheet = new THREE.Mesh(disc, new THREE.MeshBasicMaterial(
-        { color: colour, transparent: true, opacity: 0.10, side: THREE.DoubleSide, depthWrite: false }));
+        { color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false }));
       const rim = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(
         Array.from({ length: 96 }, (_, i) => new THREE.Vector3(radius * Math.cos(i * Math.PI / 48),
                                                                radius * Math.sin(i * Math.PI / 48), 0))),
@@ -308,7 +311,7 @@ export class View {
     const half = Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, aspect);
     const direction = this.camera.position.clone().sub(this.controls.target).normalize();
     this.controls.target.set(...centre);
-    this.camera.position.copy(this.controls.target).addScaledVector(direction, radius / half * 1.02 + radius * 0.3);
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, radius / half * 1.1 + radius * 0.3);
     this.controls.update();
     this.draw();
   }
