@@ -29,6 +29,12 @@ constexpr double kWhole = 0.97;
 // Share of the kept faces that must be kept again, with only themselves to lie on.
 constexpr double kSymmetric = 0.9;
 
+// Fraction of the region's own diagonal within which an image is on it.
+constexpr double kRegionTolerance = 0.02;
+
+// Share of the largest instance's visible area below which one ends its pattern.
+constexpr double kLeastInstance = 0.5;
+
 void check_share(const char* name, double value, double most) {
   if (value >= 0 && value <= most) return;
   std::ostringstream text;
@@ -111,7 +117,7 @@ class Carrier {
   }
 
   double tolerance_of(const std::vector<int>& faces) const {
-    return std::min(options_.tolerance * measured_.diagonal, options_.region_tolerance * measured_.diagonal_of(faces));
+    return std::min(options_.tolerance * measured_.diagonal, kRegionTolerance * measured_.diagonal_of(faces));
   }
 
   void carry(const Region& old, bool expected) {
@@ -198,7 +204,7 @@ class Carrier {
       instance.faces = new_faces_(instance.faces);
       visible.push_back(area_of(instance.faces));
     }
-    if (std::ranges::min(visible) < options_.least_instance * std::ranges::max(visible)) return;
+    if (std::ranges::min(visible) < kLeastInstance * std::ranges::max(visible)) return;
     PatternInstance& first = instances.front();
     const double tolerance = tolerance_of(first.faces);
     const auto kept = [&](const std::vector<int>& from, const std::vector<int>& to, const Motion& motion) {
@@ -238,16 +244,14 @@ class Carrier {
 }  // namespace
 
 void CarryOptions::validate() const {
-  if (!(tolerance > 0) || !(region_tolerance > 0)) {
+  if (!(tolerance > 0)) {
     std::ostringstream text;
-    text << "carried: tolerance is " << tolerance << " and region_tolerance " << region_tolerance
-         << "; both must be positive";
+    text << "carried: tolerance is " << tolerance << ": must be positive";
     throw UsageError(text.str());
   }
   check_share("least_kept", least_kept, 1);
   check_share("least_expected", least_expected, 1);
   check_share("least_area", least_area, least_expected);
-  check_share("least_instance", least_instance, 1);
 }
 
 DetectionTruth carried(const TruthModel& model, const Mesh& mesh, const std::vector<int>& source_face,

@@ -118,7 +118,6 @@ DataTerm KurzFit::data_term(const std::vector<Correspondence>& pairs) const {
     places.row(i) = pair.barycentric.transpose() * unit_.mesh.vertices(corners, Eigen::all);
     term.offsets.row(i) = unit_.points.row(pair.scan_point) - places.row(i);
     term.normals.row(i) = pair.normal.transpose();
-    if (!options_.surface_normals) term.normals.row(i) = unit_.normals.row(pair.scan_point);
   }
   const double points = std::max(1.0, static_cast<double>(unit_.points.rows()));
   term.weights.setConstant(count, options_.data_weight * options_.scan_points / points);

@@ -37,7 +37,7 @@ FitResult fit_similarity(const FitInput& input, const SimilarityOptions& options
   if (!edit) start = baseline_start(input, options.fit, context);
   clock.finished("prepare");
   result.pose = edit ? align_landmarks(input.mesh, landmarks_of(input)) : start.pose;
-  if (!edit && options.scaled) {
+  if (!edit) {
     ScaledAlignmentOptions scaled;
     scaled.iterations = options.iterations;
     std::vector<int> points(static_cast<std::size_t>(start.scan.points.rows()));
@@ -46,7 +46,7 @@ FitResult fit_similarity(const FitInput& input, const SimilarityOptions& options
     result.stopped_because = "the iterations asked for are done";
   }
   clock.finished("fit");
-  result.degrees_of_freedom = options.scaled || edit ? 7 : 6;
+  result.degrees_of_freedom = 7;
   finish_baseline(input, options.fit, Points::Zero(input.mesh.vertices.rows(), 3), edit ? nullptr : &start, context,
                   result);
   carry_annotation(input, nullptr, {}, result);

@@ -108,16 +108,12 @@ class Closure {
   }
 
  private:
-  bool followed(int place) const {
-    return options_.followed == nullptr || (*options_.followed)[static_cast<std::size_t>(place)] != 0;
-  }
-
   // The place whose continuum decides where points of the set are canonical; -1 for none.
   int continuous_place(int set) const {
     int chosen = -1;
     for (const int place : regions_.set_places(set)) {
       const Continuum* continuum = regions_.continuum(place);
-      if (continuum == nullptr || !followed(place)) continue;
+      if (continuum == nullptr) continue;
       if (chosen < 0) {
         chosen = place;
         continue;
@@ -170,7 +166,7 @@ class Closure {
     if (centred || continuum.spherical) demand(continuum.axis);
     if (centred && continuum.spherical) demand(continuum.reference);
     for (const int other : regions_.set_places(point.set)) {
-      if (other == place || regions_.continuum(other) == nullptr || !followed(other)) continue;
+      if (other == place || regions_.continuum(other) == nullptr) continue;
       // To turn by one region and back by the other must do nothing: their axes are carried together.
       const Continuum& second = *regions_.continuum(other);
       const auto turn_and_back = [&](const Eigen::Vector3d& axis) {
@@ -194,7 +190,7 @@ class Closure {
   void expand(int at) {
     for (std::size_t r = 0; r < regions_.set_places(set_of(at)).size(); ++r) {
       const int place = regions_.set_places(set_of(at))[r];
-      if (regions_.holds(closed_[static_cast<std::size_t>(at)], place) || !followed(place)) continue;
+      if (regions_.holds(closed_[static_cast<std::size_t>(at)], place)) continue;
       const std::vector<Motion>& elements = regions_.elements(place);
       for (std::size_t e = 0; e < elements.size(); ++e) {
         arrive(at, place, static_cast<int>(e), elements[e]);

@@ -40,8 +40,6 @@ struct ClosureOptions {
   double doublet = 1e-9;    ///< points closer than this are one, mesh units, > 0
   double snap = 0;          ///< motions that move the seed by less count as its stabilisers, mesh units
   int most_points = 20000;  ///< an orbit with more never closes
-  /// Places to follow, by number; null: all. Not owned.
-  const std::vector<char>* followed = nullptr;
   /// The set of places of a known point at (nearly) this position, which the second set is to be part of; -1: no point
   /// is known there, and the second set is it.
   std::function<int(const Eigen::Vector3d&, int)> set_at;

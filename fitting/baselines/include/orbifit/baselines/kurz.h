@@ -38,9 +38,6 @@ struct KurzOptions {
   double min_normal_cosine = 0.5;  ///< of compatible normals, in [0, 1)
   /// Normals are compatible in sign too, where both the scan's and the template's look outwards: as in fit().
   bool signed_normals = true;
-  /// Distances are along the surface's normals, or from its edges: as in fit(). Else along the scan's normals, as in
-  /// the paper.
-  bool surface_normals = true;
   int scan_points = 4000;         ///< points of the scan used, >= 10
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
   bool align = true;              ///< as FitOptions::align
