@@ -25,7 +25,7 @@ class EditorCoreTest : public testing::Test {
     write_mesh(folder_.file("chair.ply"), chair_.mesh);
     write_annotation(folder_.file("chair.json"), chair_.truth);
     ASSERT_EQ(editor_read_mesh(session_, path("chair.ply").c_str()), 0) << editor_error();
-    ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str()), 0) << editor_error();
+    ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str(), 0), 0) << editor_error();
     ASSERT_EQ(editor_build_basis(session_, 1, 0, 0, 0, 0), 0) << editor_error();
   }
   void TearDown() override { editor_free(session_); }
@@ -87,7 +87,7 @@ TEST_F(EditorCoreTest, ABasisThatIsReadGivesTheSameBits) {
   move_foot(0.05);
   const std::vector<double> built = shown();
   ASSERT_EQ(editor_write_basis(session_, path("basis").c_str()), 0) << editor_error();
-  ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str()), 0);
+  ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str(), 0), 0);
   ASSERT_EQ(editor_read_basis(session_, path("basis").c_str()), 0) << editor_error();
   solve(0, 0.05);
   EXPECT_EQ(shown(), built);
@@ -139,7 +139,7 @@ TEST_F(EditorCoreTest, RefusesWithoutLosingWhatThereIs) {
   EXPECT_LT(editor_read_mesh(session_, path("broken.ply").c_str()), 0);
   EXPECT_NE(std::string(editor_error()).find("broken.ply"), std::string::npos) << editor_error();
   write_annotation(folder_.file("other.json"), generate("wheel").truth);
-  EXPECT_LT(editor_read_annotation(session_, path("other.json").c_str()), 0);
+  EXPECT_LT(editor_read_annotation(session_, path("other.json").c_str(), 0), 0);
   folder_.write("handles.json", R"({"handles": [{"centre": [9, 9, 9], "radius": 0.01}]})");
   EXPECT_LT(editor_set_handles(session_, path("handles.json").c_str()), 0);
   EXPECT_EQ(shown(), before);
@@ -156,7 +156,7 @@ TEST_F(EditorCoreTest, TheSliderGoesFromTheMeshToItsSymmetricShape) {
   annotation.mesh_diagonal = diagonal(uneven.vertices);
   write_annotation(folder_.file("uneven.json"), annotation);
   ASSERT_EQ(editor_read_mesh(session_, path("uneven.ply").c_str()), 0) << editor_error();
-  ASSERT_EQ(editor_read_annotation(session_, path("uneven.json").c_str()), 0) << editor_error();
+  ASSERT_EQ(editor_read_annotation(session_, path("uneven.json").c_str(), 0), 0) << editor_error();
   const double before = worst(2);
   ASSERT_NE(editor_symmetrize(session_), nullptr) << editor_error();
   ASSERT_EQ(editor_blend(session_, 0.5), 0);

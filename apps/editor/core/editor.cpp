@@ -106,8 +106,8 @@ int editor_read_mesh(EditorSession* session, const char* file) {
   return done([&] { session->read_mesh(file); });
 }
 
-int editor_read_annotation(EditorSession* session, const char* file) {
-  return done([&] { session->read_annotation(file); });
+int editor_read_annotation(EditorSession* session, const char* file, int consistent) {
+  return done([&] { session->read_annotation(file, consistent != 0); });
 }
 
 int editor_read_basis(EditorSession* session, const char* file) {

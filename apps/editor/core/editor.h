@@ -21,7 +21,8 @@ void editor_release(void* memory);
 
 /* Files of the virtual file system. */
 int editor_read_mesh(struct EditorSession* session, const char* file);
-int editor_read_annotation(struct EditorSession* session, const char* file);
+/* consistent: 1 where editor_annotation() gave it, in this session or another; it is then taken as it is. */
+int editor_read_annotation(struct EditorSession* session, const char* file, int consistent);
 int editor_read_basis(struct EditorSession* session, const char* file);
 int editor_write_basis(struct EditorSession* session, const char* file);
 int editor_write_mesh(struct EditorSession* session, const char* file, int at_rest);

@@ -42,8 +42,9 @@ class Session {
 
   /// \throw InputError
   void read_mesh(const std::string& file);
-  /// Made consistent as `orbifit deform` does. \throw InputError
-  void read_annotation(const std::string& file);
+  /// \param consistent  it is one that annotation() gave; others are made consistent, as `orbifit deform` does
+  /// \throw InputError
+  void read_annotation(const std::string& file, bool consistent);
   void read_basis(const std::string& file);
   void build_basis(const SubspaceOptions& options);
   void write_basis(const std::string& file) const;

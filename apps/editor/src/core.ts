@@ -138,8 +138,10 @@ export class Core {
   readMesh(name: string, data: Uint8Array): void {
     this.withFile(name, data, file => this.checked(this.withName(this.module._editor_read_mesh!, file)));
   }
-  readAnnotation(name: string, text: string): void {
-    this.withFile(name, text, file => this.checked(this.withName(this.module._editor_read_annotation!, file)));
+  /** \param consistent  it is one that annotation() gave */
+  readAnnotation(name: string, text: string, consistent = false): void {
+    this.withFile(name, text, file =>
+      this.checked(this.withName(this.module._editor_read_annotation!, file, consistent ? 1 : 0)));
   }
   readBasis(data: Uint8Array): void {
     this.withFile("basis", data, file => this.checked(this.withName(this.module._editor_read_basis!, file)));

@@ -87,7 +87,8 @@ export class Editor {
     this.symmetricReady = false;
     this.blend = 0;
     this.fitted = false;
-    this.setComparing(false);
+    this.comparing = false;
+    this.view.setSplit(false);
     const taken = annotation ?? emptyAnnotation(this.info.vertices, this.info.faces, this.info.diagonal);
     this.state = { handles: [], alpha: 100, iterations: 10, mode, off: [], annotation: taken };
     this.selected = -1;
@@ -221,7 +222,7 @@ export class Editor {
       }
     }
     if (turn !== this.rebuilding) return; // another change has overtaken this one
-    this.core.readAnnotation("annotation", basis.annotation);
+    this.core.readAnnotation("annotation", basis.annotation, true);
     this.core.readBasis(basis.bytes);
     this.shownKey = key;
     this.kept = (JSON.parse(this.core.annotation()) as Annotation).regions.map(region => region.id);
@@ -376,12 +377,25 @@ export class Editor {
     this.onSolved();
   }
 
-  setComparing(on: boolean): void {
-    if (on === this.comparing) return;
-    this.core.compare(on);
-    this.comparing = on;
-    this.view.setSplit(on);
-    this.handlesChanged();
+  /** Without symmetries every sample is an unknown: that takes seconds to factorise. */
+  async setComparing(on: boolean): Promise<void> {
+    if (on === this.comparing || this.busy) return;
+    if (on) {
+      this.setBusy("solving without symmetries");
+      await new Promise(shown => requestAnimationFrame(() => setTimeout(shown)));
+    }
+    try {
+      this.core.compare(on);
+      this.comparing = on;
+      this.view.setSplit(on);
+      this.handlesStale = true;
+      if (on) this.solve();
+    } finally {
+      if (on) this.setBusy("");
+    }
+    this.stale ||= !on;
+    this.view.draw();
+    this.onChange();
   }
 
   // Symmetrise ----------------------------------------------------------------------------------------------------

@@ -203,7 +203,7 @@ export class Input {
     else if (key === "w") this.setTool("move");
     else if (key === "e") this.setTool("rotate");
     else if (key === "r") this.setTool("scale");
-    else if (key === "c") editor.setComparing(!editor.comparing);
+    else if (key === "c") void editor.setComparing(!editor.comparing).catch(error => editor.onError(String(error)));
     else if (key === "p") this.pin();
     else if (key === "delete" || key === "backspace") this.removeSelected();
     else if (key === "escape") {

@@ -167,7 +167,7 @@ async function start(): Promise<void> {
   const mesh = embedded("mesh");
   if (!mesh) {
     element("hint").hidden = false;
-    element("hint").querySelector("b")!.parentElement!.lastChild!.textContent = " lists the keys. Drop a mesh and its annotation to begin.";
+    element("hint").lastChild!.textContent = " lists the keys. Drop a mesh and its annotation to begin.";
     return;
   }
   const annotation = embedded("annotation");
