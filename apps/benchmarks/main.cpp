@@ -8,6 +8,7 @@
 
 #include "benchmarks.h"
 #include "console.h"
+#include "interruption.h"
 
 namespace {
 

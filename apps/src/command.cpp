@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -139,7 +140,7 @@ void require_region(const std::string& option, int id, const SymmetryAnnotation&
 }
 
 void print(CommandContext& context, const std::string& text) {
-  context.printed = true;
+  std::atomic_ref(context.printed).store(true);  // a StopGuard may ask
   if (context.json || (!context.quiet && !context.data_on_output)) return print(text);
   if (!context.quiet) std::fwrite(text.data(), 1, text.size(), stderr);
 }

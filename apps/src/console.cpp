@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <string>
 
@@ -11,9 +10,6 @@
 namespace orbifit {
 
 namespace {
-
-std::atomic<bool> interrupted{false};  // NOLINT(readability-identifier-naming): written by the signal handler
-static_assert(std::atomic<bool>::is_always_lock_free);
 
 constexpr int kWidth = 30;  // of the bar, characters
 
@@ -60,15 +56,6 @@ void Console::clear_bar() {
   if (bar_) write_line("\r\033[K");
   bar_ = false;
   last_.clear();
-}
-
-const std::atomic<bool>& interruption() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted.store(true); };
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  return interrupted;
 }
 
 }  // namespace orbifit

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <string>
 #include <string_view>
 
@@ -28,8 +27,5 @@ class Console {
   bool bar_ = false;
   std::string last_;
 };
-
-/// Set by the first SIGINT or SIGTERM; a second one ends the program at once.
-const std::atomic<bool>& interruption();
 
 }  // namespace orbifit

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -14,12 +15,16 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <poll.h>
+#include <unistd.h>
 
 #include "orbifit/model/errors.h"
 
 #include "console.h"
+#include "interruption.h"
 #include "other_program.h"
 #include "picture_options.h"
+#include "stop_guard.h"
 
 namespace orbifit {
 
@@ -106,13 +111,26 @@ std::string description(const Command& command) {
   return text + "\n\n" + command.summary;
 }
 
+std::string error_object(const std::string& text, int code) {
+  const nlohmann::ordered_json object{{"error", text}, {"exit_code", code}};
+  return object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 // One line on stderr, and where JSON was asked for an object on stdout.
 int fail(Console& console, bool json, const std::string& text, int code) {
   console.error(text);
-  if (json) {
-    const nlohmann::ordered_json object{{"error", text}, {"exit_code", code}};
-    print(object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  }
+  if (json) print(error_object(text, code));
+  return code;
+}
+
+// The same while another thread works, which may be within the standard streams and hold their locks.
+int fail_at_once(bool json, const std::string& text, int code) {
+  const auto write = [](int descriptor, const std::string& what) {
+    pollfd ready{descriptor, POLLOUT, 0};
+    if (::poll(&ready, 1, 0) == 1) static_cast<void>(::write(descriptor, what.data(), what.size()) == 0);
+  };
+  write(STDERR_FILENO, (::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") + ("orbifit: " + text + "\n"));
+  if (json) write(STDOUT_FILENO, error_object(text, code));
   return code;
 }
 
@@ -120,12 +138,20 @@ int fail(Console& console, bool json, const std::string& text, int code) {
 int run(const CommandBody& body, const CommonOptions& options, bool has_timeout) {
   Console console(options.quiet);
   CommandContext context;
-  const auto fail = [&](const std::string& text, int code) {
-    // Nothing follows the object that the command printed, or the file that it wrote.
-    return orbifit::fail(console, options.json && !options.data_on_output && !context.printed, text, code);
+  // Nothing follows the object that the command printed, or the file that it wrote.
+  const auto wants_object = [&] {
+    return options.json && !options.data_on_output && !std::atomic_ref(context.printed).load();
   };
+  const auto fail = [&](const std::string& text, int code) {
+    return orbifit::fail(console, wants_object(), text, code);
+  };
+  const std::string timeout_text = "stopped after " + short_number(options.timeout) + " s (--timeout)";
   try {
     context = make_context(options, has_timeout, console);
+    const StopGuard guard(context.run, [&](StopReason reason) {
+      const bool timeout = reason == StopReason::timeout;
+      return fail_at_once(wants_object(), timeout ? timeout_text : "interrupted", timeout ? kTimeout : kInterrupted);
+    });
     return body(context);
   } catch (const UsageError& error) {
     return fail(error.what(), kUsage);
@@ -133,8 +159,8 @@ int run(const CommandBody& body, const CommonOptions& options, bool has_timeout)
     return fail(error.what(), kBadInput);
   } catch (const NoResultError& error) {
     return fail(error.what(), kNoResult);
-  } catch (const TimeoutError& error) {
-    return fail(error.what(), kTimeout);
+  } catch (const TimeoutError&) {
+    return fail(timeout_text, kTimeout);
   } catch (const InterruptedError& error) {
     return fail(error.what(), kInterrupted);
   } catch (const std::bad_alloc&) {

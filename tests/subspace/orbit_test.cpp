@@ -82,6 +82,44 @@ TEST(Orbit, APointOnAMirrorIsReachedTwice) {
             Eigen::Matrix3d(Eigen::Vector3d(-1, 1, 1).asDiagonal()));
 }
 
+// However the axis lies, and though the foot of a point on it is computed to rounding only.
+class OrbitOnAnAxis : public testing::TestWithParam<int> {};
+
+TEST_P(OrbitOnAnAxis, MovesAlongItAlone) {
+  Random random(static_cast<std::uint64_t>(GetParam()), "axis");
+  const Eigen::Vector3d axis = random.direction();
+  const Eigen::Vector3d centre = 10 * random.direction();
+  Mesh mesh;
+  SymmetryAnnotation annotation;
+  two_regions({Motion{}}, {Motion{}}, mesh);
+  annotation = empty_annotation(mesh, 0.005);
+  Region region;
+  region.name = "cone";
+  region.group = PointGroup{PointGroup::Family::Cinf, 0};
+  region.centre = centre;
+  region.axis = axis;
+  region.elements = {Motion::rotation(axis, 1, centre)};
+  region.faces = {0};
+  annotation.regions = {region};
+  const RegionMap regions(mesh, annotation, RunContext{});
+  GroupWords words(regions, true);
+  ClosureOptions options;
+  options.doublet = 1e-6;
+  const Eigen::Vector3d beside = 1e-8 * axis.unitOrthogonal();
+  const Orbit orbit = snapped_orbit_of(centre + 3.7 * axis + beside, regions.set_of_face(0), regions, words, options);
+  ASSERT_EQ(orbit.points.size(), 1U);
+  ASSERT_FALSE(orbit.constraints.empty());
+  Eigen::MatrixXd asked(3 * static_cast<Eigen::Index>(orbit.constraints.size()), 3);
+  for (std::size_t i = 0; i < orbit.constraints.size(); ++i) {
+    asked.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        words.transport(orbit.constraints[i].word).frame - Eigen::Matrix3d::Identity();
+  }
+  EXPECT_EQ(Eigen::FullPivLU<Eigen::MatrixXd>(asked).setThreshold(1e-9).rank(), 2);
+  EXPECT_LT((asked * axis).norm(), 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Axes, OrbitOnAnAxis, testing::Range(0, 16));
+
 TEST(Orbit, FixedPointIsFixedAndNearest) {
   const Motion a = Motion::reflection({1, 0, 0}, {0.1, 0, 0});
   const Motion b = Motion::reflection({0, 1, 0}, {0, -0.2, 0});

@@ -277,9 +277,10 @@ CommandBody detect(CLI::App& app) {
       write_explanation(arguments->explain, explanation);
       times->write(arguments->explain);
     }
+    // The pictures take time: stopped meanwhile, the command leaves nothing.
+    if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
     if (!arguments->output.empty()) write_annotation(arguments->output, found);
     if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
-    if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
     print(context, context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
     return kDone;
   };

@@ -194,6 +194,7 @@ class Run {
     for (const auto& slot : slots_) {
       if (slot->running()) wait = std::min(wait, slot->deadline() - now);
     }
+    if (context_.deadline) wait = std::min<Clock::duration>(wait, *context_.deadline - now);
     // A process that was killed for its time goes at once; one whose time is over is asked soon.
     return std::max<Clock::duration>(wait, std::chrono::milliseconds(2));
   }

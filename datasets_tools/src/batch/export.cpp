@@ -209,12 +209,9 @@ const std::vector<TableSchema>& export_tables() {
 
 void write_database(const Collection& collection, const SameShapes& same, const fs::path& file,
                     const RunContext& context) {
-  const fs::path temporary =
-      file.parent_path() / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".tmp");
-  std::error_code code;
-  fs::remove(temporary, code);
-  try {
-    Database database(temporary);
+  UnfinishedFile unfinished(file);
+  {
+    Database database(unfinished.name());
     database.run("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA user_version = 1; BEGIN");
     for (const TableSchema& table : export_tables()) {
       database.run(create_statement(table));
@@ -224,16 +221,8 @@ void write_database(const Collection& collection, const SameShapes& same, const 
     }
     write_rows(collection, same, context, [&](std::size_t table, const Row& row) { database.insert(table, row); });
     database.run("CREATE INDEX regions_by_group ON regions (\"group\"); COMMIT");
-  } catch (...) {
-    fs::remove(temporary, code);
-    throw;
   }
-  fs::rename(temporary, file, code);
-  if (code) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw InputError(file.string(), "", "cannot be written: " + code.message());
-  }
+  unfinished.complete();
 }
 
 void write_csv(const Collection& collection, const SameShapes& same, const fs::path& folder,

@@ -11,9 +11,9 @@ struct CarryOptions {
   /// An image is on the region within this fraction of the mesh's diagonal, > 0, and within kRegionTolerance of the
   /// region's.
   double tolerance = 0.005;
-  double least_kept = 0.6;         ///< share of its visible area below which a region or pattern is optional, in [0, 1]
-  double least_expected = 0.003;   ///< share of the mesh's area below which one is optional, in [0, 1]
-  double least_area = 0.002;       ///< share of the mesh's area below which one vanishes, in [0, least_expected]
+  double least_kept = 0.6;        ///< share of its visible area below which a region or pattern is optional, in [0, 1]
+  double least_expected = 0.003;  ///< share of the mesh's area below which one is optional, in [0, 1]
+  double least_area = 0.002;      ///< share of the mesh's area below which one vanishes, in [0, least_expected]
 
   void validate() const;  ///< \throw UsageError
 };

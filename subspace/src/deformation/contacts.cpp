@@ -146,9 +146,9 @@ Orbits orbits_of(const std::vector<LookAtContact>& looks) {
 // Candidates kept so far, by pair of parts and cell of a grid.
 class Kept {
  public:
-  // How far from each candidate the next is kept.
-  Kept(const std::vector<Candidate>& candidates, const std::vector<double>& spacing)
-      : candidates_(candidates), spacing_(spacing) {
+  // How far from each candidate the next is kept. The context is asked whether to stop.
+  Kept(const std::vector<Candidate>& candidates, const std::vector<double>& spacing, const RunContext& context)
+      : candidates_(candidates), spacing_(spacing), context_(context) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       double& width = width_[candidates[i].parts];
       width = std::max(width, spacing[i]);
@@ -165,6 +165,7 @@ class Kept {
   // From a candidate to the nearest one kept, which is told as well; infinite where none is within the widest spacing
   // between the same parts.
   double distance(int number, int* nearest = nullptr) const {
+    context_.check();
     double least = std::numeric_limits<double>::infinity();
     const Cell middle = cell_of(number);
     for (int neighbour = 0; neighbour < 27; ++neighbour) {
@@ -203,6 +204,7 @@ class Kept {
 
   const std::vector<Candidate>& candidates_;
   const std::vector<double>& spacing_;
+  const RunContext& context_;
   std::map<std::array<int, 2>, double> width_;  // of cells
   std::map<Cell, Numbers> by_cell_;
   std::map<std::array<int, 2>, Numbers> by_parts_;
@@ -224,11 +226,12 @@ Orbits thinned(const Orbits& orbits, Kept& kept) {
 }
 
 // Thinned out, ever more until there are few orbits.
-Orbits few_of(const Orbits& orbits, const std::vector<Candidate>& candidates, std::vector<double>& spacing, int most) {
+Orbits few_of(const Orbits& orbits, const std::vector<Candidate>& candidates, std::vector<double>& spacing, int most,
+              const RunContext& context) {
   constexpr double kWider = 1.4;  // half as many on a surface
   for (int round = 0;; ++round) {
     constexpr int kMostRounds = 20;  // each pair of parts keeps one at least
-    Kept kept(candidates, spacing);
+    Kept kept(candidates, spacing, context);
     Orbits result = thinned(orbits, kept);
     if (result.size() <= static_cast<std::size_t>(most) || round == kMostRounds) return result;
     for (double& each : spacing) each *= kWider;
@@ -245,7 +248,7 @@ struct Joints {
 // Joints between two parts: candidates that hang together. Those smaller than the spacing are held at several points if
 // they are not one contact: a single point would let a part roll.
 Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits, const std::vector<double>& small_size,
-                 double widest) {
+                 double widest, const RunContext& context) {
   constexpr double kOfExtent = 0.6;  // of how far a joint reaches from one of its points: about five about a round one
   constexpr double kLeastSpacing = 1e-3;  // of the widest
   Joints result;
@@ -254,11 +257,12 @@ Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits,
   // As fine as the joints that are to be told apart.
   for (std::size_t i = 0; i < candidates.size(); ++i)
     result.spacing[i] = std::clamp(0.25 * small_size[i], kLeastSpacing * widest, widest);
-  Kept kept(candidates, result.spacing);
+  Kept kept(candidates, result.spacing, context);
   thinned(orbits, kept);
   DisjointSets hanging(candidates.size());
   for (const auto& [parts, numbers] : kept.by_parts()) {
     for (std::size_t a = 0; a < numbers.size(); ++a) {
+      context.check();
       for (std::size_t b = a + 1; b < numbers.size(); ++b) {
         const auto first = static_cast<std::size_t>(numbers[a]);
         const auto second = static_cast<std::size_t>(numbers[b]);
@@ -419,7 +423,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
                          std::min(lengths[static_cast<std::size_t>(a)], lengths[static_cast<std::size_t>(b)]));
   }
   const Orbits orbits = orbits_of(trials.look_at(points, touching));
-  Joints joints = joints_of(points, orbits, small_size, spacing);
+  Joints joints = joints_of(points, orbits, small_size, spacing, context);
 
   std::vector<char> in_small(points.size(), 0);
   std::vector<Candidate> small;
@@ -436,7 +440,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
                          [&](int number) { return in_small[static_cast<std::size_t>(number)] == 0; });
     if (!rest.empty()) in_large.push_back(std::move(rest));
   }
-  if (!in_large.empty()) keep(points, few_of(in_large, points, joints.spacing, options.most));
+  if (!in_large.empty()) keep(points, few_of(in_large, points, joints.spacing, options.most, context));
   return contacts;
 }
 

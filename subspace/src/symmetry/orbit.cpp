@@ -158,7 +158,7 @@ class Closure {
   void restrict_to_continuum(int index, int place) {
     const Continuum& continuum = *regions_.continuum(place);
     const OrbitPoint point = orbit_.points[static_cast<std::size_t>(index)];
-    const bool centred = continuum.distance(point.position) == 0;
+    const bool centred = continuum.distance(point.position) < options_.doublet;  // settled there, but for rounding
     const auto demand = [&](const Eigen::Vector3d& axis) {
       const Motion turn = Motion::rotation(axis, kTurnOfOneRadian, continuum.centre);
       orbit_.constraints.push_back({index, words_.extended(point.word, place, -1, turn)});
@@ -177,13 +177,6 @@ class Closure {
       };
       turn_and_back(second.axis);
       if (second.spherical) turn_and_back(second.reference);
-    }
-    const double nearness = 2 * continuum.distance(point.position);
-    if (index == 0 && !centred && nearness < options_.snap) {
-      orbit_.stabilisers.push_back(Motion::rotation(continuum.axis, kTurnOfOneRadian, continuum.centre));
-      if (continuum.spherical) {
-        orbit_.stabilisers.push_back(Motion::rotation(continuum.reference, kTurnOfOneRadian, continuum.centre));
-      }
     }
   }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -39,6 +41,16 @@ class Program {
     return finish(child);
   }
 
+  /// Sends a signal once the program has caught signals and used so much processor time, if it has not ended by then.
+  ProgramResult run_and_signal(const std::string& line, int signal, double seconds_used) const {
+    const pid_t child = start(words(line));
+    while (!catches_interrupts(child) || (!ended(child) && processor_time(child) < seconds_used)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ::kill(child, signal);
+    return finish(child);
+  }
+
   /// Every word of a line is an argument.
   ProgramResult run(const std::string& line) const { return run(words(line)); }
   ProgramResult run_and_interrupt(const std::string& line) const { return run_and_interrupt(words(line)); }
@@ -62,6 +74,18 @@ class Program {
     // A zombie has no such line's bits left: stop waiting.
     if (at == std::string::npos || status.find("State:\tZ") != std::string::npos) return true;
     return (std::stoull(status.substr(at + 7), nullptr, 16) & (1ULL << (SIGINT - 1))) != 0;
+  }
+
+  static bool ended(pid_t child) {
+    return content("/proc/" + std::to_string(child) + "/status").find("State:\tZ") != std::string::npos;
+  }
+
+  // In seconds, all threads together.
+  static double processor_time(pid_t child) {
+    clockid_t clock{};
+    timespec time{};
+    if (::clock_getcpuclockid(child, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
   pid_t start(const std::vector<std::string>& arguments) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -148,16 +149,29 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& doma
     queued[static_cast<std::size_t>(root)] = 1;
     queue.push_back(root);
   };
+  // The vertices nearest to a position; others near it are there for themselves.
+  const double rounding = kWeld * diagonal(mesh.vertices);
+  const auto nearest_to = [&](const Eigen::Vector3d& position) {
+    const auto distance = [&](int other) { return (mesh.vertices.row(other).transpose() - position).norm(); };
+    std::vector<int> near;
+    double least = std::numeric_limits<double>::infinity();
+    grid.visit(position, [&](int other) {
+      near.push_back(other);
+      least = std::min(least, distance(other));
+    });
+    std::erase_if(near, [&](int other) { return distance(other) > least + rounding; });
+    return near;
+  };
   // Where a place has one point alone at a position, that is meant, whichever way the surface faces there.
-  const auto lone_point = [&](const Eigen::Vector3d& position, int place) {
+  const auto lone_point = [&](const std::vector<int>& vertices, int place) {
     constexpr int kNone = -1;
     constexpr int kSeveral = -2;
     int found = kNone;
-    grid.visit(position, [&](int other) {
+    for (const int other : vertices) {
       const int root = points.root[static_cast<std::size_t>(other)];
-      if (found == root || !domains.holds(set_of(other), place)) return;
+      if (found == root || !domains.holds(set_of(other), place)) continue;
       found = found == kNone ? root : kSeveral;
-    });
+    }
     return found >= 0;
   };
   for (std::size_t head = 0; head < queue.size(); ++head) {
@@ -165,9 +179,10 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& doma
     queued[static_cast<std::size_t>(vertex)] = 0;
     const Eigen::Vector3d position = mesh.vertices.row(vertex).transpose();
     const Eigen::Vector3d normal = normals.row(vertex).transpose();
+    const std::vector<int> here = nearest_to(position);
     const std::vector<int> places = domains.set_places(set_of(vertex));
     for (const int place : places) {
-      const bool alone_here = lone_point(position, place);
+      const bool alone_here = lone_point(here, place);
       for (int element = 0; element < static_cast<int>(domains.elements(place).size()); ++element) {
         const int arrival = domains.arrival(place, element);
         const int carried = domains.carried_set(set_of(vertex), place, element);
@@ -176,13 +191,14 @@ std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& doma
         const Eigen::Vector3d turned = motion.linear * normal;
         bool same = false;
         std::vector<int> met;
-        const bool alone = alone_here && lone_point(image, arrival);
-        grid.visit(image, [&](int other) {
+        const std::vector<int> near = nearest_to(image);
+        const bool alone = alone_here && lone_point(near, arrival);
+        for (const int other : near) {
           same = same || set_of(other) == carried;
           const bool meant =
               alone ? domains.holds(set_of(other), arrival) : turned.dot(normals.row(other).transpose()) > kSameSide;
           if (meant && domains.comparable(set_of(other), carried)) met.push_back(other);
-        });
+        }
         if (same) continue;
         for (const int other : met) {
           join(other, carried);

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <system_error>
 
 #include <fcntl.h>
@@ -58,12 +60,24 @@ bool write_all(int descriptor, std::string_view content) {
   throw InputError(file.string(), "", "cannot be written: " + reason);
 }
 
-void write_directly(const fs::path& file, std::string_view content) {
-  Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+// Errors name `file`, whatever the name it is written under.
+void write_directly(const fs::path& name, const fs::path& file, std::string_view content) {
+  Descriptor descriptor(::open(name.c_str(), O_WRONLY | O_CLOEXEC));
   if (descriptor.number() < 0 || !write_all(descriptor.number(), content) || !descriptor.close()) {
     refuse_writing(file, system_reason(errno));
   }
 }
+
+// The process's own: whoever ends it must know of all of them.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<fs::path> names;
+
+  static Unfinished& all() {
+    static Unfinished unfinished;
+    return unfinished;
+  }
+};
 
 fs::path temporary_name(const fs::path& file) {
   static std::atomic<unsigned> counter{0};
@@ -121,26 +135,46 @@ void write_file(const fs::path& file, std::string_view content) {
   std::error_code code;
   const fs::file_status status = fs::status(file, code);
   if (fs::is_directory(status)) refuse_writing(file, "it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) return write_directly(file, content);  // /dev/stdout, a pipe
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return write_directly(file, file, content);  // /dev/stdout, a pipe
 
   // A link stays a link: what it points to is replaced.
   const fs::path target = fs::is_symlink(fs::symlink_status(file, code)) ? fs::weakly_canonical(file, code) : file;
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) refuse_writing(file, "the folder " + folder.string() + " does not exist");
 
-  const fs::path temporary = temporary_name(target);
-  Descriptor descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (descriptor.number() < 0) refuse_writing(file, system_reason(errno));
-  if (!write_all(descriptor.number(), content) || !descriptor.close()) {
-    const int error = errno;
-    ::unlink(temporary.c_str());
-    refuse_writing(file, system_reason(error));
-  }
-  fs::rename(temporary, target, code);
-  if (code) {
-    ::unlink(temporary.c_str());
-    refuse_writing(file, code.message());
-  }
+  UnfinishedFile unfinished(target);
+  write_directly(unfinished.name(), file, content);
+  unfinished.complete();
+}
+
+UnfinishedFile::UnfinishedFile(fs::path target) : target_(std::move(target)), name_(temporary_name(target_)) {
+  const std::lock_guard lock(Unfinished::all().mutex);
+  const Descriptor descriptor(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (descriptor.number() < 0) refuse_writing(target_, system_reason(errno));
+  Unfinished::all().names.insert(name_);
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (name_.empty()) return;
+  const std::lock_guard lock(Unfinished::all().mutex);
+  ::unlink(name_.c_str());
+  Unfinished::all().names.erase(name_);
+}
+
+void UnfinishedFile::complete() {
+  const std::lock_guard lock(Unfinished::all().mutex);
+  std::error_code code;
+  fs::rename(name_, target_, code);
+  if (code) refuse_writing(target_, code.message());  // the destructor removes it
+  Unfinished::all().names.erase(name_);
+  name_.clear();
+}
+
+void abandon_unfinished_files() {
+  Unfinished& unfinished = Unfinished::all();
+  unfinished.mutex.lock();  // for good
+  for (const fs::path& name : unfinished.names) ::unlink(name.c_str());
 }
 
 std::string lower_extension(const fs::path& file) {
