@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 #include "kernels/kernels.h"
 
@@ -49,10 +49,10 @@ Matrix3d covariance_of(const Corotation& corotation, const Points& moved, int sa
 }  // namespace
 
 Matrix3d nearest_rotation(const Matrix3d& matrix, const Matrix3d& start) {
-  constexpr int kMostSteps = 12;
+  constexpr int kMaxSteps = 12;
   constexpr double kDone = 1e-16;  // squared angle after which the next step would be below rounding
   Matrix3d rotation = start;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     // With R exp[w]: tr = const + w . a - w^T H w / 2; H positive definite at a critical point makes it the maximum.
     const Matrix3d m = rotation.transpose() * matrix;
     const Vector3d a(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
