@@ -14,7 +14,7 @@ constexpr double kPlainCutOff = 0.001;  // of a Gaussian (paper, section 5)
 constexpr double kOutside = 1e-6;       // what a place leaves of samples outside, where nothing else is at hand
 constexpr double kNegligible = 1e-5;    // of the largest weight
 constexpr double kBand = 1;             // width of the fading band, in radii
-constexpr int kMostCells = 1 << 22;
+constexpr int kMaxCells = 1 << 22;
 
 const double kPlainReach = std::sqrt(-2 * std::log(kPlainCutOff));  // in standard deviations
 
@@ -50,8 +50,8 @@ PlainLift::PlainLift(const SymmetricSampling& sampling, const RegionMap& regions
       cells_[static_cast<std::size_t>(k)] = 1 + static_cast<int>(std::min(1e6, extent[k] / width_));
       count *= cells_[static_cast<std::size_t>(k)];
     }
-    if (count > kMostCells) width_ *= 2;
-  } while (count > kMostCells);
+    if (count > kMaxCells) width_ *= 2;
+  } while (count > kMaxCells);
   const auto cell_of = [&](Eigen::Index k) {
     const Eigen::Vector3d at = (points.row(k).transpose() - origin_) / width_;
     return (static_cast<int>(at[0]) * cells_[1] + static_cast<int>(at[1])) * cells_[2] + static_cast<int>(at[2]);
