@@ -99,9 +99,9 @@ PointCloud joined_cloud(const FitInput& input, const PlacedScan& start) {
 
 PlacedScan join_scans(const FitInput& input, const PlacedScan& start, const FitResult& fitted,
                       const FitOptions& options, const RunContext& context) {
-  constexpr int kFewest = 500;  // points of one of the scans
+  constexpr int kMinPoints = 500;  // points of one of the scans
   ScanPreparationOptions preparation;
-  preparation.most_points = std::max(kFewest, options.scan_points / (1 + static_cast<int>(input.others.size())));
+  preparation.most_points = std::max(kMinPoints, options.scan_points / (1 + static_cast<int>(input.others.size())));
   const MatchSurface surface(fitted.fitted);
   PlacedScan result = start;
   if (auto own = placed_scan(surface, input.scan, Similarity{}, 0, options.placement, preparation, context)) {

@@ -14,10 +14,10 @@ namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kFewestThatContradict = 4;  // of three, no two are right against the third
-constexpr double kOnALine = 1e-6;                 // spread across it against that along it
-constexpr std::size_t kAllTriplesOf = 20;         // 1140 of them; of more landmarks as many random ones
-constexpr std::size_t kRandomTriples = 1200;      // half of the landmarks wrong: one triple in eight is right
+constexpr std::size_t kMinContradicting = 4;  // of three, no two are right against the third
+constexpr double kOnALine = 1e-6;             // spread across it against that along it
+constexpr std::size_t kAllTriplesOf = 20;     // 1140 of them; of more landmarks as many random ones
+constexpr std::size_t kRandomTriples = 1200;  // half of the landmarks wrong: one triple in eight is right
 constexpr int kRefinements = 10;
 
 bool on_a_line(const Points& points) {
@@ -96,7 +96,7 @@ LandmarkConsensus landmark_consensus(const Mesh& mesh, const std::vector<Landmar
   result.agrees.assign(landmarks.size(), 1);
   if (landmarks.empty()) return result;
   result.pose = align_landmarks(mesh, landmarks, scale);
-  if (landmarks.size() >= kFewestThatContradict) {
+  if (landmarks.size() >= kMinContradicting) {
     double least = landmark_sum(mesh, landmarks, result.pose, tolerance);
     for (const std::vector<std::size_t>& triple : triples_of(landmarks.size())) {
       const std::vector<Landmark> three{landmarks[triple[0]], landmarks[triple[1]], landmarks[triple[2]]};
