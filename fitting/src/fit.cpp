@@ -69,7 +69,7 @@ struct Best {
 };
 
 // Fits from another scale, where that explains more. It ends at the scale of the start, so that what is not seen keeps
-// the template's thickness, unless that explains less by more than it had to explain more.
+// the template's thickness, unless that explains less by more than it had to explain more, and the size is open.
 void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions& options, const RunContext& context,
                      Best& best) {
   const std::optional<PlacedScan> other = at_other_scale(input, best.start);
@@ -83,6 +83,11 @@ void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions&
   back.others = grown.others;
   FitResult shrunk = fit_from(std::move(back), level, input, *other, system, options, context);
   const int in_all = before + grown.iterations_in_all + shrunk.iterations_in_all;
+  if (options.fixed_scale) {
+    if (worth(shrunk) > worth(best.result) + kWorthwhile) best.result = std::move(shrunk);
+    best.result.iterations_in_all = in_all;
+    return;
+  }
   best.start = *other;
   best.result = worth(shrunk) > worth(grown) - kWorthwhile ? std::move(shrunk) : std::move(grown);
   best.result.iterations_in_all = in_all;
@@ -132,7 +137,7 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
     }
   }
   best->result.iterations_in_all = iterations;
-  if (!options.fixed_scale && best->result.confidence * (1 - best->result.cut_off) < kWell) {
+  if (best->result.confidence * (1 - best->result.cut_off) < kWell) {
     systems.share(1, context, [&](std::size_t, FitSystem& system, const RunContext& own) {
       try_other_scale(input, system, options, own, *best);
     });
@@ -191,7 +196,7 @@ void fit_all_scans(const FitInput& input, const FitOptions& options, const RunCo
   const int in_all = first.iterations_in_all + best.result.iterations_in_all + further.iterations_in_all;
   if (worth(further) > worth(best.result) + kWorthwhile) best.result = std::move(further);
   best.result.iterations_in_all = in_all;
-  if (!options.fixed_scale && best.result.confidence < kWell) try_other_scale(input, system, options, context, best);
+  if (best.result.confidence < kWell) try_other_scale(input, system, options, context, best);
   for (std::size_t k = 0; k < best.start.others.size(); ++k) {
     best.result.others[k] = best.result.others[k] * best.start.others[k];
   }
