@@ -1,7 +1,12 @@
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +50,48 @@ TEST(BadInput, EachFileIsReadOrRefusedAsItShould) {
     EXPECT_EQ(reading_of(file.kind, folder.file(file.name), context), outcome->second);
   }
   EXPECT_EQ(names.size(), expected.size()) << "outcomes of files that there are not";
+}
+
+// What a file is not named for: any bytes may come under any name.
+TEST(BadInput, EveryReaderStaysSoundOnEveryFile) {
+  const TemporaryFolder folder;
+  const ReadingContext context;
+  const std::vector<std::pair<BadInputKind, std::string>> readers{
+      {BadInputKind::mesh, "a.obj"},       {BadInputKind::mesh, "a.off"},          {BadInputKind::mesh, "a.ply"},
+      {BadInputKind::mesh, "a.stl"},       {BadInputKind::mesh, "a.gltf"},         {BadInputKind::mesh, "a.glb"},
+      {BadInputKind::scan, "a.ply"},       {BadInputKind::scan, "a.pcd"},          {BadInputKind::scan, "a.xyz"},
+      {BadInputKind::scan, "a.pts"},       {BadInputKind::annotation, "a.json"},   {BadInputKind::handles, "a.json"},
+      {BadInputKind::landmarks, "a.json"}, {BadInputKind::radius_field, "a.json"}, {BadInputKind::basis, "a.basis"},
+      {BadInputKind::manifest, "a.jsonl"}};
+  for (const BadInput& file : all_files(context)) {
+    if (file.content.size() > 200'000) continue;
+    SCOPED_TRACE(file.name);
+    for (const auto& [kind, name] : readers) {
+      SCOPED_TRACE(name);
+      folder.write(name, file.content);
+      EXPECT_NO_THROW(reading_of(kind, folder.file(name), context));
+    }
+  }
+}
+
+// Behind the checksums: numbers of a basis that are not what was written, one by one.
+TEST(BadInput, BasesWithFalseNumbersAreReadSoundlyOrRefused) {
+  const TemporaryFolder folder;
+  const ReadingContext context;
+  const std::vector<std::uint64_t> values{0, 1ULL << 40U, ~0ULL, 0x7ff8ULL << 48U};  // the last one as a real: none
+  int refused = 0;
+  int read = 0;
+  for (std::size_t at = 32; at < context.basis.size(); at += 8 * (1 + at / 2000)) {
+    for (const std::uint64_t value : values) {
+      std::string content = context.basis;
+      std::memcpy(content.data() + at, &value, std::min(sizeof value, content.size() - at));
+      folder.write("a.basis", with_right_checksums(std::move(content)));
+      const std::string outcome = reading_of(BadInputKind::basis, folder.file("a.basis"), context);
+      ++(outcome.starts_with("read: ") ? read : refused);
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(read, 0);
 }
 
 TEST(BadInput, EveryRefusalNamesFileAndReason) {

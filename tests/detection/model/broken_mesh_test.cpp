@@ -112,7 +112,7 @@ std::vector<BrokenMesh> broken_meshes() {
        "line 5: a facet with 2 vertices"},
       {"StlOpen", "a.stl", "solid\nfacet\nvertex 0 0 0\n", "the file ends within a facet"},
       {"StlEmpty", "a.stl", "solid\nendsolid\n", "has no vertices"},
-      {"GltfNoJson", "a.gltf", "hello", "not a glTF file"},
+      {"GltfNoJson", "a.gltf", "hello", "line 1: is not JSON: syntax error"},
       {"GlbTruncated", "a.glb", "glTF\x02", "truncated"},
   };
 }
