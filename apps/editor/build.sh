@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the editor's page, without a mesh: build.sh [OUT], by default apps/editor/dist/editor.html, which is what
-# `orbifit edit` fills in. The core comes out in build/wasm/apps/editor/core. The same sources give the same bytes.
+# `orbifit edit` fills in. The core comes out in build/wasm/apps/editor/core. The same sources give the same bytes, in
+# any folder. Exits with 77 where npm's packages cannot be reached.
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
 out=${1:-$root/apps/editor/dist/editor.html}
@@ -16,7 +17,12 @@ unset NODE_PATH
 
 cd "$root/apps/editor"
 [ -d node_modules ] && cmp -s package-lock.json node_modules/.of-lock || {
-  npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+  npm ci --ignore-scripts --no-audit --no-fund --loglevel=error 2>"$wasm.npm.log" || {
+    cat "$wasm.npm.log" >&2
+    grep -qE 'ENOTFOUND|EAI_AGAIN|ECONN|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|network' "$wasm.npm.log" || exit 1
+    echo "The packages from npm cannot be reached" >&2
+    exit 77
+  }
   cp package-lock.json node_modules/.of-lock
 }
 npm run --silent check

@@ -37,8 +37,7 @@ void add_mode_option(CLI::App& app, GroupMode& mode) {
       ->default_str("floating");
 }
 
-void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
-  SubspaceOptions& options = arguments.options;
+void add_sampling_options(CLI::App& app, SubspaceOptions& options) {
   add_mode_option(app, options.mode);
   app.add_option(
          "--lift", options.lift,
@@ -49,9 +48,13 @@ void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
   auto* radius = app.add_option("--radius", options.radius,
                                 "Sampling radius, mesh units; a smaller one allows finer edits with more unknowns");
   app.add_option("--samples", options.samples, "Approximate number of samples, instead of a radius")->excludes(radius);
+  app.add_flag("--sharp-features", options.sharp_features_first, "Place samples on sharp edges and corners first");
+}
+
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
+  add_sampling_options(app, arguments.options);
   app.add_option("--radius-field", arguments.radius_field, "Radius field (.json): where sampling is finer or coarser")
       ->type_name("FILE");
-  app.add_flag("--sharp-features", options.sharp_features_first, "Place samples on sharp edges and corners first");
 }
 
 void exclude_subspace_options(CLI::App& app, CLI::Option& option) {

@@ -24,7 +24,10 @@ struct SubspaceArguments {
 /// Adds --mode alone.
 void add_mode_option(CLI::App& app, GroupMode& mode);
 
-/// Adds --mode, --lift, --radius, --samples, --radius-field and --sharp-features.
+/// Adds --mode, --lift, --radius, --samples and --sharp-features.
+void add_sampling_options(CLI::App& app, SubspaceOptions& options);
+
+/// Adds those and --radius-field.
 void add_subspace_options(CLI::App& app, SubspaceArguments& arguments);
 
 /// Makes an option useless together with any of those.

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSamples = 1000;
 // What stages after the one that found a region do to it must not spoil it. A share less than where it was verified:
 // there are other samples.
-constexpr double kLeastKept = 0.9;
+constexpr double kMinKept = 0.9;
 
 void note_spoilt(Explanation* explanation, const FoundRegion& region, double kept) {
   if (explanation == nullptr) return;
@@ -54,7 +54,7 @@ std::vector<Region> annotated(const PreparedMesh& prepared, std::vector<FoundReg
     const GroupPlacement& placement = each.placement;
     const SurfacePatch patch = make_patch(prepared, each.faces, kSamples, tolerance, context, "residual");
     const double kept = verify_group(patch, placement, context).joint;
-    if (kept < kLeastKept) {
+    if (kept < kMinKept) {
       note_spoilt(explanation, each, kept);
       continue;
     }

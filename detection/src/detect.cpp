@@ -27,9 +27,9 @@
 #include "patterns/region_patterns.h"
 #include "patterns/row_growth.h"
 #include "primitives/symmetry_lines.h"
-#include "resolution/carry_back.h"
 #include "resolution/coarse_mesh.h"
 #include "resolution/denoise.h"
+#include "resolution/transfer.h"
 #include "search/axis_regions.h"
 #include "search/completion.h"
 #include "search/joined_groups.h"
@@ -52,17 +52,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastShare = 0.002;  // of the mesh's area: smaller regions and patterns say little
-constexpr std::size_t kMostRegions = 300;
-constexpr double kLeastNoise = 3e-4;     // of the diagonal
-constexpr double kLeastTurned = 0.006;   // of the area, that speaks for a rotation of pieces
-constexpr double kLeastMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
-constexpr double kLongest = 1e8;         // seconds, which a clock can add
-constexpr double kLeastSeconds = 1;      // for the whole
-constexpr double kOfDetection = 0.6;     // of the time, where what is found is to be carried to a finer mesh
+constexpr double kMinShare = 0.002;  // of the mesh's area: smaller regions and patterns say little
+constexpr std::size_t kMaxRegions = 300;
+constexpr double kMinNoise = 3e-4;     // of the diagonal
+constexpr double kMinTurned = 0.006;   // of the area, that speaks for a rotation of pieces
+constexpr double kMinMirrored = 0.02;  // of the area, that speaks for a mirror of pieces
+constexpr double kLongest = 1e8;       // seconds, which a clock can add
+constexpr double kMinSeconds = 1;      // for the whole
+constexpr double kOfDetection = 0.6;   // of the time, where what is found is to be carried to a finer mesh
 constexpr int kDetectSamples = 6000;
-constexpr std::size_t kMostSegments = 1500;  // beyond, creases say nothing: soup, or noise;
-constexpr std::size_t kMostOfComponent = 4;  // unless that many come of as many components
+constexpr std::size_t kMaxSegments = 1500;  // beyond, creases say nothing: soup, or noise;
+constexpr std::size_t kMaxOfComponent = 4;  // unless that many come of as many components
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -94,7 +94,7 @@ class Detector {
 
   Findings run() {
     // The whole's own group tells most; it gets its time even where the mesh took long to prepare.
-    limit(Clock::now(), std::max(options_.time_budget, kLeastSeconds));
+    limit(Clock::now(), std::max(options_.time_budget, kMinSeconds));
     in_time("whole", [this] { find_whole(); });
     limit(start_, options_.time_budget);
     in_time("parts", [this] { find_in_components(); });
@@ -106,7 +106,7 @@ class Detector {
       drop_lesser_groups(prepared_, options_.tolerance, regions_, options_.explanation);
       drop_some_of_rows(prepared_, options_.tolerance, context_, regions_, options_.explanation);
       complete_regions(prepared_, *prepared_.index,
-                       {options_.tolerance, kMostRegions, options_.explanation, [this] { return late(1); }}, context_,
+                       {options_.tolerance, kMaxRegions, options_.explanation, [this] { return late(1); }}, context_,
                        regions_);
     }
     drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
@@ -209,12 +209,11 @@ class Detector {
   }
 
   PartRegionOptions part_options(bool pieces) const {
-    return {options_.tolerance,        kLeastShare,       pieces, options_.explanation,
-            [this] { return late(); }, motions_of_whole()};
+    return {options_.tolerance, kMinShare, pieces, options_.explanation, [this] { return late(); }, motions_of_whole()};
   }
 
   ComponentSurvey survey_of(const PreparedMesh& partition) const {
-    return survey_components(partition, options_.tolerance, kLeastShare, limited_);
+    return survey_components(partition, options_.tolerance, kMinShare, limited_);
   }
 
   PartRegions find_in_parts(const PreparedMesh& partition, ComponentSurvey survey, bool pieces) const {
@@ -228,12 +227,12 @@ class Detector {
     PreparedMesh partition = prepared_;
     partition.components = segments_.faces.empty() ? smooth_segments(prepared_) : std::move(segments_);
     const std::size_t count = partition.components.faces.size();
-    if (count > std::max(kMostSegments, kMostOfComponent * prepared_.components.faces.size())) return;
+    if (count > std::max(kMaxSegments, kMaxOfComponent * prepared_.components.faces.size())) return;
     // Of one surface what lines say is asked first: pieces have little to add to it. Of parts that no other equals,
     // such as what a cut left of one of several, they say what still turns and mirrors with the others.
     const bool fine_triangles = has_fine_triangles();
     const bool fine = fine_triangles && one_surface();
-    const bool about_lines = fine || (fine_triangles && single_area_ >= kLeastTurned * prepared_.area);
+    const bool about_lines = fine || (fine_triangles && single_area_ >= kMinTurned * prepared_.area);
     const bool cut = count != prepared_.components.faces.size();
     if (fine) {
       for (FoundRegion& region : regions_) region.of_pieces = true;  // where components end is chance there
@@ -306,7 +305,7 @@ class Detector {
     std::vector<Line> axes = axes_of_regions();
     for (const CandidateLine& axis : lines.axes) axes.push_back(axis.line);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
-    LineRegionOptions options{kLeastTurned, options_.explanation, [this] { return late(); }, motions_of_whole()};
+    LineRegionOptions options{kMinTurned, options_.explanation, [this] { return late(); }, motions_of_whole()};
     axes = distinct_lines(axes);
     AxisRegions about = find_axis_regions(surface, *prepared_.index, axes, regions_, options, limited_);
     add_of_pieces(std::move(about.regions));
@@ -314,7 +313,7 @@ class Detector {
     add_of_pieces(
         find_wider_subgroups(surface, *prepared_.index, regions_, about.turning, regions_, options, limited_));
     if (late()) return;
-    options.least_share = kLeastMirrored;
+    options.least_share = kMinMirrored;
     std::vector<CandidateLine> planes = mirror_planes(surface, about.turning, options.least_share, limited_);
     planes.insert(planes.end(), lines.planes.begin(), lines.planes.end());
     add_of_pieces(find_plane_regions(surface, *prepared_.index, planes, about.turning, regions_, options, limited_));
@@ -375,7 +374,7 @@ class Detector {
     fitted_axes_ = revolution_axes(partition, options_.tolerance, limited_);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
-    RevolutionRegionOptions turned{options_.tolerance,        kLeastShare,       fine, options_.explanation,
+    RevolutionRegionOptions turned{options_.tolerance,        kMinShare,         fine, options_.explanation,
                                    [this] { return late(); }, motions_of_whole()};
     RevolutionRegions found =
         find_revolution_regions(partition, *prepared_.index, distinct, regions_, turned, limited_);
@@ -434,8 +433,8 @@ void drop_made_by_smoothing(const NoiseCheck& check, Explanation* explanation, s
 }
 
 // A coarse mesh to detect on in place of a fine one; nothing where the mesh is not as fine as that.
-std::optional<CoarseMesh> stand_in_for(const PreparedMesh& fine, double noise, const DetectOptions& options,
-                                       const RunContext& context) {
+std::optional<CoarseMesh> proxy_mesh_of(const PreparedMesh& fine, double noise, const DetectOptions& options,
+                                        const RunContext& context) {
   const Eigen::Index count = fine.mesh.faces.rows();
   if (options.simplify_above_faces == 0 || count < options.simplify_above_faces) return std::nullopt;
   context.progress("coarse mesh", 0);
@@ -469,23 +468,23 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
   std::optional<PreparedMesh> given;  // where there is noise: before it was taken out
   double noise = noise_of(prepared);
-  if (noise >= kLeastNoise) {
+  if (noise >= kMinNoise) {
     given = prepared;
     take_noise_out(prepared, noise, options.explanation, context);
   } else {
     noise = 0;
   }
   Findings found;
-  if (const std::optional<CoarseMesh> coarse = stand_in_for(prepared, noise, options, context)) {
-    const PreparedMesh stand_in = prepare(coarse->mesh);
+  if (const std::optional<CoarseMesh> coarse = proxy_mesh_of(prepared, noise, options, context)) {
+    const PreparedMesh proxy = prepare(coarse->mesh);
     // Where creases end within the surface is known to the fine mesh only.
-    Components segments = carried_pieces(smooth_segments(prepared), prepared, *coarse);
+    Components segments = transferred_pieces(smooth_segments(prepared), prepared, *coarse);
     DetectOptions on_coarse = options;
     on_coarse.time_budget *= kOfDetection;
-    found = Detector(stand_in, std::move(segments), on_coarse, start, context).run();
+    found = Detector(proxy, std::move(segments), on_coarse, start, context).run();
     const auto late = [&](double share) { return spent(options, start, share); };
-    found = carried_back(prepared, *coarse, stand_in, std::move(found),
-                         {options.tolerance, options.samples, options.explanation, late}, context);
+    found = transferred(prepared, *coarse, proxy, std::move(found),
+                        {options.tolerance, options.samples, options.explanation, late}, context);
   } else {
     found = Detector(prepared, {}, options, start, context).run();
   }
@@ -497,7 +496,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
   const auto late = [&] { return spent(options, start, 1); };
   if (!late()) {
-    const PartRegionOptions parts{options.tolerance, kLeastShare, false, options.explanation, late, {}};
+    const PartRegionOptions parts{options.tolerance, kMinShare, false, options.explanation, late, {}};
     std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),
                       std::back_inserter(found.patterns));
   }

@@ -24,14 +24,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostKept = 20000;
-constexpr double kSampled = 0.6;        // radius of the surfels that carry samples, spacings
-constexpr double kCovering = 2.0;       // and of those that cover the surface
-constexpr double kLeastCluster = 0.02;  // of the points: smaller clusters say little
-constexpr double kLeastShare = 0.15;    // of a cluster: smaller surfaces of revolution say little
-constexpr double kMostShare = 0.5;      // of several clusters together
-constexpr double kCovered = 0.8;        // of some points: nothing new in them
-constexpr int kMostRevolutions = 4;     // of one cluster
+constexpr int kMaxKept = 20000;
+constexpr double kSampled = 0.6;      // radius of the surfels that carry samples, spacings
+constexpr double kCovering = 2.0;     // and of those that cover the surface
+constexpr double kMinCluster = 0.02;  // of the points: smaller clusters say little
+constexpr double kMinShare = 0.15;    // of a cluster: smaller surfaces of revolution say little
+constexpr double kMaxShare = 0.5;     // of several clusters together
+constexpr double kCovered = 0.8;      // of some points: nothing new in them
+constexpr int kMaxRevolutions = 4;    // of one cluster
 
 // Per kept point whether normals nearby differ: there each says little.
 std::vector<char> creases(const PointSurface& surface) {
@@ -55,7 +55,7 @@ class PointDetector {
       : options_(options),
         context_(context),
         start_(std::chrono::steady_clock::now()),
-        surface_(prepare_points(scan, kMostKept, context)),
+        surface_(prepare_points(scan, kMaxKept, context)),
         tolerance_(std::min(0.1, std::max({options.tolerance, 2 * surface_.noise, 0.5 * surface_.spacing}))),
         prepared_(prepare(surfels(surface_, kSampled * surface_.spacing))),
         crease_(creases(surface_)),
@@ -84,14 +84,14 @@ class PointDetector {
     std::iota(all.begin(), all.end(), 0);
     std::vector<std::vector<int>> parts;
     for (const std::vector<int>& cluster : surface_.clusters) {
-      if (static_cast<double>(cluster.size()) >= kLeastCluster * static_cast<double>(all.size())) {
+      if (static_cast<double>(cluster.size()) >= kMinCluster * static_cast<double>(all.size())) {
         parts.push_back(cluster);
       }
     }
     // What strays from the only cluster says nothing.
-    if (parts.size() != 1) find_in(all, "whole", kMostShare, 1);
+    if (parts.size() != 1) find_in(all, "whole", kMaxShare, 1);
     for (std::size_t c = 0; c < parts.size() && !late(); ++c) {
-      find_in(parts[c], parts.size() == 1 ? "whole" : "cluster " + std::to_string(c), kLeastShare, kMostRevolutions);
+      find_in(parts[c], parts.size() == 1 ? "whole" : "cluster " + std::to_string(c), kMinShare, kMaxRevolutions);
       context_.progress("clusters", static_cast<double>(c + 1) / static_cast<double>(parts.size()));
     }
     annotation_ =

@@ -142,5 +142,24 @@ TEST_F(OrbifitDeform, LeavesRegionsOutInEveryCommandThatKeepsThem) {
   EXPECT_FALSE(kept.regions[0].parent);
 }
 
+TEST_F(OrbifitDeform, APageToEditInIsMadeWithTheSameBasis) {
+  const auto page = [&](const std::string& options) {
+    const ProgramResult result = program_.run("edit cube.ply cube.json -o page.html --json --quiet " + options);
+    EXPECT_EQ(result.code, 0) << result.errors;
+    return json::parse(result.output);
+  };
+  const json usual = page("");
+  EXPECT_EQ(usual["regions"], 1);
+  EXPECT_EQ(page("--without 0")["regions"], 0);
+  const json coarse = page("--samples 500 --mode fixed");
+  EXPECT_LT(coarse["samples"], usual["samples"]);
+  const ProgramResult basis = program_.run("subspace cube.ply cube.json --samples 500 --mode fixed --json --quiet");
+  ASSERT_EQ(basis.code, 0) << basis.errors;
+  EXPECT_EQ(coarse["samples"], json::parse(basis.output)["samples"]);
+  EXPECT_EQ(coarse["degrees_of_freedom"], json::parse(basis.output)["degrees_of_freedom"]);
+  EXPECT_EQ(program_.run("edit cube.ply cube.json -o page.html --without 3").code, 2);
+  EXPECT_EQ(program_.run("edit cube.ply cube.json -o page.html --radius -1").code, 2);
+}
+
 }  // namespace
 }  // namespace orbifit

@@ -95,12 +95,12 @@ TEST_P(CoarseMeshOf, KeepsComponentsAndStandsForEachFaceInItsOwn) {
   const CoarseMesh coarse = coarse_of(fine);
   const PreparedMesh prepared = prepare(coarse.mesh);
   ASSERT_EQ(prepared.components.faces.size(), fine.components.faces.size());
-  ASSERT_EQ(coarse.stand_in.size(), static_cast<std::size_t>(fine.mesh.faces.rows()));
+  ASSERT_EQ(coarse.proxy_face.size(), static_cast<std::size_t>(fine.mesh.faces.rows()));
   const SurfaceIndex surface(coarse.mesh);
-  for (std::size_t f = 0; f < coarse.stand_in.size(); ++f) {
-    const int stand_in = coarse.stand_in[f];
-    ASSERT_TRUE(stand_in >= 0 && stand_in < coarse.mesh.faces.rows());
-    EXPECT_EQ(prepared.components.component_of_face[static_cast<std::size_t>(stand_in)],
+  for (std::size_t f = 0; f < coarse.proxy_face.size(); ++f) {
+    const int proxy_face = coarse.proxy_face[f];
+    ASSERT_TRUE(proxy_face >= 0 && proxy_face < coarse.mesh.faces.rows());
+    EXPECT_EQ(prepared.components.component_of_face[static_cast<std::size_t>(proxy_face)],
               fine.components.component_of_face[f]);
   }
 }
@@ -114,7 +114,7 @@ TEST_P(CoarseMeshOf, DoesNotDependOnThreads) {
   ASSERT_TRUE(other.has_value());
   EXPECT_EQ(one.mesh.vertices, other->mesh.vertices);
   EXPECT_EQ(one.mesh.faces, other->mesh.faces);
-  EXPECT_EQ(one.stand_in, other->stand_in);
+  EXPECT_EQ(one.proxy_face, other->proxy_face);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CoarseMeshOf, testing::ValuesIn(shapes()),
@@ -126,12 +126,12 @@ TEST(CoarseMesh, KeepsTheSidesOfAPlateApart) {
   const CoarseMesh coarse = coarse_of(fine);
   const double half = height / 2 / fine.input_of_normalised.scale;
   const Points normals = face_normals(coarse.mesh);
-  for (std::size_t f = 0; f < coarse.stand_in.size(); ++f) {
+  for (std::size_t f = 0; f < coarse.proxy_face.size(); ++f) {
     const double up = fine.normals(static_cast<Eigen::Index>(f), 2);
     if (std::abs(up) < 0.5) continue;
-    EXPECT_GT(up * normals(coarse.stand_in[f], 2), 0.9);
+    EXPECT_GT(up * normals(coarse.proxy_face[f], 2), 0.9);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(coarse.mesh.vertices(coarse.mesh.faces(coarse.stand_in[f], k), 2), up > 0 ? half : -half, 1e-9);
+      EXPECT_NEAR(coarse.mesh.vertices(coarse.mesh.faces(coarse.proxy_face[f], k), 2), up > 0 ? half : -half, 1e-9);
     }
   }
 }
@@ -170,7 +170,7 @@ TEST(CoarseMesh, KeepsFacesThatAreNone) {
   mesh.faces.row(count) << 0, 0, 1;
   const CoarseMesh coarse = coarse_of(prepare(mesh));
   EXPECT_EQ(prepare(coarse.mesh).components.faces.size(), 2U);
-  EXPECT_EQ(coarse.stand_in.back(), coarse.mesh.faces.rows() - 1);
+  EXPECT_EQ(coarse.proxy_face.back(), coarse.mesh.faces.rows() - 1);
 }
 
 TEST(CarriedPieces, AreThoseOfTheFacesTheyStandFor) {
@@ -185,7 +185,7 @@ TEST(CarriedPieces, AreThoseOfTheFacesTheyStandFor) {
     sides.component_of_face.push_back(side);
     sides.faces[static_cast<std::size_t>(side)].push_back(f);
   }
-  const Components carried = carried_pieces(sides, fine, coarse);
+  const Components carried = transferred_pieces(sides, fine, coarse);
   ASSERT_EQ(carried.faces.size(), 6U);
   const Points normals = face_normals(coarse.mesh);
   for (std::size_t side = 0; side < 6; ++side) {

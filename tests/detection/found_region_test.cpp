@@ -263,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, Sheet, testing::Values(24, 120));
 
 struct Coincidence {
   const char* name;
-  double area, misfit, area_around, misfit_around;
+  double area, residual, area_around, residual_around;
   bool expected;
 
   friend void PrintTo(const Coincidence& each, std::ostream* stream) { *stream << each.name; }
@@ -273,7 +273,7 @@ class ByCoincidence : public testing::TestWithParam<Coincidence> {};
 
 TEST_P(ByCoincidence, IsASmallPartFarLessExactThanWhatIsAround) {
   const Coincidence& each = GetParam();
-  EXPECT_EQ(by_coincidence(each.area, each.misfit, each.area_around, each.misfit_around, test::kTolerance),
+  EXPECT_EQ(by_coincidence(each.area, each.residual, each.area_around, each.residual_around, test::kTolerance),
             each.expected);
 }
 

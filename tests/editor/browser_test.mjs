@@ -50,6 +50,7 @@ const picture = async name => {
 const settled = async () => {
   await page.waitForFunction(() => !globalThis.orbifit.editor.busy, null, { timeout: 60000 });
   await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForFunction(() => globalThis.orbifit.editor.isMeasured, null, { timeout: 60000 });
 };
 /** All that is asked of the page's editor. */
 const ask = (call, argument) => page.evaluate(call, argument);
@@ -73,32 +74,51 @@ const colours = await ask(() => {
 });
 check(colours > 50, `the picture is not blank: ${colours} colours, ${first.length} bytes`);
 
-// A point of a front leg that is seen.
-const seen = await ask(() => {
+/** A point of the picture, looked for from the bottom or the top, whose orbit has so many points. */
+const find = (fromTop, images) => ask(({ fromTop, images }) => {
   const { editor, view } = globalThis.orbifit;
   const box = document.getElementById("canvas").getBoundingClientRect();
   let best = null;
-  for (let y = box.bottom - 40; y > box.top + box.height / 2 && !best; y -= 6) {
+  for (let row = 40; row < box.height / 2 && !best; row += 6) {
+    const y = fromTop ? box.top + row : box.bottom - row;
     for (let x = box.left + 40; x < box.right - 40 && !best; x += 6) {
       const pick = editor.core.pick(view.ray(x, y));
-      if (pick && editor.core.orbit(pick, 0.02).length >= 12) best = [x + 3, y - 3];
+      if (pick && editor.core.orbit(pick, 0.02).length >= 3 * images) best = [x, y];
     }
   }
   editor.core.clearOrbit();
   return best;
-});
+}, { fromTop, images });
+
+// A point of a front leg that is seen, and of the back, which is held: with one handle alone the chair moves as a whole.
+const seen = await find(false, 4);
+const back = await find(true, 2);
 check(seen !== null, "a foot is seen");
+// The largest region that takes the leg to the others.
+const id = await ask(([x, y]) => {
+  const { editor, view } = globalThis.orbifit;
+  const faces = region => region.faces.reduce((sum, run) => sum + run[1], 0);
+  return editor.core.regionsOf(editor.core.pick(view.ray(x, y)).face)
+    .map(number => editor.regions.find(region => region.id === editor.idOf(number)))
+    .filter(region => region.elements.length >= 8).sort((a, b) => faces(b) - faces(a))[0].id;
+}, seen);
 await page.mouse.move(...seen);
 await settled();
 const hover = await ask(() => ({ dots: globalThis.orbifit.view.orbitDots.count, planes: globalThis.orbifit.view.overlay.children.length }));
 check(hover.dots >= 2 && hover.planes >= 1, `hovering lights up the orbit: ${hover.dots} points, elements of ${hover.planes} regions`);
 await picture("hover");
 
+const handles = () => ask(() => structuredClone(globalThis.orbifit.editor.state.handles));
+await page.mouse.move(...back);
+await settled();
+await page.keyboard.press("p");
+await settled();
+check((await handles()).length === 1 && (await handles())[0].pin, "P pins what is under the cursor");
 await page.mouse.click(...seen);
 await settled();
-check(await ask(() => globalThis.orbifit.editor.state.handles.length) === 1, "a click places a handle");
+check((await handles()).length === 2, "a click places a handle");
 const before = await shown();
-const handleAt = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(0)));
+const handleAt = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(1)));
 const goal = [handleAt[0] + 70, handleAt[1] + 25];
 await page.mouse.move(...handleAt);
 await page.mouse.down();
@@ -106,7 +126,7 @@ await page.mouse.move(handleAt[0] + 30, handleAt[1] + 10, { steps: 3 });
 await page.mouse.move(...goal, { steps: 3 });
 await page.mouse.up();
 await settled();
-const reached = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(0)));
+const reached = await ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(1)));
 const missed = Math.hypot(reached[0] - goal[0], reached[1] - goal[1]);
 check(missed < 3, `a drag takes the handle to ${missed.toFixed(2)} pixels from the cursor`);
 const dragged = await shown();
@@ -141,6 +161,93 @@ const exported = plyVertices(await download("save-ply"));
 check(largestDifference(exported, dragged) === 0, "the mesh that is exported is the one that is shown");
 for (const ending of ["obj", "glb"]) check((await download(`save-${ending}`)).length > 1000, `exports ${ending}`);
 
+writeFileSync(join(folder, "out.obj"), await download("save-obj"));
+orbifit("convert", "out.obj", "obj.ply", "--quiet");
+check(largestDifference(plyFile("obj.ply"), dragged) / size < 1e-9, "as OBJ too");
+
+// Keys. What they do is taken back, bit for bit.
+const same = async what => check(largestDifference(await shown(), dragged) === 0, what);
+const undo = async () => { await page.keyboard.press("Control+z"); await settled(); };
+const handleNow = async () => (await handles())[1];
+const place = () => ask(() => globalThis.orbifit.view.screen(globalThis.orbifit.editor.target(1)));
+const start = await handleNow();
+const drag = async (keys, press) => {
+  const at = await place();
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  await page.mouse.move(at[0] + 5, at[1] - 5);
+  for (const key of press) await page.keyboard.press(key);
+  for (const key of keys) await page.keyboard.down(key);
+  await page.mouse.move(at[0] + 40, at[1] - 60, { steps: 2 });
+  const result = await handleNow();
+  for (const key of keys) await page.keyboard.up(key);
+  return result;
+};
+const way = handle => handle.translation.map((entry, k) => (entry - start.translation[k]) / size);
+const kept = way(await drag([], ["z"]));
+check(Math.abs(kept[0]) + Math.abs(kept[1]) === 0 && Math.abs(kept[2]) > 0.01, "Z keeps a drag to its axis");
+await page.keyboard.press("Escape");
+await page.mouse.up();
+await settled();
+await same("Esc cancels a drag");
+const snapped = way(await drag(["Shift"], []));
+await page.mouse.up();
+await settled();
+check(snapped.some(entry => Math.abs(entry) > 0.01) &&
+      snapped.every(entry => Math.abs(entry / 0.02 - Math.round(entry / 0.02)) < 1e-9), "Shift snaps");
+await undo();
+await same("undo takes a drag back");
+
+const gizmo = () => ask(() => {
+  const { gizmo } = globalThis.orbifit.view;
+  return { on: Boolean(gizmo.object), mode: gizmo.mode, axis: gizmo.axis };
+});
+await page.mouse.click(...await place());
+for (const [key, mode] of [["e", "rotate"], ["r", "scale"], ["w", "translate"]]) {
+  await page.keyboard.press(key);
+  await settled();
+  const now = await gizmo();
+  check(now.on && now.mode === mode, `${key.toUpperCase()}: the gizmo is to ${mode}`);
+  await picture(`gizmo-${mode}`);
+}
+/** Where along an axis from the handle the gizmo is grasped. */
+const grasp = async axis => {
+  for (let share = 0.02; share < 0.3; share += 0.01) {
+    const at = await ask(({ axis, share }) => {
+      const { editor, view } = globalThis.orbifit;
+      const point = editor.target(1);
+      point[axis] += share;
+      return view.screen(point);
+    }, { axis, share });
+    await page.mouse.move(...at);
+    if ((await gizmo()).axis === "XYZ"[axis]) return at;
+  }
+  return null;
+};
+const arrow = await grasp(0);
+check(arrow !== null, "the gizmo's X is grasped");
+if (arrow) {
+  await page.mouse.down();
+  await page.mouse.move(arrow[0] + 30, arrow[1] + 10, { steps: 3 });
+  const along = way(await handleNow());
+  check(Math.abs(along[0]) > 0.005 && Math.abs(along[1]) + Math.abs(along[2]) < 1e-12, "it moves the handle along x");
+  await page.keyboard.press("Escape");
+  await page.mouse.up();
+  await settled();
+  await same("Esc cancels that too");
+}
+await page.keyboard.press("w");
+await page.mouse.click(...await place());
+await page.keyboard.press("Delete");
+await settled();
+check((await handles()).length === 1, "Del removes a handle");
+await undo();
+await same("undo brings it back");
+await page.keyboard.press("?");
+check(await page.isVisible("#keys"), "? lists the keys");
+await picture("keys");
+await page.keyboard.press("Escape");
+
 // Comparison.
 await page.click("[data-do=compare]");
 await settled();
@@ -153,17 +260,17 @@ await settled();
 // Regions off: what follows changes, and the edit of the rest is what the native program does without them.
 const boxes = await page.$$(".region input[type=checkbox]");
 check(boxes.length > 0, `${boxes.length} regions are listed`);
-const ids = await ask(() => [...document.querySelectorAll(".region")].map(row => Number(row.dataset.id)));
-await page.hover(".region");
+const row = page.locator(`.region[data-id="${id}"]`);
+await row.hover();
 await settled();
 await picture("region");
-await boxes[0].click();
+await row.locator("input[type=checkbox]").click();
 await settled();
 const other = await shown();
 check(largestDifference(other, dragged) > 0.003 * size, "switching a region off changes what follows");
 const annotation = await download("save-annotation");
 writeFileSync(join(folder, "kept.json"), annotation);
-check(!JSON.parse(annotation).regions.some(region => region.id === ids[0]), "the annotation that is downloaded lacks it");
+check(!JSON.parse(annotation).regions.some(region => region.id === id), "the annotation that is downloaded lacks it");
 orbifit("deform", "chair.ply", "kept.json", "--handles", "handles.json", "-o", "without.ply", "--quiet");
 const without = largestDifference(plyFile("without.ply"), other) / size;
 check(without < 1e-6, `that replays too, to ${without.toExponential(1)} of the diagonal, from a basis built in the page`);
@@ -171,12 +278,52 @@ await page.keyboard.press("Control+z");
 await settled();
 check(largestDifference(await shown(), dragged) === 0, "undo switches it on again, bit for bit");
 
+
+// Regions: rename, delete, keep only those that are on; a mode; a recorded edit.
+const regions = () => ask(() => globalThis.orbifit.editor.regions.map(region => [region.id, region.name]));
+const listed = await regions();
+await row.locator(".name").dblclick();
+await page.keyboard.type("four legs");
+await page.keyboard.press("Enter");
+await settled();
+check((await regions()).some(([other, name]) => other === id && name === "four legs"), "a region is renamed");
+check(JSON.parse(await download("save-annotation")).regions.some(region => region.name === "four legs"), "in the annotation too");
+while (JSON.stringify(await regions()) !== JSON.stringify(listed)) await undo();
+await same("undo gives it its name back");
+await row.hover();
+await row.locator(".delete").click();
+await settled();
+check((await regions()).length === listed.length - 1, "a region is deleted");
+await undo();
+await row.locator("input[type=checkbox]").click();
+await settled();
+await page.click("[data-do=keep-only]");
+await settled();
+check((await regions()).length === listed.length - 1, "those that are off are forgotten");
+await undo();
+await undo();
+await same("undo brings all back");
+await page.selectOption("#mode", "0");
+await settled();
+check(await ask(() => globalThis.orbifit.editor.info.mode) === "fixed", "groups are fixed");
+await undo();
+await page.click("[data-do=reset]");
+await settled();
+check(largestDifference(await shown(), rest) === 0, "reset shows the mesh as it is");
+
 // Bad input: a message, and nothing lost.
 const drop = (name, text) => ask(({ name, text }) => {
   const data = new DataTransfer();
   data.items.add(new File([text], name));
   window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
 }, { name, text });
+await drop("handles.json", readFileSync(join(folder, "handles.json"), "utf8"));
+await page.waitForFunction(() => globalThis.orbifit.editor.state.handles.length === 2, null, { timeout: 20000 });
+await settled();
+check(largestDifference(await shown(), dragged) / size < 1e-9, "a file of handles replays the edit");
+await undo();
+await undo();
+await same("undo takes reset and replay back");
 const refusal = async (name, text, pattern) => {
   await drop(name, text);
   await page.waitForFunction(() => !document.getElementById("message").hidden, null, { timeout: 20000 });
@@ -204,6 +351,25 @@ check(fit.report.converged && fit.steps.length > 10 && fit.steps.at(-1).rms < fi
       `the fit converges, seen in ${fit.steps.length} steps: rms ${fit.steps[0].rms.toExponential(1)} to ${fit.report.rms.toExponential(1)}`);
 await picture("fit");
 
+// Another mesh with its annotation.
+await page.evaluate(({ mesh, annotation }) => {
+  const data = new DataTransfer();
+  data.items.add(new File([Uint8Array.from(atob(mesh), letter => letter.charCodeAt(0))], "wheel.ply"));
+  data.items.add(new File([annotation], "wheel.json"));
+  window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+}, { mesh: readFileSync(join(folder, "wheel.ply")).toString("base64"),
+     annotation: readFileSync(join(folder, "wheel.json"), "utf8") });
+await page.waitForFunction(() => globalThis.orbifit.editor.meshName === "wheel.ply" &&
+                                 globalThis.orbifit.editor.regions.length > 0, null, { timeout: 60000 });
+await settled();
+check(largestDifference(await shown(), plyFile("wheel.ply")) === 0, "another mesh is opened with its annotation");
+const middle = await find(true, 3);
+if (middle) {
+  await page.mouse.move(...middle);
+  await settled();
+}
+await picture("wheel");
+
 // Other sizes and colours.
 if (pictures) {
   await page.click("[data-do=theme]");
@@ -212,6 +378,9 @@ if (pictures) {
   await page.setViewportSize({ width: 820, height: 1180 });
   await settled();
   await picture("tablet");
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await settled();
+  await picture("laptop");
 }
 check(complaints.length === 0, `no errors or warnings until the end ${complaints.join("; ")}`);
 

@@ -25,8 +25,8 @@ class EditorCoreTest : public testing::Test {
     write_mesh(folder_.file("chair.ply"), chair_.mesh);
     write_annotation(folder_.file("chair.json"), chair_.truth);
     ASSERT_EQ(editor_read_mesh(session_, path("chair.ply").c_str()), 0) << editor_error();
-    ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str()), 0) << editor_error();
-    ASSERT_EQ(editor_build_basis(session_, 1, 0), 0) << editor_error();
+    ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str(), 0), 0) << editor_error();
+    ASSERT_EQ(editor_build_basis(session_, 1, 0, 0, 0, 0), 0) << editor_error();
   }
   void TearDown() override { editor_free(session_); }
 
@@ -49,11 +49,11 @@ class EditorCoreTest : public testing::Test {
     ASSERT_EQ(editor_solve(session_, side, motion.data(), 2, 10, record.data()), 0) << editor_error();
   }
   double worst(int kind) {
-    std::vector<double> numbers(3 * chair_.truth.regions.size() + 300);
+    std::vector<double> numbers(2 * chair_.truth.regions.size());
     const int regions = editor_residuals(session_, kind, numbers.data());
     EXPECT_GT(regions, 0) << editor_error();
     double result = 0;
-    for (int r = 0; r < regions; ++r) result = std::max(result, numbers[3 * static_cast<std::size_t>(r) + 1]);
+    for (int r = 0; r < regions; ++r) result = std::max(result, numbers[2 * static_cast<std::size_t>(r) + 1]);
     return result;
   }
 
@@ -62,8 +62,7 @@ class EditorCoreTest : public testing::Test {
   EditorSession* session_ = editor_new();
 };
 
-// Does not pass yet: where images of vertices lie between vertices the readout measures the triangles as well.
-TEST_F(EditorCoreTest, DISABLED_AnEditIsSymmetricToRoundingAndOneWithoutSymmetriesIsNot) {
+TEST_F(EditorCoreTest, AnEditIsSymmetricToRoundingAndOneWithoutSymmetriesIsNot) {
   ASSERT_EQ(editor_compare(session_, 1), 0) << editor_error();
   move_foot(0.05);
   solve(1, 0.05);
@@ -88,16 +87,15 @@ TEST_F(EditorCoreTest, ABasisThatIsReadGivesTheSameBits) {
   move_foot(0.05);
   const std::vector<double> built = shown();
   ASSERT_EQ(editor_write_basis(session_, path("basis").c_str()), 0) << editor_error();
-  ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str()), 0);
+  ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str(), 0), 0);
   ASSERT_EQ(editor_read_basis(session_, path("basis").c_str()), 0) << editor_error();
   solve(0, 0.05);
   EXPECT_EQ(shown(), built);
 }
 
-// Does not pass yet: the ray misses.
-TEST_F(EditorCoreTest, DISABLED_ARayMeetsTheSurfaceAndItsPointHasAnOrbit) {
+TEST_F(EditorCoreTest, ARayMeetsTheSurfaceAndItsPointHasAnOrbit) {
   // From below, onto a foot: the chair's legs are images of one another.
-  const Eigen::Vector3d foot(0.23, 0.23, 0);
+  const Eigen::Vector3d foot(0.196, 0.196, 0);
   const auto info = nlohmann::json::parse(editor_info(session_));
   const Eigen::Vector3d centre(info["centre"][0], info["centre"][1], info["centre"][2]);
   const Eigen::Vector3d origin = (foot - centre) / info["diagonal"].get<double>() - Eigen::Vector3d(0, 0, 2);
@@ -141,7 +139,7 @@ TEST_F(EditorCoreTest, RefusesWithoutLosingWhatThereIs) {
   EXPECT_LT(editor_read_mesh(session_, path("broken.ply").c_str()), 0);
   EXPECT_NE(std::string(editor_error()).find("broken.ply"), std::string::npos) << editor_error();
   write_annotation(folder_.file("other.json"), generate("wheel").truth);
-  EXPECT_LT(editor_read_annotation(session_, path("other.json").c_str()), 0);
+  EXPECT_LT(editor_read_annotation(session_, path("other.json").c_str(), 0), 0);
   folder_.write("handles.json", R"({"handles": [{"centre": [9, 9, 9], "radius": 0.01}]})");
   EXPECT_LT(editor_set_handles(session_, path("handles.json").c_str()), 0);
   EXPECT_EQ(shown(), before);
@@ -149,22 +147,22 @@ TEST_F(EditorCoreTest, RefusesWithoutLosingWhatThereIs) {
   EXPECT_EQ(shown(), before);
 }
 
-// Does not pass yet: the residuals do not follow the slider.
-TEST_F(EditorCoreTest, DISABLED_TheSliderGoesFromTheMeshToItsSymmetricShape) {
+TEST_F(EditorCoreTest, TheSliderGoesFromTheMeshToItsSymmetricShape) {
   Mesh uneven = chair_.mesh;
-  for (Eigen::Index v = 0; v < uneven.vertices.rows(); ++v) uneven.vertices(v, 2) += 1e-3 * std::sin(double(v));
+  constexpr double kUneven = 3e-4;  // of the chair's 0.94 m: far less than its vertices lie apart, at bevels too
+  for (Eigen::Index v = 0; v < uneven.vertices.rows(); ++v) uneven.vertices(v, 2) += kUneven * std::sin(double(v));
   write_mesh(folder_.file("uneven.ply"), uneven);
   SymmetryAnnotation annotation = chair_.truth;
   annotation.mesh_diagonal = diagonal(uneven.vertices);
   write_annotation(folder_.file("uneven.json"), annotation);
   ASSERT_EQ(editor_read_mesh(session_, path("uneven.ply").c_str()), 0) << editor_error();
-  ASSERT_EQ(editor_read_annotation(session_, path("uneven.json").c_str()), 0) << editor_error();
+  ASSERT_EQ(editor_read_annotation(session_, path("uneven.json").c_str(), 0), 0) << editor_error();
   const double before = worst(2);
   ASSERT_NE(editor_symmetrize(session_), nullptr) << editor_error();
   ASSERT_EQ(editor_blend(session_, 0.5), 0);
   const double half = worst(2);
   ASSERT_EQ(editor_blend(session_, 1), 0);
-  EXPECT_NEAR(half, before / 2, 0.2 * before);
+  EXPECT_NEAR(half, before / 2, 0.1 * before);
   EXPECT_LT(worst(2), 1e-9);
 }
 

@@ -53,8 +53,8 @@ for (const { name, mode, handles } of models) {
 
   const session = module._editor_new();
   expected(withFile(module._editor_read_mesh, session, mesh, readFileSync(join(folder, mesh))));
-  expected(withFile(module._editor_read_annotation, session, "a.json", readFileSync(join(folder, `${name}.json`))));
-  expected(module._editor_build_basis(session, modes.indexOf(mode), 0));
+  expected(withFile(module._editor_read_annotation, session, "a.json", readFileSync(join(folder, `${name}.json`)), 0));
+  expected(module._editor_build_basis(session, modes.indexOf(mode), 0, 0, 0, 0));
   expected(withFile(module._editor_set_handles, session, "handles.json", readFileSync(join(folder, "handles.json"))));
   const numbers = module._editor_allocate(8 * 1024);
   const motions = list.flatMap((handle, number) => {

@@ -54,7 +54,7 @@ TEST_P(MovingGroups, StandAtFirstAsTheyFloat) {
 
 // Each vertex is told where turned groups take it, in all three directions.
 TEST_P(MovingGroups, AreFoundAsTheyWereTurned) {
-  const CarriedRegions regions(subspace_);
+  const ConjugatedRegions regions(subspace_);
   ASSERT_GT(regions.freedom(), 0);
   Eigen::VectorXd angles(regions.freedom());
   for (double& angle : angles) angle = random_.uniform(-0.2, 0.2);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -104,6 +105,23 @@ TEST_P(Consistent, ComesBackAsItIs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Consistent, testing::Values("bar", "table", "chair", "armchair"));
+
+// However much is left out, nothing is when what is left is made consistent anew.
+class FarFromConsistent : public testing::TestWithParam<std::tuple<const char*, double>> {};
+
+TEST_P(FarFromConsistent, LosesAllThatItLosesAtOnce) {
+  const GeneratedModel model = generate(std::get<0>(GetParam()));
+  const ConsistentAnnotation once =
+      consistent_annotation(model.mesh, perturbed(model, std::get<1>(GetParam())), RunContext{});
+  const ConsistentAnnotation twice = consistent_annotation(model.mesh, once.annotation, RunContext{});
+  EXPECT_TRUE(twice.left_out.empty()) << said(twice);
+  EXPECT_EQ(twice.added, 0);
+  EXPECT_EQ(twice.annotation.regions.size(), once.annotation.regions.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, FarFromConsistent,
+                         testing::Combine(testing::Values("table", "chair", "armchair", "car", "wind_mill"),
+                                          testing::Values(2e-3, 5e-3, 1e-2, 3e-2)));
 
 TEST(ConsistentAnnotation, LeavesOutARegionThatClashesAndSaysSo) {
   const GeneratedModel model = generate("table");

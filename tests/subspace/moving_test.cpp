@@ -10,7 +10,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "base/random.h"
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 #include "subspaces.h"
 

@@ -18,7 +18,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "base/random.h"
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 #include "files/file.h"
 #include "io/section_file.h"
@@ -108,7 +108,7 @@ SubspaceState random_state_of(const Subspace& subspace) {
   Random random(23, "state");
   SubspaceState state;
   if (subspace->mode == GroupMode::moving) {
-    const CarriedRegions regions(subspace);
+    const ConjugatedRegions regions(subspace);
     const auto angle = [&] { return 0.2 * random.normal(); };
     const Eigen::VectorXd angles = Eigen::VectorXd::NullaryExpr(regions.freedom(), angle);
     const auto rotations = regions.rotations(regions.turned(regions.rest(), angles));

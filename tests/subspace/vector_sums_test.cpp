@@ -48,7 +48,7 @@ TEST(NeighbourSums, AreSumsOverNeighbours) {
   for (int i = 0; i < 60; ++i) {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     Eigen::Vector3d turned = Eigen::Vector3d::Zero();
-    double misfit = 0;
+    double residual = 0;
     double size = 0;
     for (const int j : energy.neighbours[static_cast<std::size_t>(i)]) {
       const Eigen::Vector3d edge = (samples.row(i) - samples.row(j)).transpose();
@@ -57,12 +57,12 @@ TEST(NeighbourSums, AreSumsOverNeighbours) {
           0.5 * (rotations[static_cast<std::size_t>(i)] + rotations[static_cast<std::size_t>(j)]) * edge;
       covariance += now * edge.transpose();
       turned += mean - edge;
-      misfit += (now - mean).squaredNorm();
+      residual += (now - mean).squaredNorm();
       size += edge.squaredNorm();
     }
     EXPECT_LT((sums.covariance(i, rows) - covariance).norm(), 1e-13);
     EXPECT_LT((sums.turned(i, matrices) - turned).norm(), 1e-13);
-    EXPECT_NEAR(sums.misfit(i, matrices, rows), misfit, 1e-13);
+    EXPECT_NEAR(sums.squared_residual(i, matrices, rows), residual, 1e-13);
     EXPECT_NEAR(sums.size(i), size, 1e-13);
   }
 }

@@ -106,8 +106,8 @@ int editor_read_mesh(EditorSession* session, const char* file) {
   return done([&] { session->read_mesh(file); });
 }
 
-int editor_read_annotation(EditorSession* session, const char* file) {
-  return done([&] { session->read_annotation(file); });
+int editor_read_annotation(EditorSession* session, const char* file, int consistent) {
+  return done([&] { session->read_annotation(file, consistent != 0); });
 }
 
 int editor_read_basis(EditorSession* session, const char* file) {
@@ -122,10 +122,18 @@ int editor_write_mesh(EditorSession* session, const char* file, int at_rest) {
   return done([&] { at_rest != 0 ? session->write_rest(file) : session->write_shown(file); });
 }
 
-int editor_build_basis(EditorSession* session, int mode, int samples) {
+int editor_build_basis(EditorSession* session, int mode, int lift, double radius, int samples, int sharp) {
   return done([&] {
     if (mode < 0 || mode > 2) throw orbifit::UsageError("mode: 0, 1 or 2");
-    session->build_basis(static_cast<orbifit::GroupMode>(mode), samples);
+    if (lift < 0 || lift > 1) throw orbifit::UsageError("lift: 0 or 1");
+    orbifit::SubspaceOptions options;
+    options.mode = static_cast<orbifit::GroupMode>(mode);
+    options.lift = lift == 0 ? orbifit::LiftKind::orbit : orbifit::LiftKind::paper;
+    options.radius = radius;
+    options.samples = samples;
+    options.sharp_features_first = sharp != 0;
+    options.validate();
+    session->build_basis(options);
   });
 }
 
@@ -231,19 +239,7 @@ int editor_compare(EditorSession* session, int on) {
 
 int editor_residuals(EditorSession* session, int kind, double* numbers) {
   return guarded(-1, [&] {
-    const auto answers = kind == 2 ? session->shape_residuals() : session->residuals(side_of(kind));
-    for (std::size_t r = 0; r < answers.size(); ++r) {
-      numbers[3 * r] = answers[r].residual.rms;
-      numbers[3 * r + 1] = answers[r].residual.max;
-      numbers[3 * r + 2] = answers[r].at_vertices ? 1 : 0;
-    }
-    return static_cast<int>(answers.size());
-  });
-}
-
-int editor_field_residuals(EditorSession* session, double* numbers) {
-  return guarded(-1, [&] {
-    const std::vector<orbifit::Residual> residuals = session->field_residuals();
+    const auto residuals = kind == 2 ? session->shape_residuals() : session->residuals(side_of(kind));
     for (std::size_t r = 0; r < residuals.size(); ++r) {
       numbers[2 * r] = residuals[r].rms;
       numbers[2 * r + 1] = residuals[r].max;

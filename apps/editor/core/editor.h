@@ -21,12 +21,14 @@ void editor_release(void* memory);
 
 /* Files of the virtual file system. */
 int editor_read_mesh(struct EditorSession* session, const char* file);
-int editor_read_annotation(struct EditorSession* session, const char* file);
+/* consistent: 1 where editor_annotation() gave it, in this session or another; it is then taken as it is. */
+int editor_read_annotation(struct EditorSession* session, const char* file, int consistent);
 int editor_read_basis(struct EditorSession* session, const char* file);
 int editor_write_basis(struct EditorSession* session, const char* file);
 int editor_write_mesh(struct EditorSession* session, const char* file, int at_rest);
-/* mode: 0 fixed, 1 floating, 2 moving; samples: 0 chooses. */
-int editor_build_basis(struct EditorSession* session, int mode, int samples);
+/* mode: 0 fixed, 1 floating, 2 moving; lift: 0 orbit, 1 paper; radius, mesh units, and samples: 0 chooses;
+   sharp: 1 places samples on sharp edges first. */
+int editor_build_basis(struct EditorSession* session, int mode, int lift, double radius, int samples, int sharp);
 /* The annotation as it is kept, as JSON. */
 const char* editor_annotation(struct EditorSession* session);
 /* Counts, sizes and the basis as JSON. */
@@ -51,11 +53,9 @@ int editor_solve(struct EditorSession* session, int side, const double* motions,
 int editor_rest(struct EditorSession* session);
 int editor_show(struct EditorSession* session, const double* vertices);
 int editor_compare(struct EditorSession* session, int on);
-/* 3 numbers a region: rms, max, 1 where images are vertices. kind: 0 of the deformation, 1 of the one without
+/* 2 numbers a region: rms and max, fractions of the diagonal. kind: 0 of the deformation, 1 of the one without
    symmetries, 2 of the shape shown. \return the number of regions */
 int editor_residuals(struct EditorSession* session, int kind, double* numbers);
-/* 2 numbers a region: rms, max; exact and slow. */
-int editor_field_residuals(struct EditorSession* session, double* numbers);
 /* 12 numbers: what carries the region's group. */
 int editor_carried(struct EditorSession* session, int region, double* motion);
 

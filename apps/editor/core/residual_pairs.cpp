@@ -1,7 +1,6 @@
 #include "residual_pairs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -14,117 +13,85 @@ constexpr std::size_t kPairs = 600;  // of a region, about
 
 }  // namespace
 
-ResidualPairs::ResidualPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const SymmetricImages& images) {
+ResidualPairs::ResidualPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const SymmetricImages& images)
+    : rest_(mesh), shape_(mesh) {
   const double size = diagonal(mesh.vertices);
   if (size > 0) size_ = size;
-  const double at_vertex = 1e-6 * size_;
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
-    const Region& region = annotation.regions[r];
+    const std::vector<int>& faces = faces_.emplace_back(annotation.regions[r].faces);
     const std::vector<Motion>& motions = images.motions(static_cast<int>(r));
-    const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
-    const SurfaceIndex surface = images.surface().part(region.faces);
-    parts_.push_back({pairs_.size(), motions_.size(), true});
+    const std::vector<int> vertices = vertices_of_faces(mesh, faces);
+    first_.push_back(pairs_.size());
     const std::size_t all = motions.size() * vertices.size();
-    const std::size_t step = std::max<std::size_t>(1, all / kPairs) | 1U;
-    const std::size_t first = motions_.size();
+    std::size_t step = std::max<std::size_t>(1, all / kPairs);
+    while (motions.size() > 1 && step % motions.size() == 0) ++step;  // would meet one motion only
+    const std::size_t first_motion = motions_.size();
     motions_.insert(motions_.end(), motions.begin(), motions.end());
     for (std::size_t k = 0; k < all; k += step) {
-      const int vertex = vertices[k / motions.size()];
-      const Motion& motion = motions[k % motions.size()];
-      const Eigen::Vector3d position = mesh.vertices.row(vertex);
-      const SurfaceIndex::Nearest nearest = surface.nearest(motion(position));
-      if (nearest.face < 0) continue;
-      Pair pair;
-      pair.vertex = vertex;
-      pair.motion = static_cast<int>(first + k % motions.size());
-      pair.weights = nearest.barycentric;
-      for (int c = 0; c < 3; ++c) pair.corners[static_cast<std::size_t>(c)] = mesh.faces(nearest.face, c);
-      // To the very vertex where there is one.
-      Eigen::Index corner = 0;
-      pair.weights.maxCoeff(&corner);
-      const Eigen::Vector3d met = mesh.vertices.row(pair.corners[static_cast<std::size_t>(corner)]);
-      if ((met - motion(position)).norm() <= at_vertex) {
-        pair.weights = Eigen::Vector3d::Unit(corner);
-      } else {
-        parts_.back().at_vertices = false;
-      }
-      pair.offset = image(mesh.vertices, pair) - motion(position);
-      pairs_.push_back(pair);
+      pairs_.push_back({vertices[k / motions.size()], static_cast<int>(first_motion + k % motions.size())});
     }
   }
-  parts_.push_back({pairs_.size(), motions_.size(), true});
+  first_.push_back(pairs_.size());
+  images_.resize(static_cast<Eigen::Index>(pairs_.size()), 3);
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const Eigen::Vector3d position = mesh.vertices.row(pairs_[i].vertex);
+    images_.row(static_cast<Eigen::Index>(i)) = motions_[static_cast<std::size_t>(pairs_[i].motion)](position);
+  }
 }
 
-Eigen::Vector3d ResidualPairs::image(const Points& vertices, const Pair& pair) const {
-  Eigen::Vector3d result = Eigen::Vector3d::Zero();
-  for (int c = 0; c < 3; ++c) {
-    // A weight of 0 is left out: its corner may be anywhere.
-    if (pair.weights[c] != 0) {
-      result += pair.weights[c] * vertices.row(pair.corners[static_cast<std::size_t>(c)]).transpose();
+// \param distance  (region, pair) -> mesh units
+template <class Distance>
+std::vector<Residual> ResidualPairs::measure(const Distance& distance) const {
+  std::vector<Residual> result;
+  for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
+    Residual& residual = result.emplace_back();
+    double squares = 0;
+    for (std::size_t i = first_[r]; i < first_[r + 1]; ++i) {
+      const double share = distance(r, i) / size_;
+      squares += share * share;
+      residual.max = std::max(residual.max, share);
     }
+    if (first_[r + 1] > first_[r]) residual.rms = std::sqrt(squares / static_cast<double>(first_[r + 1] - first_[r]));
   }
   return result;
 }
 
-// \param difference  (region, pair) -> vector
-template <class Difference>
-std::vector<ResidualPairs::Answer> ResidualPairs::measure(const Difference& difference) const {
-  std::vector<Answer> result;
-  for (std::size_t r = 0; r + 1 < parts_.size(); ++r) {
-    Answer answer;
-    answer.at_vertices = parts_[r].at_vertices;
-    const std::size_t begin = parts_[r].first, end = parts_[r + 1].first;
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const double squared = difference(r, pairs_[i]).squaredNorm();
-      sum += squared;
-      answer.residual.max = std::max(answer.residual.max, squared);
-    }
-    answer.residual.max = std::sqrt(answer.residual.max) / size_;
-    if (end > begin) answer.residual.rms = std::sqrt(sum / static_cast<double>(end - begin)) / size_;
-    result.push_back(answer);
-  }
-  return result;
-}
-
-std::vector<ResidualPairs::Answer> ResidualPairs::of_deformation(const Points& vertices,
-                                                                 const std::vector<Motion>& carried) const {
-  std::vector<Motion> motions = motions_;
-  for (std::size_t r = 0; r + 1 < parts_.size(); ++r) {
-    for (std::size_t m = parts_[r].first_motion; m < parts_[r + 1].first_motion; ++m) {
-      motions[m] = conjugate(carried[r], motions[m]);
-    }
-  }
-  return measure([&](std::size_t r, const Pair& pair) -> Eigen::Vector3d {
-    const Motion& motion = motions[static_cast<std::size_t>(pair.motion)];
-    const Eigen::Vector3d position = vertices.row(pair.vertex);
-    return image(vertices, pair) - motion(position) - carried[r].linear * pair.offset;
-  });
-}
-
-std::vector<ResidualPairs::Answer> ResidualPairs::of_free_deformation(const Points& vertices) const {
-  // y(g p) - g(y(p) - t) - t is least over t.
-  std::vector<Motion> carried(parts_.size());
-  for (std::size_t r = 0; r + 1 < parts_.size(); ++r) {
-    Eigen::Matrix3d system = 1e-12 * Eigen::Matrix3d::Identity();
+std::vector<Residual> ResidualPairs::of_displacement(const Points& vertices, const Points& displacements) const {
+  // y(g p) = g p + d(g p) is to be g(y(p) - t) + t: of d(g p) - G d(p) = (1 - G) t the least squares over t.
+  const auto gap = [&](std::size_t i) -> Eigen::Vector3d {
+    const Motion& motion = motions_[static_cast<std::size_t>(pairs_[i].motion)];
+    const Eigen::Vector3d moved = vertices.row(pairs_[i].vertex) - rest_.vertices.row(pairs_[i].vertex);
+    return displacements.row(static_cast<Eigen::Index>(i)).transpose() - motion.linear * moved;
+  };
+  const auto shift = [&](std::size_t i) -> Eigen::Matrix3d {
+    return Eigen::Matrix3d::Identity() - motions_[static_cast<std::size_t>(pairs_[i].motion)].linear;
+  };
+  std::vector<Eigen::Vector3d> carried;
+  for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
+    Eigen::Matrix3d system = 1e-12 * Eigen::Matrix3d::Identity();  // along a plane or an axis t is free
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (std::size_t i = parts_[r].first; i < parts_[r + 1].first; ++i) {
-      const Pair& pair = pairs_[i];
-      const Motion& motion = motions_[static_cast<std::size_t>(pair.motion)];
-      const Eigen::Matrix3d rows = Eigen::Matrix3d::Identity() - motion.linear;
-      const Eigen::Vector3d position = vertices.row(pair.vertex);
-      system += rows.transpose() * rows;
-      right += rows.transpose() * (image(vertices, pair) - motion(position) - pair.offset);
+    for (std::size_t i = first_[r]; i < first_[r + 1]; ++i) {
+      system += shift(i).transpose() * shift(i);
+      right += shift(i).transpose() * gap(i);
     }
-    carried[r].translation = system.ldlt().solve(right);
+    carried.emplace_back(system.ldlt().solve(right));
   }
-  return of_deformation(vertices, carried);
+  return measure([&](std::size_t r, std::size_t i) { return (gap(i) - shift(i) * carried[r]).norm(); });
 }
 
-std::vector<ResidualPairs::Answer> ResidualPairs::of_shape(const Points& vertices) const {
-  return measure([&](std::size_t, const Pair& pair) -> Eigen::Vector3d {
-    const Eigen::Vector3d position = vertices.row(pair.vertex);
-    return image(vertices, pair) - motions_[static_cast<std::size_t>(pair.motion)](position);
+std::vector<Residual> ResidualPairs::of_shape(const Points& vertices, const RunContext& context) {
+  shape_.vertices = vertices;
+  const bool first = surfaces_.empty();
+  for (std::size_t r = 0; r < faces_.size(); ++r) {
+    if (first) {
+      surfaces_.emplace_back(shape_, faces_[r]);
+    } else {
+      surfaces_[r].move(shape_, context);
+    }
+  }
+  return measure([&](std::size_t r, std::size_t i) {
+    const Eigen::Vector3d position = vertices.row(pairs_[i].vertex);
+    return surfaces_[r].nearest(motions_[static_cast<std::size_t>(pairs_[i].motion)](position)).distance;
   });
 }
 

@@ -5,57 +5,51 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
-#include "orbifit/subspace/subspace.h"
+#include "orbifit/model/run_context.h"
 
 #include "symmetric_images.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit::editor {
 
-/// How well a region is kept, quickly: pairs of a vertex and a surface point that one of the region's motions takes it
-/// to, compared by where they are. Where that point is a vertex, there is no error but the deformation's; elsewhere it
-/// lies between vertices, and the tessellation adds its own.
+/// How far shapes and fields that know of no symmetries are from symmetric: of each region some pairs of a vertex p and
+/// one of the region's motions g, evenly. Residuals are fractions of the diagonal, in the annotation's order.
 class ResidualPairs {
  public:
-  ResidualPairs() = default;
-  /// Of each region some pairs, evenly.
+  /// \param mesh  at rest, kept by reference
   ResidualPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const SymmetricImages& images);
+  ResidualPairs(const ResidualPairs&) = delete;
+  ResidualPairs& operator=(const ResidualPairs&) = delete;
 
-  struct Answer {
-    Residual residual;        ///< fractions of the diagonal
-    bool at_vertices = true;  ///< all images are vertices
-  };
+  /// The images g p of all pairs at rest, #P by 3.
+  const Points& images() const { return images_; }
 
-  /// How far a deformation is from symmetric: |y(g p) - g' y(p)| beyond the same at rest, g' being g carried along.
-  /// \param vertices  moved, #V by 3 \param carried  the motion that carries each region's group
-  std::vector<Answer> of_deformation(const Points& vertices, const std::vector<Motion>& carried) const;
+  /// How far a displacement y is from symmetric: |y(g p) - g' y(p)| less the same at rest, g' being g carried along by
+  /// the translation that suits the region best.
+  /// \param vertices  moved, #V by 3 \param displacements  at images(), #P by 3
+  std::vector<Residual> of_displacement(const Points& vertices, const Points& displacements) const;
 
-  /// The same without symmetries: groups may be carried along by the translation that suits them best.
-  std::vector<Answer> of_free_deformation(const Points& vertices) const;
-
-  /// How far a shape is from symmetric: |y(g p) - g y(p)|.
-  std::vector<Answer> of_shape(const Points& vertices) const;
+  /// How far a shape is from symmetric: distances of g p from the region's surface.
+  /// \param vertices  of the shape, #V by 3
+  std::vector<Residual> of_shape(const Points& vertices, const RunContext& context);
 
  private:
   struct Pair {
     int vertex;
-    std::array<int, 3> corners;  // of the face that the image lies in
-    Eigen::Vector3d weights;
-    int motion;              // in motions_
-    Eigen::Vector3d offset;  // at rest, y(g p) - g y(p)
+    int motion;  // in motions_
   };
-  struct Part {
-    std::size_t first = 0;         // of pairs_
-    std::size_t first_motion = 0;  // of motions_
-    bool at_vertices = true;
-  };
-  Eigen::Vector3d image(const Points& vertices, const Pair& pair) const;
-  template <class Difference>
-  std::vector<Answer> measure(const Difference& difference) const;
+  template <class Distance>
+  std::vector<Residual> measure(const Distance& distance) const;
 
+  const Mesh& rest_;
+  Mesh shape_;
   double size_ = 1;
   std::vector<Motion> motions_;
   std::vector<Pair> pairs_;
-  std::vector<Part> parts_;  // of each region, and the end
+  std::vector<std::size_t> first_;  // pair of each region, and their number
+  Points images_;
+  std::vector<std::vector<int>> faces_;  // of the regions
+  std::vector<MovingSurface> surfaces_;  // of the regions, made when a shape is measured first
 };
 
 }  // namespace orbifit::editor

@@ -15,6 +15,8 @@ namespace orbifit::editor {
 
 namespace {
 
+constexpr int kFieldPairs = 30;  // of each region: where images lie between vertices a pair takes a third of a ms
+
 using Clock = std::chrono::steady_clock;
 
 double milliseconds(Clock::time_point from, Clock::time_point to) {
@@ -37,8 +39,9 @@ void Session::read_mesh(const std::string& file) {
   marks_.assign(4 * symmetric_side_.display.vertices(), 0);
 }
 
-void Session::read_annotation(const std::string& file) {
-  annotation_ = made_consistent(mesh_, orbifit::read_annotation(file, mesh_), context);
+void Session::read_annotation(const std::string& file, bool consistent) {
+  SymmetryAnnotation annotation = orbifit::read_annotation(file, mesh_);
+  annotation_ = consistent ? std::move(annotation) : made_consistent(mesh_, annotation, context);
   forget_groups();
 }
 
@@ -69,10 +72,7 @@ void Session::read_basis(const std::string& file) {
   symmetric_side_.handles_set = false;
 }
 
-void Session::build_basis(GroupMode mode, int samples) {
-  SubspaceOptions options;
-  options.mode = mode;
-  options.samples = samples;
+void Session::build_basis(const SubspaceOptions& options) {
   auto subspace = std::make_unique<Subspace>(build_subspace(mesh_, annotation_, options, context));
   free_.reset();
   symmetric_side_.deformer.reset();
@@ -179,21 +179,18 @@ Motion Session::carried(int region) const {
   return region_motion(*edited.subspace, edited.state, region);
 }
 
-std::vector<ResidualPairs::Answer> Session::residuals(Side side) {
-  if (side == kFree) return pairs().of_free_deformation(need(side).vertices);
-  std::vector<Motion> motions;
-  for (std::size_t r = 0; r < annotation_.regions.size(); ++r) motions.push_back(carried(static_cast<int>(r)));
-  return pairs().of_deformation(need(side).vertices, motions);
-}
-
-std::vector<Residual> Session::field_residuals() {
-  Edited& edited = need(kSymmetric);
+std::vector<Residual> Session::residuals(Side side) {
+  const Edited& edited = need(side);
   if (edited.state.q.size() == 0) return std::vector<Residual>(annotation_.regions.size());
-  return orbifit::field_residuals(subspace(), mesh_, annotation_, edited.state, context);
+  if (side == kSymmetric) return field_residuals(subspace(), mesh_, annotation_, edited.state, context, kFieldPairs);
+  const Points& images = pairs().images();
+  const std::vector<int> nowhere(static_cast<std::size_t>(images.rows()), 0);  // this side has no regions
+  return pairs().of_displacement(edited.vertices,
+                                 displacement_field(*edited.subspace, edited.state, images, nowhere, context));
 }
 
-std::vector<ResidualPairs::Answer> Session::shape_residuals() {
-  return pairs().of_shape(need(kSymmetric).vertices);
+std::vector<Residual> Session::shape_residuals() {
+  return pairs().of_shape(need(kSymmetric).vertices, context);
 }
 
 void Session::write_shown(const std::string& file) const {

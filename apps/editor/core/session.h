@@ -42,10 +42,11 @@ class Session {
 
   /// \throw InputError
   void read_mesh(const std::string& file);
-  /// Made consistent as `orbifit deform` does. \throw InputError
-  void read_annotation(const std::string& file);
+  /// \param consistent  it is one that annotation() gave; others are made consistent, as `orbifit deform` does
+  /// \throw InputError
+  void read_annotation(const std::string& file, bool consistent);
   void read_basis(const std::string& file);
-  void build_basis(GroupMode mode, int samples);
+  void build_basis(const SubspaceOptions& options);
   void write_basis(const std::string& file) const;
 
   const Mesh& mesh() const { return mesh_; }
@@ -69,11 +70,10 @@ class Session {
 
   const DisplayMesh& display(Side side) const { return need(side).display; }
   const Points& vertices(Side side) const { return need(side).vertices; }
-  std::vector<ResidualPairs::Answer> residuals(Side side);
-  /// The slow and exact measure (field_residuals()) of what is shown.
-  std::vector<Residual> field_residuals();
-  /// How far the rest shape itself is from symmetric, and how far what is shown.
-  std::vector<ResidualPairs::Answer> shape_residuals();
+  /// How far the displacement that was solved for last is from symmetric, in every region: as field_residuals().
+  std::vector<Residual> residuals(Side side);
+  /// How far the shape that is shown is from symmetric.
+  std::vector<Residual> shape_residuals();
   Motion carried(int region) const;
 
   /// The point of the symmetric side that a ray meets first. \param origin, direction  in the shown mesh's frame

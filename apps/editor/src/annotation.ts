@@ -71,7 +71,15 @@ function axisOf(m: number[]): Vec3 {
   return unit(columns.reduce((best, column) => length(column) > length(best) ? column : best));
 }
 
-/** Mirror planes and rotation axes of a region's group. */
+const most = 6; // planes, and axes beside the main one, that are drawn
+
+/** All where they are few; of many some, evenly: what a wheel of 36 mirrors has to say its axis says. */
+function spread(elements: Element[]): Element[] {
+  if (elements.length <= most) return elements;
+  return Array.from({ length: most }, (_, i) => elements[Math.floor(i * elements.length / most)]!);
+}
+
+/** Mirror planes and rotation axes of a region's group, the main axis first; of a large group some. */
 export function elementsOf(region: Region): Element[] {
   const point = region.centre;
   const found: Element[] = [];
@@ -96,7 +104,13 @@ export function elementsOf(region: Region): Element[] {
     if (/h$/.test(region.group)) found.push({ kind: "plane", point, direction: unit(region.axis), order: 0 });
   }
   if (found.length === 0) found.push({ kind: "centre", point, direction: [0, 0, 1], order: 0 });
-  return found;
+  const main = found.filter(element => element.kind === "axis").sort((a, b) => b.order - a.order)[0];
+  const rest = found.filter(element => element !== main);
+  const across = main === undefined ? [] : rest.filter(element =>
+    element.kind === "plane" && Math.abs(dot(element.direction, main.direction)) > 0.9999);
+  return [...(main ? [main] : []), ...across,
+          ...spread(rest.filter(element => element.kind === "plane" && !across.includes(element))),
+          ...spread(rest.filter(element => element.kind === "axis")), ...rest.filter(element => element.kind === "centre")];
 }
 
 export interface Extent { centre: Vec3; radius: number }

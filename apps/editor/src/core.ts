@@ -26,6 +26,15 @@ export interface Info {
   degrees_of_freedom?: number;
 }
 
+/** How a basis is sampled, as `orbifit edit` was told; 0 chooses. */
+export interface Sampling {
+  lift: number; // 0 orbit, 1 paper
+  radius: number; // mesh units
+  samples: number;
+  sharp: boolean;
+}
+export const usualSampling: Sampling = { lift: 0, radius: 0, samples: 0, sharp: false };
+
 export interface SolveRecord {
   solve: number;
   lift: number;
@@ -36,7 +45,6 @@ export interface SolveRecord {
 export interface RegionResidual {
   rms: number;
   max: number;
-  atVertices: boolean;
 }
 
 export interface Pick {
@@ -85,6 +93,13 @@ export class Core {
     return new Float64Array(this.memory as ArrayBuffer, at, count);
   }
 
+  private all = new Float64Array(0);
+  /** The whole memory. */
+  private doubles(): Float64Array {
+    if (this.all.buffer !== this.memory) this.all = new Float64Array(this.memory as ArrayBuffer);
+    return this.all;
+  }
+
   /** Calls with a file's name as the second argument. */
   private withName(call: (session: number, name: number, ...rest: number[]) => number, file: string,
                    ...rest: number[]): number {
@@ -123,8 +138,10 @@ export class Core {
   readMesh(name: string, data: Uint8Array): void {
     this.withFile(name, data, file => this.checked(this.withName(this.module._editor_read_mesh!, file)));
   }
-  readAnnotation(name: string, text: string): void {
-    this.withFile(name, text, file => this.checked(this.withName(this.module._editor_read_annotation!, file)));
+  /** \param consistent  it is one that annotation() gave */
+  readAnnotation(name: string, text: string, consistent = false): void {
+    this.withFile(name, text, file =>
+      this.checked(this.withName(this.module._editor_read_annotation!, file, consistent ? 1 : 0)));
   }
   readBasis(data: Uint8Array): void {
     this.withFile("basis", data, file => this.checked(this.withName(this.module._editor_read_basis!, file)));
@@ -136,8 +153,8 @@ export class Core {
     return this.written("written." + ending,
                         file => this.withName(this.module._editor_write_mesh!, file, atRest ? 1 : 0));
   }
-  buildBasis(mode: number, samples: number): void {
-    this.checked(this.module._editor_build_basis!(this.session, mode, samples));
+  buildBasis(mode: number, { lift, radius, samples, sharp }: Sampling): void {
+    this.checked(this.module._editor_build_basis!(this.session, mode, lift, radius, samples, sharp ? 1 : 0));
   }
   annotation(): string { return this.text(this.module._editor_annotation!(this.session)); }
   info(): Info { return JSON.parse(this.text(this.module._editor_info!(this.session))) as Info; }
@@ -149,12 +166,17 @@ export class Core {
                            3 * this.displayTriangles());
   }
   positions(side: Side): Float32Array {
-    return new Float32Array(this.memory as ArrayBuffer, this.module._editor_positions!(this.session, side),
-                            3 * this.displayVertices());
+    return this.floats(side, this.module._editor_positions!(this.session, side), 3 * this.displayVertices());
   }
   normals(side: Side): Float32Array {
-    return new Float32Array(this.memory as ArrayBuffer, this.module._editor_normals!(this.session, side),
-                            3 * this.displayVertices());
+    return this.floats(2 + side, this.module._editor_normals!(this.session, side), 3 * this.displayVertices());
+  }
+  private readonly kept: Float32Array[] = [];
+  /** A view of the memory, the same as the last with this number where that is still right: a frame makes none. */
+  private floats(number: number, at: number, count: number): Float32Array {
+    const known = this.kept[number];
+    if (known?.buffer === this.memory && known.byteOffset === at && known.length === count) return known;
+    return this.kept[number] = new Float32Array(this.memory as ArrayBuffer, at, count);
   }
   marks(): Uint8Array {
     return new Uint8Array(this.memory as ArrayBuffer, this.module._editor_marks!(this.session),
@@ -179,14 +201,15 @@ export class Core {
       this.motionsRoom = 2 * motions.length;
       this.motionsAt = this.module._editor_allocate(8 * this.motionsRoom);
     }
-    this.numbers(motions.length, this.motionsAt).set(motions);
+    this.doubles().set(motions, this.motionsAt / 8);
     this.checked(this.module._editor_solve!(this.session, side, this.motionsAt, motions.length / 12, iterations,
                                             this.scratch));
-    const numbers = this.numbers(4);
-    record.solve = numbers[0]!;
-    record.lift = numbers[1]!;
-    record.show = numbers[2]!;
-    record.handleError = numbers[3]!;
+    const numbers = this.doubles();
+    const at = this.scratch / 8;
+    record.solve = numbers[at]!;
+    record.lift = numbers[at + 1]!;
+    record.show = numbers[at + 2]!;
+    record.handleError = numbers[at + 3]!;
   }
   rest(): void { this.checked(this.module._editor_rest!(this.session)); }
   show(vertices: Float64Array): void {
@@ -196,10 +219,8 @@ export class Core {
 
   residuals(kind: ResidualKind): RegionResidual[] {
     const count = this.checked(this.module._editor_residuals!(this.session, kind, this.scratch));
-    const numbers = this.numbers(3 * count);
-    return Array.from({ length: count }, (_, r) => ({
-      rms: numbers[3 * r]!, max: numbers[3 * r + 1]!, atVertices: numbers[3 * r + 2] === 1
-    }));
+    const numbers = this.numbers(2 * count);
+    return Array.from({ length: count }, (_, r) => ({ rms: numbers[2 * r]!, max: numbers[2 * r + 1]! }));
   }
   /** 3 by 4, by row; written into `motion`. */
   carried(region: number, motion: Float64Array): void {

@@ -3,7 +3,9 @@ import {
   elementsOf, emptyAnnotation, extentOf, faceCount, isAnnotation, without, type Annotation, type Element, type Extent,
   type Region
 } from "./annotation";
-import { Core, ResidualKind, Side, type Info, type Pick, type RegionResidual, type SolveRecord } from "./core";
+import {
+  Core, ResidualKind, Side, usualSampling, type Info, type Pick, type RegionResidual, type Sampling, type SolveRecord
+} from "./core";
 import type { Background } from "./data";
 import { moved, toJson, writeMotion, type Handle } from "./handles";
 import { add, length, sub, times, type Vec3 } from "./math";
@@ -33,12 +35,12 @@ export class Editor {
   sourceName = "mesh"; // of the user's file, for the command that replays
   state!: Snapshot;
   selected = -1;
+  sampling: Sampling = usualSampling;
   radius = 0.05; // of new handles, fraction of the diagonal
   comparing = false;
   busy = "";
   readonly record: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
-  residual = 0; // worst region's largest, of the shown deformation
-  residualAtVertices = true;
+  residual = 0; // worst region's largest, of the deformation that was measured last
   freeResidual = 0;
   blend = 0;
   fitSteps: { step: number; rms: number }[] = [];
@@ -51,12 +53,15 @@ export class Editor {
   private kept: number[] = []; // ids of the regions in the core's order
   private motions = new Float64Array(0);
   private centroids: Vec3[] = [];
+  private readonly motion = new Float64Array(12);
+  private readonly freeRecord: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
   private stale = false;
   private handlesStale = false;
   private rebuilding = 0;
   private extents = new Map<string, { elements: Element[]; extent: Extent }>();
   private symmetricReady = false;
   onChange: () => void = () => {};
+  onSolved: () => void = () => {}; // the vertices or what is measured of them changed, nothing else
   onError: (message: string) => void = () => {};
 
   constructor(readonly core: Core, readonly view: View, readonly background: Background) {
@@ -78,21 +83,27 @@ export class Editor {
     this.undone = [];
     this.bases.clear();
     this.extents.clear();
+    this.sampling = usualSampling;
     this.symmetricReady = false;
     this.blend = 0;
     this.fitted = false;
-    this.setComparing(false);
+    this.comparing = false;
+    this.view.setSplit(false);
     const taken = annotation ?? emptyAnnotation(this.info.vertices, this.info.faces, this.info.diagonal);
     this.state = { handles: [], alpha: 100, iterations: 10, mode, off: [], annotation: taken };
     this.selected = -1;
     if (basis) this.bases.set(this.basisKey(), { bytes: basis, annotation: JSON.stringify(taken) });
     this.view.setMesh(this.core);
+    this.scan = null;
+    this.fitReport = null;
+    this.fitSteps = [];
     this.view.showScan(null);
     this.view.showOrbit(null);
     this.view.showElements("", () => [], this.info);
     this.view.frame();
-    this.onChange();
-    await new Promise(requestAnimationFrame); // it is seen before the basis is read
+    this.setBusy("reading the basis");
+    // The mesh is seen first: what follows a frame's callbacks directly still comes before it is shown.
+    await new Promise(shown => requestAnimationFrame(() => setTimeout(shown)));
     await this.takeBasis();
     this.handlesChanged();
   }
@@ -136,7 +147,7 @@ export class Editor {
   markRegion(id: number): void {
     const number = id < 0 ? -1 : this.coreNumber(id);
     this.core.markRegion(number);
-    this.view.takeMarks(this.core);
+    this.view.marksChanged();
     this.showRegions(id < 0 ? [] : [id]);
   }
 
@@ -201,7 +212,7 @@ export class Editor {
       this.setBusy("rebuilding the basis");
       try {
         const answer = await this.background.run(
-          { kind: "basis", annotation: JSON.stringify(this.active()), mode: this.state.mode, samples: 0 });
+          { kind: "basis", annotation: JSON.stringify(this.active()), mode: this.state.mode, sampling: this.sampling });
         basis = { bytes: answer.basis, annotation: answer.annotation };
         this.bases.set(key, basis);
       } catch (error) {
@@ -211,7 +222,7 @@ export class Editor {
       }
     }
     if (turn !== this.rebuilding) return; // another change has overtaken this one
-    this.core.readAnnotation("annotation", basis.annotation);
+    this.core.readAnnotation("annotation", basis.annotation, true);
     this.core.readBasis(basis.bytes);
     this.shownKey = key;
     this.kept = (JSON.parse(this.core.annotation()) as Annotation).regions.map(region => region.id);
@@ -280,14 +291,17 @@ export class Editor {
   /** Where a handle's centre is to be, in the display's frame. */
   target(number: number): Vec3 {
     const handle = this.state.handles[number]!;
-    const motion = new Float64Array(12);
+    const motion = this.motion;
     writeMotion(handle, this.centroids[number] ?? handle.centre, motion, 0);
     return this.toDisplay(moved(motion, 0, handle.centre));
   }
 
   showHandles(): void {
-    this.view.showHandles(this.state.handles.map((handle, number) =>
-      ({ point: this.target(number), pin: handle.pin, selected: number === this.selected })));
+    const { handles } = this.state;
+    this.view.showHandles(handles.length);
+    for (let number = 0; number < handles.length; ++number) {
+      this.view.showHandle(number, this.target(number), handles[number]!.pin, number === this.selected);
+    }
     if (this.selected >= 0) this.view.gizmoTarget.position.set(...this.target(this.selected));
   }
 
@@ -311,40 +325,77 @@ export class Editor {
       if (handles.length) this.core.setHandles(this.handlesJson());
       this.centroids = handles.map((_, number) => this.core.handleCentroid(number));
       this.motions = new Float64Array(12 * handles.length);
-      this.view.takeMarks(this.core);
+      this.view.marksChanged();
       this.showHandles();
     }
-    const sides = this.comparing ? [Side.symmetric, Side.free] : [Side.symmetric];
     if (!handles.length) {
       this.core.rest();
       this.record.solve = this.record.lift = this.record.handleError = 0;
     } else {
-      handles.forEach((handle, number) => writeMotion(handle, this.centroids[number]!, this.motions, 12 * number));
-      const other: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
-      for (const side of sides) {
-        this.core.solve(side, this.motions, iterations, side === Side.symmetric ? this.record : other);
+      for (let number = 0; number < handles.length; ++number) {
+        writeMotion(handles[number]!, this.centroids[number]!, this.motions, 12 * number);
       }
+      this.core.solve(Side.symmetric, this.motions, iterations, this.record);
+      if (this.comparing) this.core.solve(Side.free, this.motions, iterations, this.freeRecord);
     }
-    for (const side of sides) this.view.takePositions(this.core, side);
-    this.measure();
+    this.view.positionsChanged(Side.symmetric);
+    if (this.comparing) this.view.positionsChanged(Side.free);
+    this.measureSoon();
+    this.onSolved();
   }
 
+  private measuring = 0; // a timer's
+  private measured = 0; // when
+  private measuringTook = 0; // ms
+  /** Measures now, where that takes a tenth of the time at most, and in any case once nothing has moved for a while. */
+  private measureSoon(): void {
+    clearTimeout(this.measuring);
+    this.measuring = 0;
+    const cheap = this.measuringTook < 8 && performance.now() - this.measured > 10 * this.measuringTook;
+    if (cheap && this.measured > 0) this.measure();
+    else this.measuring = window.setTimeout(this.measureNow, 120);
+  }
+
+  /** Whether the residuals are those of what is shown. */
+  get isMeasured(): boolean { return this.measuring === 0 && !this.stale; }
+
+  private readonly measureNow = (): void => {
+    try {
+      this.measure();
+    } catch (error) {
+      this.failed(error);
+    }
+  };
   private measure(): void {
+    this.measuring = 0;
     const worst = (list: RegionResidual[]): number => list.reduce((most, entry) => Math.max(most, entry.max), 0);
-    const own = this.core.residuals(ResidualKind.deformation);
-    const exact = own.filter(entry => entry.atVertices);
-    this.residualAtVertices = exact.length > 0 || own.length === 0;
-    this.residual = worst(exact.length ? exact : own);
+    const start = performance.now();
+    this.residual = worst(this.core.residuals(ResidualKind.deformation));
     this.freeResidual = this.comparing ? worst(this.core.residuals(ResidualKind.free)) : 0;
-    this.onChange();
+    this.measured = performance.now();
+    this.measuringTook = this.measured - start;
+    this.onSolved();
   }
 
-  setComparing(on: boolean): void {
-    if (on === this.comparing) return;
-    this.core.compare(on);
-    this.comparing = on;
-    this.view.setSplit(on);
-    this.handlesChanged();
+  /** Without symmetries every sample is an unknown: that takes seconds to factorise. */
+  async setComparing(on: boolean): Promise<void> {
+    if (on === this.comparing || this.busy) return;
+    if (on) {
+      this.setBusy("solving without symmetries");
+      await new Promise(shown => requestAnimationFrame(() => setTimeout(shown)));
+    }
+    try {
+      this.core.compare(on);
+      this.comparing = on;
+      this.view.setSplit(on);
+      this.handlesStale = true;
+      if (on) this.solve();
+    } finally {
+      if (on) this.setBusy("");
+    }
+    this.stale ||= !on;
+    this.view.draw();
+    this.onChange();
   }
 
   // Symmetrise ----------------------------------------------------------------------------------------------------
@@ -369,7 +420,7 @@ export class Editor {
     }
     this.blend = share;
     this.core.blend(share);
-    this.view.takePositions(this.core, Side.symmetric);
+    this.view.positionsChanged(Side.symmetric);
     this.onChange();
   }
 
@@ -404,6 +455,15 @@ export class Editor {
     this.onChange();
   }
 
+  /** The mesh is then again what the handles make of it. */
+  closeScan(): void {
+    this.scan = null;
+    this.fitReport = null;
+    this.fitSteps = [];
+    this.view.showScan(null);
+    this.handlesChanged();
+  }
+
   async fit(place: boolean): Promise<void> {
     if (!this.scan || this.busy) return;
     this.fitSteps = [];
@@ -415,12 +475,12 @@ export class Editor {
         step => {
           if (step.kind !== "fit-step") return;
           this.core.show(step.vertices);
-          this.view.takePositions(this.core, Side.symmetric);
+          this.view.positionsChanged(Side.symmetric);
           this.fitSteps.push({ step: step.step, rms: step.rms });
           this.onChange();
         });
       this.core.show(answer.vertices);
-      this.view.takePositions(this.core, Side.symmetric);
+      this.view.positionsChanged(Side.symmetric);
       this.fitReport = JSON.parse(answer.report) as FitReport;
       this.fitted = true;
     } catch (error) {

@@ -32,8 +32,7 @@ export function toJson(handles: readonly Handle[], alpha: number, iterations: nu
 
 /** Scale and rotation are about the centroid of the handle's vertices. \param motion  3 by 4, by row */
 export function writeMotion(handle: Handle, centroid: Vec3, motion: Float64Array, at: number): void {
-  const { axis, degrees } = axisAngle(handle.rotation);
-  const rotation = rotationMatrix(axis, degrees);
+  const rotation = rotationMatrix(handle.rotation);
   for (let row = 0; row < 3; ++row) {
     let moved = 0;
     for (let column = 0; column < 3; ++column) {

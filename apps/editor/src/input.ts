@@ -6,6 +6,7 @@ import type { Editor, Snapshot } from "./editor";
 import { add, sub, times, type Vec3 } from "./math";
 
 const reach = 14; // pixels from a handle's dot
+const fingerReach = 28;
 const still = 4; // pixels that a click may move
 
 export type Tool = "move" | "rotate" | "scale";
@@ -33,8 +34,8 @@ export class Input {
     this.gizmo();
   }
 
-  private nearestHandle(x: number, y: number): number {
-    let best = -1, least = reach;
+  private nearestHandle(x: number, y: number, within = reach): number {
+    let best = -1, least = within;
     this.editor.state?.handles.forEach((_, number) => {
       const [sx, sy] = this.editor.view.screen(this.editor.target(number));
       const distance = Math.hypot(sx - x, sy - y);
@@ -47,7 +48,7 @@ export class Input {
     if (event.button !== 0 || !event.isPrimary) return;
     if (this.editor.view.gizmo.axis && this.tool) return; // the gizmo's
     const { editor } = this;
-    const number = this.nearestHandle(event.clientX, event.clientY);
+    const number = this.nearestHandle(event.clientX, event.clientY, event.pointerType === "touch" ? fingerReach : reach);
     this.pressed = { x: event.clientX, y: event.clientY, number };
     this.leave();
     if (number < 0) return;
@@ -127,7 +128,7 @@ export class Input {
   private lookAt(pick: Pick): void {
     const { editor } = this;
     editor.view.showOrbit(editor.core.orbit(pick, editor.radius * editor.info.diagonal));
-    editor.view.takeMarks(editor.core);
+    editor.view.marksChanged();
     editor.showRegions(editor.core.regionsOf(pick.face).map(number => editor.idOf(number)));
   }
 
@@ -136,7 +137,7 @@ export class Input {
     this.hovered = null;
     this.editor.core.clearOrbit();
     this.editor.view.showOrbit(null);
-    this.editor.view.takeMarks(this.editor.core);
+    this.editor.view.marksChanged();
     this.editor.showRegions([]);
   }
 
@@ -162,9 +163,11 @@ export class Input {
   }
 
   cancel(): boolean {
-    if (!this.drag) return false;
-    this.editor.state = this.drag.before;
-    this.drag = null;
+    const before = this.drag?.before ?? this.gizmoBefore;
+    if (!before) return false;
+    this.editor.state = before;
+    this.drag = this.gizmoBefore = this.gizmoStart = null;
+    this.attachGizmo();
     this.editor.motionsChanged();
     return true;
   }
@@ -200,7 +203,7 @@ export class Input {
     else if (key === "w") this.setTool("move");
     else if (key === "e") this.setTool("rotate");
     else if (key === "r") this.setTool("scale");
-    else if (key === "c") editor.setComparing(!editor.comparing);
+    else if (key === "c") void editor.setComparing(!editor.comparing).catch(error => editor.onError(String(error)));
     else if (key === "p") this.pin();
     else if (key === "delete" || key === "backspace") this.removeSelected();
     else if (key === "escape") {
@@ -222,7 +225,10 @@ export class Input {
   }
 
   private keepAxis(axis: number): void {
-    if (this.drag) this.drag.keep = this.drag.keep === axis ? -1 : axis;
+    if (this.drag) {
+      this.drag.keep = this.drag.keep === axis ? -1 : axis;
+      return;
+    }
     const { gizmo } = this.editor.view;
     const only = [gizmo.showX, gizmo.showY, gizmo.showZ].every((shown, k) => shown === (k === axis));
     gizmo.showX = only || axis === 0;

@@ -1,6 +1,6 @@
 // Puts the page together.
 import { without, type Annotation } from "./annotation";
-import { Core, CoreError } from "./core";
+import { Core, CoreError, type Sampling } from "./core";
 import { Background, coreBytes, download, embedded } from "./data";
 import { Editor, modes } from "./editor";
 import { fromJson } from "./handles";
@@ -99,8 +99,7 @@ function actions(editor: Editor, input: Input, view: View): Record<string, () =>
     reset: () => editor.change(state => { state.handles = []; }), replay: chooseFiles, open: chooseFiles,
     "open-scan": chooseFiles, "keep-blend": () => editor.keepBlend(),
     fit: () => editor.fit(element<HTMLInputElement>("place").checked), "stop-fit": () => editor.background.stop(),
-    "clear-scan": () => { editor.scan = null; view.showScan(null); editor.handlesChanged();
-      element("fit-text").textContent = "Drop a scan (PLY, PCD, XYZ)."; },
+    "clear-scan": () => editor.closeScan(),
     "save-obj": save("obj"), "save-ply": save("ply"), "save-glb": save("glb"),
     "save-handles": () => download("handles.json", editor.handlesJson(), "application/json")
   };
@@ -135,6 +134,7 @@ function wire(editor: Editor, input: Input, view: View, panel: Panel): void {
     panel.update();
     if (editor.state?.handles.length) element("hint").hidden = true;
   };
+  editor.onSolved = () => panel.solved();
   view.onFrame = () => panel.frame();
   input.onTool = () => {
     for (const name of ["move", "rotate", "scale"]) {
@@ -167,7 +167,7 @@ async function start(): Promise<void> {
   const mesh = embedded("mesh");
   if (!mesh) {
     element("hint").hidden = false;
-    element("hint").querySelector("b")!.parentElement!.lastChild!.textContent = " lists the keys. Drop a mesh and its annotation to begin.";
+    element("hint").lastChild!.textContent = " lists the keys. Drop a mesh and its annotation to begin.";
     return;
   }
   const annotation = embedded("annotation");
@@ -176,6 +176,9 @@ async function start(): Promise<void> {
                     annotation && editor.readAnnotationText(new TextDecoder().decode(annotation.data)), basis?.data ?? null,
                     Math.max(0, modes.indexOf((basis?.name ?? "floating") as (typeof modes)[number])));
   editor.sourceName = mesh.source;
+  const sampling = embedded("sampling");
+  if (sampling) editor.sampling = JSON.parse(new TextDecoder().decode(sampling.data)) as Sampling;
+  panel.update();
   element("hint").hidden = false;
   document.documentElement.dataset.ready = "true";
 }

@@ -25,12 +25,18 @@ export function axisAngle([x, y, z, w]: Quaternion): { axis: Vec3; degrees: numb
   };
 }
 
-/** The rotation's matrix, 9 numbers by row. */
-export function rotationMatrix(axis: Vec3, degrees: number): number[] {
-  const angle = degrees * Math.PI / 180;
-  const c = Math.cos(angle), s = Math.sin(angle), t = 1 - c;
-  const [x, y, z] = axis;
-  return [t * x * x + c, t * x * y - s * z, t * x * z + s * y,
-          t * x * y + s * z, t * y * y + c, t * y * z - s * x,
-          t * x * z - s * y, t * y * z + s * x, t * z * z + c];
+const matrix = new Float64Array(9);
+/** The matrix of a unit quaternion, 9 numbers by row, which the next call overwrites. */
+export function rotationMatrix(q: Quaternion): Float64Array {
+  const x = q[0], y = q[1], z = q[2], w = q[3];
+  matrix[0] = 1 - 2 * (y * y + z * z);
+  matrix[1] = 2 * (x * y - z * w);
+  matrix[2] = 2 * (x * z + y * w);
+  matrix[3] = 2 * (x * y + z * w);
+  matrix[4] = 1 - 2 * (x * x + z * z);
+  matrix[5] = 2 * (y * z - x * w);
+  matrix[6] = 2 * (x * z - y * w);
+  matrix[7] = 2 * (y * z + x * w);
+  matrix[8] = 1 - 2 * (x * x + y * y);
+  return matrix;
 }

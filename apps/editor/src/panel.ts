@@ -18,6 +18,12 @@ export function showMessage(text: string): void {
   box.hidden = !text;
 }
 
+/** The options of `orbifit deform` that sample as the page does. */
+function samplingWords({ sampling: { lift, radius, samples, sharp } }: Editor): string {
+  return (lift ? " --lift paper" : "") + (radius ? ` --radius ${radius}` : "") + (samples ? ` --samples ${samples}` : "") +
+    (sharp ? " --sharp-features" : "");
+}
+
 /** Regions in order of importance (as listed, where it is not given), children under their parents. */
 function ordered(regions: readonly Region[]): { region: Region; depth: number }[] {
   const result: { region: Region; depth: number }[] = [];
@@ -39,7 +45,9 @@ function ordered(regions: readonly Region[]): { region: Region; depth: number }[
 
 export class Panel {
   private listed = "";
-  private frames: number[] = [];
+  private readonly frames = new Float64Array(256); // when the last ones were, in a ring
+  private drawn = 0; // frames so far
+  private readoutWaits = 0; // a timer's
 
   constructor(private readonly editor: Editor) {
     const slider = (id: string, use: (value: number) => void, done: () => void = () => {}): void => {
@@ -92,7 +100,7 @@ export class Panel {
     element<HTMLInputElement>("blend").value = String(editor.blend);
     element("blend-value").textContent = `${Math.round(100 * editor.blend)} %`;
     element("command").textContent =
-      `orbifit deform ${editor.sourceName} annotation.json --handles handles.json --mode ${modes[state.mode]} -o edited.ply`;
+      `orbifit deform ${editor.sourceName} annotation.json --handles handles.json --mode ${modes[state.mode]}${samplingWords(editor)} -o edited.ply`;
     const button = (name: string): HTMLButtonElement => document.querySelector(`[data-do=${name}]`)!;
     button("undo").disabled = !editor.canUndo;
     button("redo").disabled = !editor.canRedo;
@@ -113,19 +121,35 @@ export class Panel {
 
   /** Frames of the last second. */
   frame(): void {
-    const now = performance.now();
-    this.frames.push(now);
-    while (this.frames.length && this.frames[0]! < now - 1000) this.frames.shift();
+    this.frames[this.drawn++ % this.frames.length] = performance.now();
   }
+  private framesOfLastSecond(): number {
+    const since = performance.now() - 1000;
+    let count = 0;
+    for (let i = Math.max(0, this.drawn - this.frames.length); i < this.drawn; ++i) {
+      if (this.frames[i % this.frames.length]! >= since) ++count;
+    }
+    return count;
+  }
+
+  /** The numbers that follow a drag: ten times a second, which is as often as one reads. */
+  solved(): void {
+    if (!this.readoutWaits) this.readoutWaits = window.setTimeout(this.readoutNow, 100);
+  }
+  private readonly readoutNow = (): void => {
+    this.readoutWaits = 0;
+    this.readout();
+  };
 
   private readout(): void {
     const { editor } = this;
     const parts: string[] = [];
     const { solve, lift } = editor.record;
     if (editor.state.handles.length) {
-      parts.push(`residual <b>${editor.residualAtVertices ? "" : "≈ "}${share(editor.residual)}</b>`);
+      parts.push(`residual <b>${share(editor.residual)}</b>`);
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
-      if (this.frames.length > 1) parts.push(`<b>${this.frames.length}</b> frames/s`);
+      const frames = this.framesOfLastSecond();
+      if (frames > 1) parts.push(`<b>${frames}</b> frames/s`);
     } else {
       parts.push("no handles yet");
     }
@@ -169,8 +193,14 @@ export class Panel {
     name.className = "name";
     name.textContent = region.name || `region ${region.id}`;
     name.title = "Click: on or off. Double click: rename";
-    name.addEventListener("click", event => { if (event.detail === 1) box.click(); });
-    name.addEventListener("dblclick", () => this.rename(region, name));
+    let click = 0;
+    name.addEventListener("click", event => { // not at once: it may be the first of two
+      if (event.detail < 2) click = window.setTimeout(() => box.click(), event.detail === 1 ? 250 : 0);
+    });
+    name.addEventListener("dblclick", () => {
+      clearTimeout(click);
+      this.rename(region, name);
+    });
     const value = document.createElement("span");
     value.className = "value";
     const importance = region.importance;
@@ -243,6 +273,9 @@ export class Panel {
 
   private fit(): void {
     const { editor } = this;
+    element("fit-none").hidden = editor.scan !== null;
+    element("fit-text").hidden = editor.scan === null;
+    document.getElementById("fit-curve")!.toggleAttribute("hidden", editor.fitSteps.length < 2);
     if (!editor.scan) return;
     const report = editor.fitReport;
     const last = editor.fitSteps.at(-1);
@@ -250,7 +283,6 @@ export class Panel {
       (report ? `${report.converged ? "Fitted" : "Not converged"}: ${report.stopped_because}; ${share(report.rms)} rms, ${Math.round(100 * report.inlier_ratio)} % of the points within 1 %.`
         : last ? `Step ${last.step + 1}: ${share(last.rms)} rms.` : "");
     const curve = document.getElementById("fit-curve")! as unknown as SVGSVGElement;
-    curve.toggleAttribute("hidden", editor.fitSteps.length < 2);
     const logs = editor.fitSteps.map(step => Math.log(Math.max(1e-6, step.rms)));
     const low = Math.min(...logs), high = Math.max(...logs, low + 1e-6);
     curve.querySelector("polyline")!.setAttribute("points", logs.map((value, i) =>

@@ -71,7 +71,14 @@ export class View {
   private theme: Theme;
   private split = false;
   private pending = false;
-  onFrame: (milliseconds: number) => void = () => {};
+  private core: Core | null = null;
+  private readonly staleShape = [false, false]; // by side: what the card has of the core's memory
+  private readonly staleMarks = [false, false];
+  private readonly pinColour = new THREE.Color();
+  private readonly handleColour = new THREE.Color();
+  private readonly back = new THREE.Color();
+  private readonly size = new THREE.Vector2();
+  onFrame: () => void = () => {};
   beforeFrame: () => void = () => {};
 
   constructor(private readonly canvas: HTMLCanvasElement, theme: Theme) {
@@ -116,12 +123,17 @@ export class View {
     uniforms.handleColour!.value = linear(theme.handle);
     uniforms.pinColour!.value = linear(theme.pin);
     (this.orbitDots.material as THREE.MeshBasicMaterial).color.setStyle(theme.orbit, THREE.LinearSRGBColorSpace);
+    this.pinColour.setStyle(theme.pin, THREE.LinearSRGBColorSpace);
+    this.handleColour.setStyle(theme.handle, THREE.LinearSRGBColorSpace);
+    this.back.setStyle(theme.back, THREE.LinearSRGBColorSpace);
+    if (this.scan) (this.scan.material as THREE.PointsMaterial).color.setStyle(theme.scan, THREE.LinearSRGBColorSpace);
     this.elementsShown = "";
     this.draw();
   }
 
   /** A new mesh in both halves. */
   setMesh(core: Core): void {
+    this.core = core;
     for (const side of [Side.symmetric, Side.free]) {
       this.sides[side]?.geometry.dispose();
       this.sides[side]?.removeFromParent();
@@ -141,40 +153,48 @@ export class View {
       this.sides[side] = mesh;
       (side === Side.symmetric ? this.scene : this.freeScene).add(mesh);
     }
-    this.takePositions(core, Side.symmetric);
-    this.takePositions(core, Side.free);
-    this.takeMarks(core);
+    this.positionsChanged(Side.symmetric);
+    this.positionsChanged(Side.free);
+    this.marksChanged();
   }
 
-  takePositions(core: Core, side: Side): void {
+  positionsChanged(side: Side): void {
+    this.staleShape[side] = true;
+    this.draw();
+  }
+
+  marksChanged(): void {
+    this.staleMarks.fill(true);
+    this.draw();
+  }
+
+  /** Hands a side's arrays to the card, from the core's memory, without a copy between: just before they are drawn, since
+      that memory is another when it has grown. */
+  private upload(side: Side): void {
+    const { core } = this;
     const geometry = this.sides[side]?.geometry;
-    if (!geometry) return;
-    const position = geometry.getAttribute("position") as THREE.BufferAttribute;
-    const normal = geometry.getAttribute("normal") as THREE.BufferAttribute;
-    // The card takes them from the core's memory, without a copy between.
-    position.array = core.positions(side);
-    normal.array = core.normals(side);
-    position.needsUpdate = true;
-    normal.needsUpdate = true;
-    this.draw();
-  }
-
-  takeMarks(core: Core): void {
-    for (const mesh of this.sides) {
-      if (!mesh) continue;
-      const marks = mesh.geometry.getAttribute("marks") as THREE.BufferAttribute;
-      marks.array = core.marks();
-      marks.needsUpdate = true;
+    if (!core || !geometry) return;
+    if (this.staleShape[side]) {
+      View.hand(geometry.attributes.position as THREE.BufferAttribute, core.positions(side));
+      View.hand(geometry.attributes.normal as THREE.BufferAttribute, core.normals(side));
+      this.staleShape[side] = false;
     }
-    this.draw();
+    if (this.staleMarks[side]) {
+      View.hand(geometry.attributes.marks as THREE.BufferAttribute, core.marks());
+      this.staleMarks[side] = false;
+    }
+  }
+  private static hand(attribute: THREE.BufferAttribute, array: THREE.TypedArray): void {
+    attribute.array = array;
+    attribute.needsUpdate = true;
   }
 
   showOrbit(points: Float32Array | null): void {
     const count = points ? Math.min(this.mostDots, points.length / 3) : 0;
-    const matrix = new THREE.Matrix4();
+    const { matrix, point } = this.scratch;
     for (let i = 0; i < count; ++i) {
       const [x, y, z] = [points![3 * i]!, points![3 * i + 1]!, points![3 * i + 2]!];
-      const size = 0.0035 * this.camera.position.distanceTo(new THREE.Vector3(x, y, z)) * (i === 0 ? 1.5 : 1);
+      const size = 0.0035 * this.camera.position.distanceTo(point.set(x, y, z)) * (i === 0 ? 1.5 : 1);
       matrix.makeScale(size, size, size).setPosition(x, y, z);
       this.orbitDots.setMatrixAt(i, matrix);
     }
@@ -194,19 +214,22 @@ export class View {
     }
     const toDisplay = new THREE.Matrix4().makeScale(1 / frame.diagonal, 1 / frame.diagonal, 1 / frame.diagonal)
       .multiply(new THREE.Matrix4().makeTranslation(-frame.centre[0], -frame.centre[1], -frame.centre[2]));
-    for (const { elements, extent, carried } of key ? list() : []) {
+    const shown = key ? list() : [];
+    const regions = shown.length; // the more sheets lie over one another, the fainter each is
+    for (const { elements, extent, carried } of shown) {
       const group = new THREE.Group();
       group.matrixAutoUpdate = false;
       const m = carried;
       group.matrix.set(m[0]!, m[1]!, m[2]!, m[3]!, m[4]!, m[5]!, m[6]!, m[7]!, m[8]!, m[9]!, m[10]!, m[11]!, 0, 0, 0, 1)
         .premultiply(toDisplay);
-      for (const element of elements) this.addElement(group, element, extent);
+      const planes = elements.filter(element => element.kind === "plane").length;
+      for (const element of elements) this.addElement(group, element, extent, Math.min(0.1, 0.2 / (planes * regions)));
       this.overlay.add(group);
     }
     this.draw();
   }
 
-  private addElement(group: THREE.Group, element: Element, extent: Extent): void {
+  private addElement(group: THREE.Group, element: Element, extent: Extent, opacity: number): void {
     const normal = new THREE.Vector3(...element.direction);
     const centre = new THREE.Vector3(...extent.centre);
     const point = new THREE.Vector3(...element.point);
@@ -217,7 +240,7 @@ export class View {
       centre.addScaledVector(normal, normal.dot(point) - normal.dot(centre));
       const disc = new THREE.CircleGeometry(radius, 64);
       const sheet = new THREE.Mesh(disc, new THREE.MeshBasicMaterial(
-        { color: colour, transparent: true, opacity: 0.10, side: THREE.DoubleSide, depthWrite: false }));
+        { color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false }));
       const rim = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(
         Array.from({ length: 96 }, (_, i) => new THREE.Vector3(radius * Math.cos(i * Math.PI / 48),
                                                                radius * Math.sin(i * Math.PI / 48), 0))),
@@ -242,21 +265,27 @@ export class View {
     }
   }
 
-  /** Dots where handles are to be, in the display's frame. */
-  showHandles(places: { point: Vec3; pin: boolean; selected: boolean }[]): void {
-    for (const child of [...this.handleDots.children]) child.removeFromParent();
-    for (const { point, pin, selected } of places) {
+  private readonly dots: THREE.Sprite[] = [];
+  /** How many handles there are; showHandle() says where. */
+  showHandles(count: number): void {
+    while (this.dots.length < count) {
       const sprite = new THREE.Sprite(new THREE.SpriteMaterial({
-        map: dotTexture(), sizeAttenuation: false, depthTest: false, transparent: true,
-        color: new THREE.Color().setStyle(pin ? this.theme.pin : this.theme.handle, THREE.LinearSRGBColorSpace)
+        map: dotTexture(), sizeAttenuation: false, depthTest: false, transparent: true
       }));
-      const size = selected ? 0.030 : 0.022;
-      sprite.scale.set(size, size, 1);
-      sprite.position.set(...point);
       sprite.renderOrder = 10;
+      this.dots.push(sprite);
       this.handleDots.add(sprite);
     }
+    this.dots.forEach((dot, number) => { dot.visible = number < count; });
     this.draw();
+  }
+  /** \param point  in the display's frame */
+  showHandle(number: number, point: Vec3, pin: boolean, selected: boolean): void {
+    const dot = this.dots[number]!;
+    const size = selected ? 0.030 : 0.022;
+    dot.scale.set(size, size, 1);
+    dot.position.set(point[0], point[1], point[2]);
+    dot.material.color.copy(pin ? this.pinColour : this.handleColour);
   }
 
   showScan(points: Float32Array | null): void {
@@ -282,7 +311,7 @@ export class View {
     const half = Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, aspect);
     const direction = this.camera.position.clone().sub(this.controls.target).normalize();
     this.controls.target.set(...centre);
-    this.camera.position.copy(this.controls.target).addScaledVector(direction, radius / half * 1.02 + radius * 0.3);
+    this.camera.position.copy(this.controls.target).addScaledVector(direction, radius / half * 1.1 + radius * 0.3);
     this.controls.update();
     this.draw();
   }
@@ -306,9 +335,11 @@ export class View {
     const box = this.canvas.getBoundingClientRect();
     const width = this.split ? box.width / 2 : box.width;
     const left = x - box.left;
-    return new THREE.Vector2((left % width) / width * 2 - 1, 1 - (y - box.top) / box.height * 2);
+    return this.scratch.device.set((left % width) / width * 2 - 1, 1 - (y - box.top) / box.height * 2);
   }
 
+  private readonly scratch = { plane: new THREE.Plane(), normal: new THREE.Vector3(), point: new THREE.Vector3(),
+                               device: new THREE.Vector2(), matrix: new THREE.Matrix4() };
   private readonly caster = new THREE.Raycaster();
   private readonly rayNumbers = new Float64Array(6);
   /** Origin and unit direction in the display's frame. */
@@ -323,36 +354,37 @@ export class View {
   screen(point: Vec3): [number, number] {
     const box = this.canvas.getBoundingClientRect();
     const width = this.split ? box.width / 2 : box.width;
-    const seen = new THREE.Vector3(...point).project(this.camera);
+    const seen = this.scratch.point.set(point[0], point[1], point[2]).project(this.camera);
     return [box.left + (seen.x + 1) / 2 * width, box.top + (1 - seen.y) / 2 * box.height];
   }
 
   /** The point on the plane through `through`, parallel to the screen, that is seen at a pixel. */
   onViewPlane(x: number, y: number, through: Vec3): Vec3 {
-    const normal = this.camera.getWorldDirection(new THREE.Vector3());
-    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(...through));
+    const { plane, normal, point } = this.scratch;
+    point.set(through[0], through[1], through[2]);
+    plane.setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(normal), point);
     this.caster.setFromCamera(this.device(x, y), this.camera);
-    const point = this.caster.ray.intersectPlane(plane, new THREE.Vector3()) ?? new THREE.Vector3(...through);
+    this.caster.ray.intersectPlane(plane, point);
     return [point.x, point.y, point.z];
   }
 
   draw(): void {
     if (this.pending) return;
     this.pending = true;
-    requestAnimationFrame(() => {
-      this.pending = false;
-      const start = performance.now();
-      this.beforeFrame();
-      this.render();
-      this.onFrame(performance.now() - start);
-    });
+    requestAnimationFrame(this.drawNow);
   }
+  private readonly drawNow = (): void => {
+    this.pending = false;
+    this.beforeFrame();
+    this.render();
+    this.onFrame();
+  };
 
-  private readonly back = new THREE.Color();
   render(): void {
     const { renderer } = this;
-    this.back.setStyle(this.theme.back, THREE.LinearSRGBColorSpace);
-    const size = renderer.getSize(new THREE.Vector2());
+    const size = renderer.getSize(this.size);
+    this.upload(Side.symmetric);
+    if (this.split) this.upload(Side.free);
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, size.x, size.y);
     renderer.setClearColor(this.back);

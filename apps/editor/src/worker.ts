@@ -1,8 +1,8 @@
 // What takes long: a session of its own beside the page's, which builds bases, symmetric shapes and fits.
-import { Core, Side } from "./core";
+import { Core, Side, type Sampling } from "./core";
 
 export type Task =
-  | { kind: "basis"; annotation: string; mode: number; samples: number }
+  | { kind: "basis"; annotation: string; mode: number; sampling: Sampling }
   | { kind: "symmetrize"; annotation: string }
   | { kind: "fit"; annotation: string; scanName: string; scan: Uint8Array; place: boolean };
 export interface Request {
@@ -32,7 +32,7 @@ function run(session: Core, number: number, task: Task): void {
   session.readAnnotation("annotation.json", task.annotation);
   if (task.kind === "basis") {
     const start = performance.now();
-    session.buildBasis(task.mode, task.samples);
+    session.buildBasis(task.mode, task.sampling);
     const basis = session.writeBasis();
     answer({ number, kind: "basis", basis, annotation: session.annotation(),
              milliseconds: performance.now() - start }, [basis.buffer]);

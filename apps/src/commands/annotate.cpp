@@ -30,6 +30,7 @@ struct AnnotateArguments {
   std::vector<int> seeds;
   AnnotationEdits edits;
   double tolerance = 0.005;
+  bool tolerance_given = false;
   bool as_given = false;
   bool consistent = false;
   bool list = false;
@@ -169,105 +170,126 @@ void add_place(CLI::App& app, const std::string& option, std::vector<double>& va
   app.add_option(option, values, help)->type_size(count)->expected(1)->type_name(type);
 }
 
-}  // namespace
-
-CommandBody annotate(CLI::App& app) {
-  const auto arguments = std::make_shared<AnnotateArguments>();
-  app.add_option("MESH", arguments->mesh, "Mesh to annotate")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output, "Annotation to write (.json); without it the result is only shown")
+void add_edit_options(CLI::App& app, AnnotateArguments& arguments) {
+  app.add_option("MESH", arguments.mesh, "Mesh to annotate")->required()->type_name("FILE");
+  app.add_option("-o,--output", arguments.output, "Annotation to write (.json); without it the result is only shown")
       ->type_name("FILE");
-  auto* given = app.add_option("--annotation", arguments->annotation, "Annotation to change or to add a region to")
+  auto* given = app.add_option("--annotation", arguments.annotation, "Annotation to change or to add a region to")
                     ->type_name("FILE");
-  app.add_flag("--list", arguments->list, "List the regions and patterns of the annotation with their ids")
+  app.add_flag("--list", arguments.list, "List the regions and patterns of the annotation with their ids")
       ->needs(given);
-  app.add_option("--remove", arguments->edits.remove, "Ids of regions to remove; the others keep their ids")
+  app.add_option("--remove", arguments.edits.remove, "Ids of regions to remove; the others keep their ids")
       ->delimiter(',')
       ->needs(given)
       ->type_name("ID,...");
-  app.add_option("--rename", arguments->edits.rename, "Rename a region; may be repeated")
+  app.add_option("--rename", arguments.edits.rename, "Rename a region; may be repeated")
       ->needs(given)
       ->type_name("ID NAME");
-  add_place(app, "--plane", arguments->plane, 6, "Approximate mirror plane: a point and the normal",
+}
+
+void add_region_options(CLI::App& app, AnnotateArguments& arguments) {
+  add_place(app, "--plane", arguments.plane, 6, "Approximate mirror plane: a point and the normal",
             "PX PY PZ NX NY NZ");
-  add_place(app, "--axis", arguments->axis, 6, "Approximate axis: a point and the direction", "PX PY PZ DX DY DZ");
-  add_place(app, "--centre,--center", arguments->centre, 3, "Approximate centre", "X Y Z");
+  add_place(app, "--axis", arguments.axis, 6, "Approximate axis: a point and the direction", "PX PY PZ DX DY DZ");
+  add_place(app, "--centre,--center", arguments.centre, 3, "Approximate centre", "X Y Z");
   app.add_option(
-         "--order", arguments->order,
+         "--order", arguments.order,
          "Order of rotation about the axis, or inf for a surface of revolution; the largest group of the region that "
          "contains these rotations is taken")
       ->type_name("N");
-  app.add_option("--group", arguments->group,
+  app.add_option("--group", arguments.group,
                  "Schoenflies symbol of the group, such as C4v (default: Cs for a plane, Ci for a centre, the largest "
                  "found for "
                  "an axis)")
       ->type_name("SYMBOL");
-  app.add_option("--seed-face", arguments->seeds, "A face of the region, numbered from 0; may be repeated")
+  app.add_option("--seed-face", arguments.seeds, "A face of the region, numbered from 0; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("F");
-  add_place(app, "--near", arguments->near, 3,
+  add_place(app, "--near", arguments.near, 3,
             "A point near the region: the face nearest to it is taken as a face of the region", "X Y Z");
-  app.add_option("--name", arguments->name, "Name of the region")->type_name("TEXT");
+  app.add_option("--name", arguments.name, "Name of the region")->type_name("TEXT");
   app.add_option(
-      "--tolerance", arguments->tolerance,
+      "--tolerance", arguments.tolerance,
       "Largest distance between the surface and its image that still counts as symmetric, as a fraction of the "
       "diagonal (default: that of --annotation, or 0.005)");
   app.add_flag(
-      "--consistent", arguments->consistent,
+      "--consistent", arguments.consistent,
       "Make all regions consistent with one another, exactly, as deform and fit do first: regions that cannot be are "
       "left out, missing images of regions are added");
-  app.add_flag("--no-refine", arguments->as_given, "Take the plane, axis or centre exactly as given");
+  app.add_flag("--no-refine", arguments.as_given, "Take the plane, axis or centre exactly as given");
+}
+
+void write_result(const AnnotateArguments& arguments, const Mesh& mesh, SymmetryAnnotation& annotation,
+                  const CommandContext& context) {
+  if (arguments.consistent) annotation = made_consistent(mesh, annotation, context.run);
+  if (!arguments.output.empty()) write_annotation(arguments.output, annotation);
+}
+
+// The region of the hint is found and added to the annotation.
+int add(const AnnotateArguments& arguments, const RegionHint& hint, const GuidedRegionOptions& options,
+        const std::vector<std::string>& changes, const Mesh& mesh, SymmetryAnnotation& annotation,
+        CommandContext& context) {
+  GuidedRegion found = guided_region(mesh, hint, options, context.run);
+  if (!found.holds) {
+    throw NoResultError(reason_against(found, mesh, passing_tolerance(mesh, hint, options, context.run)));
+  }
+  found.region.name = arguments.name.empty() ? "by hand" : arguments.name;
+  const RegionAddition addition = add_region(mesh, found.region, options.tolerance, annotation);
+  write_result(arguments, mesh, annotation, context);
+  const auto added = std::ranges::find(annotation.regions, addition.id, &Region::id);
+  if (added == annotation.regions.end()) {
+    throw NoResultError("the region cannot be kept beside the others" +
+                        std::string(arguments.output.empty() ? "" : "; it is not in what was written"));
+  }
+  const std::size_t count = annotation.regions.size();
+  if (context.json) {
+    nlohmann::ordered_json result = to_json(*added, addition, found, mesh, count);
+    if (!changes.empty()) result["changes"] = changes;
+    if (arguments.list) result["annotation"] = annotation_list(annotation, mesh);
+    print(context, result.dump(2) + "\n");
+  } else {
+    print(context, lines(changes) + to_text(*added, addition, found, mesh, count) +
+                       (arguments.list ? annotation_table(annotation, mesh) : ""));
+  }
+  return kDone;
+}
+
+int run(const AnnotateArguments& arguments, CommandContext& context) {
+  const bool adds = arguments.adds() || (arguments.edits.empty() && !arguments.list && !arguments.consistent);
+  RegionHint hint;
+  if (adds) hint = to_hint(arguments);
+  if (adds && !arguments.near.empty()) hint.near = to_point("--near", arguments.near);
+  if (!arguments.output.empty()) check_output(arguments.output, {".json"}, {arguments.mesh});
+  DetectOptions limits;
+  limits.tolerance = arguments.tolerance;
+  limits.validate();
+  const Mesh mesh = read_mesh(arguments.mesh);
+  GuidedRegionOptions options;
+  options.tolerance = arguments.tolerance;
+  SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
+  if (!arguments.annotation.empty()) {
+    annotation = read_annotation(arguments.annotation, mesh);
+    if (!arguments.tolerance_given) options.tolerance = annotation.tolerance;
+  }
+  const std::vector<std::string> changes = apply_edits(arguments.edits, annotation);
+  context.run.check();
+  if (adds) return add(arguments, hint, options, changes, mesh, annotation, context);
+  write_result(arguments, mesh, annotation, context);
+  print(context, context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
+                              : edits_text(changes, annotation, mesh, arguments.list));
+  return kDone;
+}
+
+}  // namespace
+
+CommandBody annotate(CLI::App& app) {
+  const auto arguments = std::make_shared<AnnotateArguments>();
+  add_edit_options(app, *arguments);
+  add_region_options(app, *arguments);
   return [arguments, &app](CommandContext& context) {
-    const bool adds = arguments->adds() || (arguments->edits.empty() && !arguments->list && !arguments->consistent);
-    RegionHint hint;
-    if (adds) hint = to_hint(*arguments);
-    if (adds && !arguments->near.empty()) hint.near = to_point("--near", arguments->near);
-    if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
-    DetectOptions limits;
-    limits.tolerance = arguments->tolerance;
-    limits.validate();
-    const Mesh mesh = read_mesh(arguments->mesh);
-    GuidedRegionOptions options;
-    options.tolerance = arguments->tolerance;
-    SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
-    if (!arguments->annotation.empty()) {
-      annotation = read_annotation(arguments->annotation, mesh);
-      if (app.count("--tolerance") == 0) options.tolerance = annotation.tolerance;
-    }
-    const std::vector<std::string> changes = apply_edits(arguments->edits, annotation);
-    context.run.check();
-    if (!adds) {
-      if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
-      if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-      print(context, context.json ? edits_json(changes, annotation, mesh).dump(2) + "\n"
-                                  : edits_text(changes, annotation, mesh, arguments->list));
-      return kDone;
-    }
-    GuidedRegion found = guided_region(mesh, hint, options, context.run);
-    if (!found.holds) {
-      throw NoResultError(reason_against(found, mesh, passing_tolerance(mesh, hint, options, context.run)));
-    }
-    found.region.name = arguments->name.empty() ? "by hand" : arguments->name;
-    const RegionAddition addition = add_region(mesh, found.region, options.tolerance, annotation);
-    if (arguments->consistent) annotation = made_consistent(mesh, annotation, context.run);
-    if (!arguments->output.empty()) write_annotation(arguments->output, annotation);
-    const auto added = std::ranges::find(annotation.regions, addition.id, &Region::id);
-    if (added == annotation.regions.end()) {
-      throw NoResultError("the region cannot be kept beside the others" +
-                          std::string(arguments->output.empty() ? "" : "; it is not in what was written"));
-    }
-    const Region& region = *added;
-    const std::size_t count = annotation.regions.size();
-    if (context.json) {
-      nlohmann::ordered_json result = to_json(region, addition, found, mesh, count);
-      if (!changes.empty()) result["changes"] = changes;
-      if (arguments->list) result["annotation"] = annotation_list(annotation, mesh);
-      print(context, result.dump(2) + "\n");
-      return kDone;
-    }
-    print(context, lines(changes) + to_text(region, addition, found, mesh, count) +
-                       (arguments->list ? annotation_table(annotation, mesh) : ""));
-    return kDone;
+    arguments->tolerance_given = app.count("--tolerance") > 0;
+    return run(*arguments, context);
   };
 }
 

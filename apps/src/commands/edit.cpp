@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
-#include <random>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -24,7 +25,8 @@ namespace {
 struct EditArguments {
   std::string mesh, annotation, output;
   bool open = false;
-  GroupMode mode = GroupMode::floating;
+  std::vector<int> without;
+  SubspaceOptions options;
 };
 
 // A folder that goes away with this.
@@ -48,6 +50,15 @@ class ScratchFolder {
   std::filesystem::path folder_;
 };
 
+// How the page samples when it builds a basis anew.
+std::string sampling_json(const SubspaceOptions& options) {
+  return nlohmann::ordered_json{{"lift", options.lift == LiftKind::orbit ? 0 : 1},
+                                {"radius", options.radius},
+                                {"samples", options.samples},
+                                {"sharp", options.sharp_features_first}}
+      .dump();
+}
+
 // Shows a page in the user's browser.
 void open_page(const std::string& file, const RunContext& run) {
   const pid_t child = ::fork();
@@ -66,14 +77,16 @@ CommandBody edit(CLI::App& app) {
   app.add_option("ANNOTATION", arguments->annotation, "Its annotation (.json); without one it is detected first");
   app.add_option("-o,--output", arguments->output, "Page to write (.html)")->required()->type_name("FILE");
   app.add_flag("--open", arguments->open, "Open it in the browser");
-  add_mode_option(app, arguments->mode);
+  add_without_option(app, arguments->without);
+  add_sampling_options(app, arguments->options);
   return [arguments](CommandContext& context) {
+    const SubspaceOptions& options = arguments->options;
+    options.validate();
     check_output(arguments->output, {".html"}, {arguments->annotation});
     const Mesh mesh = read_mesh(arguments->mesh);
     SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
                                                                   : read_annotation(arguments->annotation, mesh);
-    SubspaceOptions options;
-    options.mode = arguments->mode;
+    annotation = without(arguments->without, std::move(annotation));
     const Subspace subspace = build_consistent(mesh, annotation, options, context.run);
     context.run.progress("page", 0);
 
@@ -85,6 +98,7 @@ CommandBody edit(CLI::App& app) {
         editor_page(),
         {{"mesh", source.stem().string() + ".ply", source.filename().string(), read_file(scratch / "mesh.ply")},
          {"annotation", "annotation.json", arguments->annotation, to_json(annotation)},
+         {"sampling", "sampling.json", "", sampling_json(options)},
          {"basis", to_string(subspace.mode()), "", read_file(scratch / "basis")}});
     write_file(arguments->output, page);
     if (arguments->open) open_page(arguments->output, context.run);

@@ -22,8 +22,8 @@ constexpr double kTranslation = 1e-5;  // of a generator's linear part
 constexpr double kIndependent = 1e-6;  // of the diagonal
 constexpr double kOnLattice = 2e-3;    // of the diagonal
 constexpr double kTurned = 1e-4;       // of an instance's linear part in a lattice of translations
-constexpr double kMostPitch = 1e-3;    // of the diagonal, for a rotation
-constexpr double kLeastPitch = 1e-6;   // of the diagonal, for a screw
+constexpr double kMaxPitch = 1e-3;     // of the diagonal, for a rotation
+constexpr double kMinPitch = 1e-6;     // of the diagonal, for a screw
 constexpr double kOffPower = 1e-2;     // of linear parts; a fifth of it for places, of the diagonal
 
 void check_translations(const Pattern& pattern, double diagonal, std::vector<std::string>& breaches) {
@@ -60,10 +60,10 @@ void check_turns(const MeasuredMesh& measured, const Pattern& pattern, std::vect
     return;
   }
   const double pitch = std::abs(turn.axis.dot(step.translation)) / diagonal;
-  if (pattern.kind == Kind::rotation && pitch > kMostPitch) {
+  if (pattern.kind == Kind::rotation && pitch > kMaxPitch) {
     breaches.emplace_back("the generator of a rotation moves along its axis");
   }
-  if (pattern.kind == Kind::screw && pitch < kLeastPitch) {
+  if (pattern.kind == Kind::screw && pitch < kMinPitch) {
     breaches.emplace_back("the generator of a screw does not move along its axis");
   }
   FaceSet all;

@@ -26,7 +26,7 @@ constexpr double kShareFound = 0.6;    // of the instances
 constexpr double kStrictMedian = 0.7;  // IoU
 constexpr double kRepeats = 0.9;       // IoU
 constexpr double kHeldByRegion = 0.7;  // of an instance's area
-constexpr std::size_t kMostInstances = 40;
+constexpr std::size_t kMaxInstances = 40;
 
 double median(std::vector<double> values) {
   std::ranges::sort(values);
@@ -119,9 +119,9 @@ double pattern_validity(const MeasuredMesh& measured, const Pattern& pattern, Ra
                         const RunContext& context) {
   std::vector<std::size_t> tried(pattern.instances.size() - 1);
   std::iota(tried.begin(), tried.end(), 1);
-  if (tried.size() > kMostInstances) {
-    for (std::size_t i = 0; i < kMostInstances; ++i) std::swap(tried[i], tried[i + random.below(tried.size() - i)]);
-    tried.resize(kMostInstances);
+  if (tried.size() > kMaxInstances) {
+    for (std::size_t i = 0; i < kMaxInstances; ++i) std::swap(tried[i], tried[i + random.below(tried.size() - i)]);
+    tried.resize(kMaxInstances);
     std::ranges::sort(tried);
   }
   const std::vector<int>& first = pattern.instances.front().faces;

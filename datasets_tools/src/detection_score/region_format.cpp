@@ -19,7 +19,7 @@ constexpr double kEqual = 1e-5;         // entries of linear parts; of translati
 constexpr double kRepeated = 1e-4;      // likewise
 constexpr double kMainAxis = 0.05;      // degrees
 constexpr double kGeneratorAxis = 0.1;  // degrees
-constexpr std::size_t kMostElements = 1000;
+constexpr std::size_t kMaxElements = 1000;
 
 bool equal(const Motion& a, const Motion& b, double scale, double tolerance) {
   return (a.linear - b.linear).cwiseAbs().maxCoeff() <= tolerance &&
@@ -103,7 +103,7 @@ void check_finite(const Region& region, double diagonal, std::vector<std::string
     breaches.push_back(symbol + " has " + std::to_string(region.group.order()) + " elements, the list has " +
                        std::to_string(elements.size()));
   }
-  if (elements.size() > kMostElements) {
+  if (elements.size() > kMaxElements) {
     breaches.emplace_back("more than 1000 elements");
     return;
   }

@@ -14,19 +14,19 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kMostTried = 60;
+constexpr int kMaxTried = 60;
 constexpr int kTurns = 24;
 constexpr int kTurnsOfFourCosets = 15;
 constexpr double kNoMotion = 1e-3;
 
 std::vector<Motion> tried_of_finite(const Region& region, Random& random) {
   std::vector<Motion> rest(region.elements.begin() + 1, region.elements.end());
-  if (static_cast<int>(rest.size()) <= kMostTried) return rest;
+  if (static_cast<int>(rest.size()) <= kMaxTried) return rest;
   std::vector<Motion> result;
   for (const Motion& generator : region.generators) {
     if ((generator.linear - Matrix3d::Identity()).cwiseAbs().maxCoeff() > kNoMotion) result.push_back(generator);
   }
-  for (std::size_t i = 0; static_cast<int>(result.size()) < kMostTried; ++i) {
+  for (std::size_t i = 0; static_cast<int>(result.size()) < kMaxTried; ++i) {
     std::swap(rest[i], rest[i + random.below(rest.size() - i)]);
     result.push_back(rest[i]);
   }

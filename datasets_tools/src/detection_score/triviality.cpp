@@ -23,8 +23,8 @@ constexpr int kPatternSamples = 300;
 constexpr double kSlippable = 0.05;  // of the largest eigenvalue
 constexpr double kShift = 0.2;       // turn of a unit twist below which it is a translation
 constexpr int kMixtures = 4;
-constexpr double kMostTurn = 1.7;   // radians
-constexpr double kMostShift = 0.2;  // of the part's diagonal
+constexpr double kMaxTurn = 1.7;   // radians
+constexpr double kMaxShift = 0.2;  // of the part's diagonal
 constexpr double kAmounts[] = {0.31, 0.57, 0.83, 1.0};
 constexpr double kStepShares[] = {0.23, 0.37, 0.51, 0.64, 0.79};
 constexpr int kSharesThatFit = 3;
@@ -132,7 +132,7 @@ bool featureless(const ScoredSurface& part, double part_diagonal, const Region& 
     const Vector3d shift = twist.tail<3>() * size;
     // As far as a quarter of a turn or a fifth of the part.
     const bool turns = turn.norm() * size > 0.3 * shift.norm();
-    const double reach = turns ? kMostTurn / turn.norm() : kMostShift * part_diagonal / std::max(shift.norm(), 1e-9);
+    const double reach = turns ? kMaxTurn / turn.norm() : kMaxShift * part_diagonal / std::max(shift.norm(), 1e-9);
     return std::ranges::all_of(kAmounts, [&](double amount) {
       const double way = amount * reach;
       return whole.fit(samples, reached(way * turn, way * shift, centre), context) >= kFits;

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kMostSteps = 100;
+constexpr int kMaxSteps = 100;
 constexpr double kRounding = 4e-15;  // of the scale, rms: what is left of exact symmetries
 
 Matrix3d cross_matrix(const Vector3d& v) {
@@ -160,7 +160,7 @@ CarriedFit fit_carried_frames(const std::vector<RegionSample>& regions, CarriedM
   // Directions that no element constrains (along a mirror plane, about an axis) are held by the damping alone.
   double damping = 1e-9;
   int stalled = 0;
-  for (int i = 0; i < kMostSteps && damping < 10 && stalled < 3 && energy > enough; ++i) {
+  for (int i = 0; i < kMaxSteps && damping < 10 && stalled < 3 && energy > enough; ++i) {
     Eigen::MatrixXd damped = hessian;
     damped.diagonal().array() += damping * (hessian.trace() / static_cast<double>(hessian.rows()) + 1e-300);
     const Unknowns next = problem.moved(at, solve_semidefinite(damped, -gradient));

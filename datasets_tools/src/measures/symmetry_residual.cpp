@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 // A point maps onto a vertex when it comes this near, as a fraction of the diagonal.
 constexpr double kOntoVertex = 1e-6;
 // Points of each element from which the carried motions are fitted; all are measured.
-constexpr int kMostFitPoints = 600;
-constexpr int kFewestFitPoints = 60;
+constexpr int kMaxFitPoints = 600;
+constexpr int kMinFitPoints = 60;
 constexpr int kFitBudget = 200000;
 
 // All (p, g, q) of one region.
@@ -170,7 +170,7 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
     elements += pairs[r].elements.size();
   }
   if (measured.empty() || elements == 0) return frames;
-  const int points = std::clamp(kFitBudget / static_cast<int>(elements), kFewestFitPoints, kMostFitPoints);
+  const int points = std::clamp(kFitBudget / static_cast<int>(elements), kMinFitPoints, kMaxFitPoints);
   std::vector<RegionSample> samples;
   samples.reserve(measured.size());
   for (const std::size_t r : measured) samples.push_back(sample_of(deformed, regions[r], pairs[r], points));

@@ -20,10 +20,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kMostTurns = 12;
+constexpr int kMaxTurns = 12;
 constexpr int kTrialVertices = 300;
 constexpr int kTrialDirections = 64;
-constexpr int kMostFacets = 64;
+constexpr int kMaxFacets = 64;
 constexpr std::array<int, 15> kFurtherFacets{72, 80, 90, 96, 100, 120, 128, 144, 160, 180, 192, 200, 240, 256, 360};
 
 // `count` numbers spread evenly over [first, last], without repetition.
@@ -70,7 +70,7 @@ class Tessellation {
 // The finest n for which turns by 2 pi / n disturb the tessellation least.
 int facets_about(const Vector3d& axis, const Tessellation& tessellation, double tie) {
   std::vector<int> trials;
-  for (int n = 5; n <= kMostFacets; ++n) trials.push_back(n);
+  for (int n = 5; n <= kMaxFacets; ++n) trials.push_back(n);
   trials.insert(trials.end(), kFurtherFacets.begin(), kFurtherFacets.end());
   std::vector<double> errors;
   errors.reserve(trials.size());
@@ -111,7 +111,7 @@ std::vector<Matrix3d> axial_elements(const Region& region, const RegionSurface& 
   const Vector3d axis = region.axis.normalized();
   const int facets = facets_about(axis, tessellation, tie);
   std::vector<Matrix3d> result;
-  for (const int k : spread(1, facets - 1, kMostTurns)) {
+  for (const int k : spread(1, facets - 1, kMaxTurns)) {
     result.push_back(axis_rotation(axis, 2 * std::numbers::pi * k / facets));
   }
   const Family family = region.group.family;
@@ -146,7 +146,7 @@ std::vector<Motion> tested_elements(const Region& region, const RegionSurface& s
     linear = axial_elements(region, surface);
   } else {
     Random random(5, "tested elements");
-    for (int k = 0; k < kMostTurns; ++k) linear.push_back(random.rotation());
+    for (int k = 0; k < kMaxTurns; ++k) linear.push_back(random.rotation());
     if (region.group.family == Family::Kh) linear.push_back(-Matrix3d::Identity());
   }
   for (const Matrix3d& matrix : linear) add(matrix, Vector3d::Zero());

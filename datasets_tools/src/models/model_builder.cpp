@@ -16,7 +16,7 @@ namespace {
 
 using Family = PointGroup::Family;
 
-constexpr Eigen::Index kMostMeasured = 1000000;  // vertices
+constexpr Eigen::Index kMaxMeasured = 1000000;  // vertices
 
 double area_of(const Eigen::VectorXd& areas, const std::vector<int>& faces) {
   return areas(faces).sum();
@@ -119,7 +119,7 @@ GeneratedModel ModelBuilder::finish() const {
   }
   measured.patterns = model.truth.patterns;
   set_parents(model.truth.regions);
-  if (model.mesh.vertices.rows() > kMostMeasured) return model;
+  if (model.mesh.vertices.rows() > kMaxMeasured) return model;
   RunContext context;
   const SymmetryReport report = symmetry_residual(model.mesh, measured, nullptr, CarriedMotions::fixed, context);
   for (std::size_t r = 0; r < report.regions.size(); ++r) model.truth.regions[r].residual = report.regions[r].floor;

@@ -22,7 +22,7 @@ constexpr double kFacing = 0.2;   // cosine between a triangle and the face that
 constexpr double kUpright = 0.1;  // cosine below which a triangle counts as turned over
 constexpr double kFlat = 1e-3;    // cells off the plane: a quadrangle is cut by its shape alone
 constexpr double kPull = 2e-3;    // towards the middle of the neighbours, against 1 towards the planes
-constexpr int kMostRetreats = 4;
+constexpr int kMaxRetreats = 4;
 
 struct Plane {
   Vector3d point = Vector3d::Zero();
@@ -178,7 +178,7 @@ class Fitter {
 
   // Takes back what would turn a triangle over.
   void retreat(Points& moved) const {
-    for (int pass = 0; pass < kMostRetreats; ++pass) {
+    for (int pass = 0; pass < kMaxRetreats; ++pass) {
       std::vector<int> back;
       for (Index t = 0; t < triangles_.rows(); ++t) {
         const Vector3d& normal = planes_[static_cast<std::size_t>(t)].normal;
@@ -187,7 +187,7 @@ class Fitter {
         for (Index k = 0; k < 3; ++k) back.push_back(triangles_(t, k));
       }
       if (back.empty()) return;
-      const double share = pass + 1 < kMostRetreats ? 0.5 : 0;
+      const double share = pass + 1 < kMaxRetreats ? 0.5 : 0;
       std::ranges::sort(back);
       back.erase(std::unique(back.begin(), back.end()), back.end());
       for (const int v : back) moved.row(v) = vertices_.row(v) + share * (moved.row(v) - vertices_.row(v));

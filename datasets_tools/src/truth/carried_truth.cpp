@@ -33,7 +33,7 @@ constexpr double kSymmetric = 0.9;
 constexpr double kRegionTolerance = 0.02;
 
 // Share of the largest instance's visible area below which one ends its pattern.
-constexpr double kLeastInstance = 0.5;
+constexpr double kMinInstance = 0.5;
 
 void check_share(const char* name, double value, double most) {
   if (value >= 0 && value <= most) return;
@@ -204,7 +204,7 @@ class Carrier {
       instance.faces = new_faces_(instance.faces);
       visible.push_back(area_of(instance.faces));
     }
-    if (std::ranges::min(visible) < kLeastInstance * std::ranges::max(visible)) return;
+    if (std::ranges::min(visible) < kMinInstance * std::ranges::max(visible)) return;
     PatternInstance& first = instances.front();
     const double tolerance = tolerance_of(first.faces);
     const auto kept = [&](const std::vector<int>& from, const std::vector<int>& to, const Motion& motion) {

@@ -30,7 +30,7 @@ bool mere_pair(const std::vector<int>& parts, const std::vector<CongruenceClass>
 std::vector<std::size_t> kinds_of_a_row(const std::vector<int>& parts, const std::vector<CongruenceClass>& kinds,
                                         const std::vector<SurfaceMoments>& moments) {
   constexpr std::size_t kRow = 5;
-  constexpr double kMost = 0.5;
+  constexpr double kMax = 0.5;
   const auto area_of = [&](int part) { return moments[static_cast<std::size_t>(part)].area; };
   double all = 0;
   for (const int part : parts) all += area_of(part);
@@ -45,7 +45,7 @@ std::vector<std::size_t> kinds_of_a_row(const std::vector<int>& parts, const std
     for (const int part : common) in_rows += area_of(part);
     result.push_back(k);
   }
-  if (in_rows <= kMost * all) result.clear();
+  if (in_rows <= kMax * all) result.clear();
   return result;
 }
 
@@ -54,7 +54,7 @@ bool some_of_a_grid(const PointGroup& group, const std::vector<int>& parts, cons
   constexpr std::size_t kGrid = 8;    // members of a kind
   constexpr std::size_t kFew = 6;     // of them in the region
   constexpr double kNearlyAll = 0.8;  // of them
-  constexpr double kMost = 0.7;       // of the region's area
+  constexpr double kMax = 0.7;        // of the region's area
   if (group.continuous() || !group.has_axis() || group.n > 2 || group.order() > 8) return false;
   const auto area_of = [&](int part) { return moments[static_cast<std::size_t>(part)].area; };
   double all = 0;
@@ -69,7 +69,7 @@ bool some_of_a_grid(const PointGroup& group, const std::vector<int>& parts, cons
       continue;
     for (const int part : common) scattered += area_of(part);
   }
-  return scattered > kMost * all;
+  return scattered > kMax * all;
 }
 
 std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {

@@ -24,7 +24,7 @@ CutDiscs::CutDiscs(const PreparedMesh& prepared, std::vector<std::array<FaceSide
     : prepared_(prepared), sides_(std::move(sides)), kinds_(sides_.size(), Kind::outside) {}
 
 std::vector<int> CutDiscs::without(const FoundRegion& region) {
-  constexpr double kMostCut = 0.5;  // of a plane's border
+  constexpr double kMaxCut = 0.5;  // of a plane's border
   if (!about_axis(region)) return region.faces;
   const Eigen::Vector3d axis = region.placement.frame.col(2);
   const auto across = [&](int face) { return std::abs(prepared_.normals.row(face).dot(axis)) > kAlikeNormals; };
@@ -59,7 +59,7 @@ std::vector<int> CutDiscs::without(const FoundRegion& region) {
         }
       }
     }
-    if (cut <= kMostCut * border) rest.insert(rest.end(), disc.begin(), disc.end());
+    if (cut <= kMaxCut * border) rest.insert(rest.end(), disc.begin(), disc.end());
   }
   for (const int face : seen) kind(face) = Kind::outside;
   for (const int face : region.faces) kind(face) = Kind::outside;
@@ -68,8 +68,8 @@ std::vector<int> CutDiscs::without(const FoundRegion& region) {
 }
 
 bool CutDiscs::little_else(const FoundRegion& region, const std::vector<int>& rest) const {
-  constexpr double kLeast = 0.3;
-  return region.placement.group.continuous() && area_of(prepared_, rest) < kLeast * region.area;
+  constexpr double kMin = 0.3;
+  return region.placement.group.continuous() && area_of(prepared_, rest) < kMin * region.area;
 }
 
 // Whether the edge lies along a circle about the axis, as facets do.
@@ -90,9 +90,9 @@ bool CutDiscs::round(const FaceSide& side, const GroupPlacement& placement) cons
 
 void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunContext& context,
                     std::vector<FoundRegion>& regions, Explanation* explanation) {
-  constexpr double kLeastKept = 0.8;  // of its samples: it was verified with the discs, and is not to fail for borders
-  constexpr double kMostOfFinite = 0.5;  // with less beside the discs, a region of a finite group is about the rest
-  constexpr double kLeastShare = 0.002;  // of the mesh's area: a smaller rest says little
+  constexpr double kMinKept = 0.8;  // of its samples: it was verified with the discs, and is not to fail for borders
+  constexpr double kMaxOfFinite = 0.5;  // with less beside the discs, a region of a finite group is about the rest
+  constexpr double kMinShare = 0.002;   // of the mesh's area: a smaller rest says little
   constexpr int kDiscSamples = 1000;
   if (std::ranges::none_of(regions, about_axis)) return;
   CutDiscs discs(prepared);
@@ -104,11 +104,11 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
     const double share = area / region.area;
     bool drop = discs.little_else(region, faces);
     if (!drop) {
-      if (!turned && (share > kMostOfFinite || area < kLeastShare * prepared.area)) return false;
+      if (!turned && (share > kMaxOfFinite || area < kMinShare * prepared.area)) return false;
       const SurfacePatch patch = make_patch(prepared, faces, kDiscSamples, tolerance, context, "discs");
       const Verification rest = verify_group(patch, region.placement, context);
       if (!turned && !passes(rest)) return false;
-      drop = rest.joint < kLeastKept || fades(patch, region.placement, context);
+      drop = rest.joint < kMinKept || fades(patch, region.placement, context);
     }
     if (explanation != nullptr) {
       explanation->notes.push_back({"discs", region.placement.group.symbol() + " on " + region.name, !drop,

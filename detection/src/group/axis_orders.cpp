@@ -16,10 +16,10 @@ constexpr double kScreenShare = 0.80;  // of the samples, while the axis is not 
 constexpr int kOrderSamples = 96;
 constexpr int kHighestScreenedOrder = 180;
 // A rotation that moves no point by more than this many tolerances cannot be told from none.
-constexpr double kLeastMove = 6;
+constexpr double kMinMove = 6;
 // Low orders move far around the axis what they move little along it: for them less will do.
 constexpr double kLowOrder = 6;
-constexpr double kLeastMoveLow = 2;
+constexpr double kMinMoveLow = 2;
 
 // A small turn keeps flat sides within the tolerance; its larger multiples do not.
 std::vector<int> judged_powers(int n) {
@@ -46,8 +46,8 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
                                  double slack) {
   std::vector<int> result;
   const double around = 2 * std::numbers::pi * radius_about(patch, axis, centre) / patch.tolerance;
-  const int highest = static_cast<int>(std::min<double>(
-      kHighestScreenedOrder, std::max(around / kLeastMove, std::min(around / kLeastMoveLow, kLowOrder))));
+  const int highest = static_cast<int>(
+      std::min<double>(kHighestScreenedOrder, std::max(around / kMinMove, std::min(around / kMinMoveLow, kLowOrder))));
   const auto kept = [&](int k, int n) {
     const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
     return kept_share(patch, turn, slack * patch.tolerance, kOrderSamples, kScreenShare) >= kScreenShare;
@@ -65,17 +65,17 @@ std::vector<int> rotation_orders(const SurfacePatch& patch, const Vector3d& axis
 std::vector<RankedOrder> rank_orders(const SurfacePatch& patch, const std::vector<int>& orders, const Vector3d& axis,
                                      const Vector3d& centre) {
   constexpr int kRankSamples = 250;
-  constexpr double kLeastShare = 0.88;
+  constexpr double kMinShare = 0.88;
   constexpr double kNearlyPerfect = 0.985;
   std::vector<RankedOrder> result;
   for (const int n : orders) {
     double share = 1;
     for (const int k : judged_powers(n)) {
       const Motion turn = Motion::rotation(axis, 2 * std::numbers::pi * k / n, centre);
-      share = std::min(share, kept_share(patch, turn, 1.2 * patch.tolerance, kRankSamples, kLeastShare));
-      if (share < kLeastShare) break;
+      share = std::min(share, kept_share(patch, turn, 1.2 * patch.tolerance, kRankSamples, kMinShare));
+      if (share < kMinShare) break;
     }
-    if (share >= kLeastShare) result.push_back({n, share});
+    if (share >= kMinShare) result.push_back({n, share});
   }
   std::ranges::stable_partition(result, [](const RankedOrder& r) { return r.share >= kNearlyPerfect; });
   return result;

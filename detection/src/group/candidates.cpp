@@ -22,9 +22,9 @@ using Eigen::Vector3d;
 constexpr int kGridCells = 48;
 constexpr int kGridPoints = 20000;
 constexpr int kCandidateSamples = 220;
-constexpr std::size_t kMostMaxima = 24;
-constexpr std::size_t kMostCorners = 130;
-constexpr std::size_t kMostCornerAxes = 600;
+constexpr std::size_t kMaxMaxima = 24;
+constexpr std::size_t kMaxCorners = 130;
+constexpr std::size_t kMaxCornerAxes = 600;
 
 // Lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012): exact squared distances along one line.
 void transform_line(std::vector<float>& line, std::vector<float>& out, std::vector<int>& apex,
@@ -110,7 +110,7 @@ std::vector<Vector3d> local_maxima(const DirectionSet& set, const std::vector<do
     if (highest) maxima.emplace_back(-scores[i], static_cast<int>(i));
   }
   std::ranges::sort(maxima);
-  if (maxima.size() > kMostMaxima) maxima.resize(kMostMaxima);
+  if (maxima.size() > kMaxMaxima) maxima.resize(kMaxMaxima);
   std::vector<Vector3d> result;
   for (const auto& [score, i] : maxima) result.push_back(set.directions[static_cast<std::size_t>(i)]);
   return result;
@@ -130,7 +130,7 @@ std::vector<Vector3d> farthest_vertices(const SurfacePatch& patch) {
   }
   std::ranges::sort(groups);
   groups.erase(std::ranges::unique(groups).begin(), groups.end());
-  if (groups.size() > kMostCorners) return {};
+  if (groups.size() > kMaxCorners) return {};
   std::vector<Vector3d> result;
   for (const int g : groups) {
     const int vertex = prepared.weld.representative[static_cast<std::size_t>(g)];
@@ -157,7 +157,7 @@ void add_corner_directions(const SurfacePatch& patch, CandidateDirections& resul
       if (a != b) add(result.corner_axes, corners[a] + corners[b]);
     }
     for (std::size_t b = 0; b < corners.size(); ++b) {
-      for (std::size_t c = 0; c < corners.size() && result.corner_axes.size() < kMostCornerAxes; ++c) {
+      for (std::size_t c = 0; c < corners.size() && result.corner_axes.size() < kMaxCornerAxes; ++c) {
         const double first = (corners[b] - corners[a]).norm();
         const double second = (corners[c] - corners[b]).norm();
         if (a == b || b == c || a == c || std::abs(first - second) > patch.tolerance) continue;

@@ -72,8 +72,8 @@ Motion straightened(const Motion& motion, const GroupPlacement& own) {
 
 namespace {
 
-constexpr int kLeastInstances = 3;
-constexpr int kMostSteps = 400;
+constexpr int kMinInstances = 3;
+constexpr int kMaxSteps = 400;
 
 struct Lattice {
   std::vector<Vector3d> steps;
@@ -174,9 +174,9 @@ struct Screw {
 };
 
 std::optional<Screw> screw_of(const Motion& motion) {
-  constexpr double kLeastTurn = 0.02;
+  constexpr double kMinTurn = 0.02;
   const AxisAngle turn = axis_angle(motion.linear);
-  if (turn.determinant < 0 || turn.angle < kLeastTurn) return std::nullopt;
+  if (turn.determinant < 0 || turn.angle < kMinTurn) return std::nullopt;
   const double rise = turn.axis.dot(motion.translation);
   const Vector3d across = motion.translation - rise * turn.axis;
   return Screw{turn.axis, shortest_solution(Matrix3d::Identity() - motion.linear, across, 1e-12), turn.angle, rise};
@@ -187,12 +187,12 @@ std::optional<Screw> screw_of(const Motion& motion) {
 std::vector<int> powers_of(const Screw& step, const std::vector<Motion>& motions, const GroupPlacement* own,
                            const Vector3d& centroid, double reach, double tolerance) {
   const bool closes = std::abs(step.rise) <= tolerance;
-  const int most = closes ? static_cast<int>(2 * std::numbers::pi / step.angle) + 1 : kMostSteps;
+  const int most = closes ? static_cast<int>(2 * std::numbers::pi / step.angle) + 1 : kMaxSteps;
   std::vector<int> powers;
   for (const Motion& motion : motions) {
     const Vector3d goal = motion(centroid);
     std::optional<int> found;
-    for (int i = 0; i <= 2 * std::min(most, kMostSteps) && !found; ++i) {
+    for (int i = 0; i <= 2 * std::min(most, kMaxSteps) && !found; ++i) {
       const int k = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
       const Motion power = step.power(k);
       if ((power(centroid) - goal).norm() > 3 * tolerance) continue;
@@ -240,7 +240,7 @@ Arrangement arrange(const std::vector<Motion>& given, const GroupPlacement* own,
     for (std::size_t i = 1; i < motions.size(); ++i) motions[i] = straightened(motions[i], *own);
   }
   Arrangement result{Pattern::Kind::congruent, {}, motions, 0};
-  if (motions.size() < kLeastInstances) return result;
+  if (motions.size() < kMinInstances) return result;
   const bool parallel = std::ranges::all_of(
       motions, [&](const Motion& m) { return (m.linear - Matrix3d::Identity()).norm() * reach <= 2 * tolerance; });
   if (parallel) {

@@ -116,7 +116,7 @@ struct Pairs {
   // Summed block by block, so that rounding does not depend on the number of threads.
   NormalEquations sum(const std::vector<Motion>& motions, const RunContext& context) const {
     constexpr Eigen::Index kBlock = 256;
-    constexpr std::size_t kLeastShare = 1;  // blocks
+    constexpr std::size_t kMinShare = 1;  // blocks
     const auto pairs = static_cast<Eigen::Index>(motions.size()) * count;
     likely.resize(static_cast<std::size_t>(pairs), -1);
     std::vector<NormalEquations> blocks(static_cast<std::size_t>((pairs + kBlock - 1) / kBlock));
@@ -128,7 +128,7 @@ struct Pairs {
         }
       }
     };
-    parallel_for(context, blocks.size(), body, kLeastShare);
+    parallel_for(context, blocks.size(), body, kMinShare);
     NormalEquations total;
     for (const NormalEquations& block : blocks) {
       total.matrix += block.matrix;
@@ -193,8 +193,8 @@ std::optional<GroupPlacement> fit_to_vertices(const SurfacePatch& patch, const G
   }
   const PointIndex index(points);
   const double scale = std::max(patch.moments.radius, 1e-9);
-  constexpr Eigen::Index kMostVertices = 2000;
-  const Eigen::Index count = std::min(points.rows(), kMostVertices);
+  constexpr Eigen::Index kMaxVertices = 2000;
+  const Eigen::Index count = std::min(points.rows(), kMaxVertices);
   GroupPlacement placement = start;
   double reach = 0.3 * patch.tolerance;
   double rms = 0;

@@ -19,8 +19,8 @@ using Family = PointGroup::Family;
 using Corners = std::array<Vector3d, 3>;
 
 constexpr int kSurroundingSamples = 1500;
-constexpr double kLeastSurroundings = 0.02;  // of the diagonal
-constexpr double kFineness = 5;              // pieces of triangle on the reach
+constexpr double kMinSurroundings = 0.02;  // of the diagonal
+constexpr double kFineness = 5;            // pieces of triangle on the reach
 
 bool about_point(const PointGroup& group) {
   return group.family == Family::K || group.family == Family::Kh;
@@ -132,7 +132,7 @@ SurfacePatch surroundings(const PreparedMesh& prepared, const std::shared_ptr<co
     return result;
   };
   std::vector<OrbitDistance> orbits;
-  double reach = kLeastSurroundings;
+  double reach = kMinSurroundings;
   for (const int seed : seeds) {
     const Corners c = corners(seed);
     const Vector3d centroid = (c[0] + c[1] + c[2]) / 3;

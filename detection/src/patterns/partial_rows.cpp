@@ -15,12 +15,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kMostOfRegion = 24;        // elements
-constexpr int kMostAround = 120;         // elements
-constexpr double kLeastDeciding = 0.02;  // of the region's area
-constexpr double kLeastShared = 0.5;
-constexpr double kMostShared = 0.97;  // more: the element keeps the region
-constexpr double kShift = 4;          // tolerances that a translation moves at least
+constexpr int kMaxOfRegion = 24;       // elements
+constexpr int kMaxAround = 120;        // elements
+constexpr double kMinDeciding = 0.02;  // of the region's area
+constexpr double kMinShared = 0.5;
+constexpr double kMaxShared = 0.97;  // more: the element keeps the region
+constexpr double kShift = 4;         // tolerances that a translation moves at least
 
 // A host turned about an axis that the group leaves in place turns into itself anyway: the faces of the region that
 // stand on it decide.
@@ -58,7 +58,7 @@ class RowTest {
     if (steps.empty()) return false;
     const std::vector<Eigen::Index> shared = kept_by(inverse(around));
     const double share = static_cast<double>(shared.size()) / static_cast<double>(patch_.samples.points.rows());
-    if (share < kLeastShared || share > kMostShared) return false;
+    if (share < kMinShared || share > kMaxShared) return false;
     return std::ranges::any_of(steps, [&](const Motion& step) { return leaves(step, shared); });
   }
 
@@ -99,16 +99,16 @@ class RowTest {
 
   // Whether some power of the step takes most of the samples off the mesh, before one leaves all where they are.
   bool leaves(const Motion& step, const std::vector<Eigen::Index>& samples) const {
-    constexpr int kMostPowers = 40;
-    constexpr double kMost = 0.5;  // of the samples stay
+    constexpr int kMaxPowers = 40;
+    constexpr double kMax = 0.5;  // of the samples stay
     Motion power = step;
-    for (int k = 1; k <= kMostPowers; ++k, power = step * power) {
+    for (int k = 1; k <= kMaxPowers; ++k, power = step * power) {
       const double moved =
           motion_distance(power, Motion{}, patch_.moments.centroid, std::max(patch_.moments.radius, 1e-9));
       if (moved < patch_.tolerance) return false;
       const auto kept =
           std::ranges::count_if(samples, [&](Eigen::Index i) { return keeps(power, i, *prepared_.index); });
-      if (static_cast<double>(kept) < kMost * static_cast<double>(samples.size())) return true;
+      if (static_cast<double>(kept) < kMax * static_cast<double>(samples.size())) return true;
     }
     return false;
   }
@@ -135,9 +135,9 @@ bool finite_of(const FoundRegion& region, int most) {
 
 // Whether the other region holds this one.
 bool around(const PreparedMesh& prepared, const FoundRegion& other, const FoundRegion& region) {
-  constexpr double kMostOutside = 0.05;  // of the region's area
-  return other.area > region.area && finite_of(other, kMostAround) &&
-         area_outside(prepared, region.faces, other.faces) <= kMostOutside * region.area;
+  constexpr double kMaxOutside = 0.05;  // of the region's area
+  return other.area > region.area && finite_of(other, kMaxAround) &&
+         area_outside(prepared, region.faces, other.faces) <= kMaxOutside * region.area;
 }
 
 }  // namespace
@@ -148,9 +148,9 @@ void drop_some_of_rows(const PreparedMesh& prepared, double tolerance, const Run
   parallel_for(context, regions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       const FoundRegion& region = regions[r];
-      if (!finite_of(region, kMostOfRegion)) continue;
+      if (!finite_of(region, kMaxOfRegion)) continue;
       const std::vector<int> faces = deciding_faces(prepared, regions, region, tolerance);
-      if (area_of(prepared, faces) < kLeastDeciding * region.area) continue;
+      if (area_of(prepared, faces) < kMinDeciding * region.area) continue;
       const RowTest test(prepared, region, faces, tolerance, context);
       some[r] = std::ranges::any_of(regions, [&](const FoundRegion& other) {
         if (!around(prepared, other, region) || !of_its_kind(other.placement, region.placement)) return false;

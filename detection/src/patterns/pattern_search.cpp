@@ -102,9 +102,9 @@ class PatternSearch {
 
   // Where all copies but one are in order, leaves that one out: one of many may be out of place.
   void leave_one_out(std::size_t number, CongruenceClass& kind, Arrangement& arrangement) const {
-    constexpr std::size_t kLeast = 6;  // any few are in some order
-    constexpr std::size_t kMost = 40;
-    if (kind.members.size() < kLeast || kind.members.size() > kMost) return;
+    constexpr std::size_t kMin = 6;  // any few are in some order
+    constexpr std::size_t kMax = 40;
+    if (kind.members.size() < kMin || kind.members.size() > kMax) return;
     for (std::size_t out = 0; out < kind.members.size(); ++out) {
       context_.check();
       CongruenceClass others = kind;

@@ -12,7 +12,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kFewest = 3;  // instances: any two regions alike are a pair
+constexpr std::size_t kMin = 3;  // instances: any two regions alike are a pair
 
 // For comparing groups by size: continuous ones exceed all finite ones.
 int elements_of(const FoundRegion& region) {
@@ -62,7 +62,7 @@ void drop_lone(std::vector<const FoundRegion*>& regions) {
   std::erase_if(regions, [&](const FoundRegion* region) {
     const auto alike = std::ranges::count_if(
         all, [&](const FoundRegion* other) { return std::abs(other->area - region->area) <= kAlike * region->area; });
-    return alike < static_cast<std::ptrdiff_t>(kFewest);
+    return alike < static_cast<std::ptrdiff_t>(kMin);
   });
 }
 
@@ -98,7 +98,7 @@ std::vector<Pattern> find_region_patterns(const PreparedMesh& prepared, const st
   constexpr double kKnown = 0.5;  // of a pattern's area
   std::vector<const FoundRegion*> copies = regions_apart(prepared, regions);
   drop_lone(copies);
-  if (copies.size() < kFewest) return {};
+  if (copies.size() < kMin) return {};
   PreparedMesh partition = prepared;
   partition.components = components_of(prepared, copies);
   PartRegions parts;
@@ -113,7 +113,7 @@ std::vector<Pattern> find_region_patterns(const PreparedMesh& prepared, const st
   std::vector<Pattern> result;
   for (Pattern& pattern : find_patterns(partition, parts, regions, options, context)) {
     const std::vector<int> faces = faces_of(pattern);
-    if (pattern.instances.size() < kFewest || area_marked(prepared, faces, said) > kKnown * area_of(prepared, faces)) {
+    if (pattern.instances.size() < kMin || area_marked(prepared, faces, said) > kKnown * area_of(prepared, faces)) {
       continue;
     }
     pattern.id = static_cast<int>(known.size() + result.size());

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostPlaces = 200;
+constexpr int kMaxPlaces = 200;
 
 /// Parts that a step repeats.
 class RowSearch {
@@ -32,7 +32,7 @@ class RowSearch {
         tolerance_(tolerance),
         context_(context),
         step_(step),
-        most_(step_.places(kMostPlaces)),
+        most_(step_.places(kMaxPlaces)),
         lengths_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0) {}
 
   // The part that covers most, at its first place, and its number of places; none where nothing repeats often enough.
@@ -98,10 +98,10 @@ class RowSearch {
   // Whether the face stays on the surface most of the way to the next place.
   bool slides(int face) const {
     constexpr int kParts = 8;
-    constexpr int kMost = 4;  // of the places between
+    constexpr int kMax = 4;  // of the places between
     int on = 0;
     for (int k = 1; k < kParts; ++k) on += on_surface(step_.times(static_cast<double>(k) / kParts), face) ? 1 : 0;
-    return on > kMost;
+    return on > kMax;
   }
 
   // Of a face at the first of several places: at how many in a row the surface has it. 0 for all others.
@@ -110,7 +110,7 @@ class RowSearch {
     if (slides(face)) return 0;
     int count = 2;
     while (count < most_ && on_surface(step_.times(count), face)) ++count;
-    return count >= kFewest ? count : 0;
+    return count >= kMin ? count : 0;
   }
 
   // Faces at first places that hang together.
@@ -152,7 +152,7 @@ class RowSearch {
     return 0;
   }
 
-  static constexpr int kFewest = 3;  // places
+  static constexpr int kMin = 3;  // places
 
   const PreparedMesh& prepared_;
   double tolerance_;

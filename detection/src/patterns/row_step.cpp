@@ -45,8 +45,8 @@ Motion RowStep::times(double share) const {
 RowStep refined_step(const PreparedMesh& prepared, const RowStep& start, const std::vector<int>& faces, int places,
                      double tolerance) {
   constexpr int kIterations = 4;
-  constexpr std::size_t kMostFaces = 300;
-  constexpr int kMostPlaces = 5;
+  constexpr std::size_t kMaxFaces = 300;
+  constexpr int kMaxPlaces = 5;
   constexpr double kReach = 2;    // tolerances
   constexpr double kTiny = 1e-5;  // of a difference quotient
   const bool turns = start.turns();
@@ -69,8 +69,8 @@ RowStep refined_step(const PreparedMesh& prepared, const RowStep& start, const s
     }
     return result;
   };
-  const int count = std::min(places - 1, kMostPlaces);
-  const std::size_t looks = std::min(faces.size(), kMostFaces);
+  const int count = std::min(places - 1, kMaxPlaces);
+  const std::size_t looks = std::min(faces.size(), kMaxFaces);
   Motion step = first;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const RowStep now(step);

@@ -116,14 +116,14 @@ std::vector<int> spread(const PreparedMesh& prepared, const std::vector<int>& fa
 
 // The ball on which two faces lie, where their normals meet as far from one as from the other.
 std::optional<Ball> ball_of_two(const PreparedMesh& prepared, int one, int other, double tolerance) {
-  constexpr double kLeastSine = 0.3;  // of the angle between the normals
+  constexpr double kMinSine = 0.3;  // of the angle between the normals
   const Vector3d p = face_centroid(prepared, one);
   const Vector3d q = face_centroid(prepared, other);
   const Vector3d m = prepared.normals.row(one);
   const Vector3d n = prepared.normals.row(other);
   const Vector3d across = m.cross(n);
   const double sine = across.squaredNorm();
-  if (sine < kLeastSine * kLeastSine) return std::nullopt;
+  if (sine < kMinSine * kMinSine) return std::nullopt;
   const double along = (q - p).cross(n).dot(across) / sine;
   const double along_other = (q - p).cross(m).dot(across) / sine;
   if (std::abs(along - along_other) > tolerance || (p + along * m - q - along_other * n).norm() > tolerance) {
@@ -135,14 +135,14 @@ std::optional<Ball> ball_of_two(const PreparedMesh& prepared, int one, int other
 // The ball that much of a piece lies on, where what stands on it goes over into it smoothly: that of two faces on which
 // most others lie, then fitted to what lies on it, nearer and nearer.
 std::optional<FacesOfBall> ball_of_much(const PreparedMesh& prepared, const std::vector<int>& faces, double tolerance) {
-  constexpr double kLeast = 0.2;   // of the mesh's area: what smaller ones keep by chance is little
+  constexpr double kMin = 0.2;     // of the mesh's area: what smaller ones keep by chance is little
   constexpr double kCurved = 0.3;  // as above; a cap of about 60 degrees
   constexpr double kMuch = 0.4;    // of the piece's area
   constexpr int kSeeds = 40;
   constexpr int kOthers = 150;
   constexpr double kLoose = 4;  // tolerances
   const double area = area_of(prepared, faces);
-  if (area < kLeast * prepared.area) return std::nullopt;
+  if (area < kMin * prepared.area) return std::nullopt;
   const std::vector<int> seeds = spread(prepared, faces, kSeeds);
   const std::vector<int> looks = spread(prepared, faces, kOthers);
   std::optional<Ball> ball;
@@ -160,7 +160,7 @@ std::optional<FacesOfBall> ball_of_much(const PreparedMesh& prepared, const std:
   for (const double width : {kLoose, 2.0, 1.0, 1.0}) {
     if (!ball) return std::nullopt;
     result.faces = faces_on(prepared, faces, *ball, width * tolerance);
-    if (area_of(prepared, result.faces) < std::max(kMuch * area, kLeast * prepared.area) ||
+    if (area_of(prepared, result.faces) < std::max(kMuch * area, kMin * prepared.area) ||
         !fitted_ball(prepared, result.faces, kCurved)) {
       return std::nullopt;
     }
@@ -173,12 +173,12 @@ std::optional<FacesOfBall> ball_of_much(const PreparedMesh& prepared, const std:
 }  // namespace
 
 Balls find_balls(const PreparedMesh& prepared, double tolerance) {
-  constexpr double kLeast = 0.01;  // of the mesh's area
-  constexpr double kSame = 2;      // tolerances
+  constexpr double kMin = 0.01;  // of the mesh's area
+  constexpr double kSame = 2;    // tolerances
   Balls balls;
   balls.ball_of_face.assign(static_cast<std::size_t>(prepared.mesh.faces.rows()), -1);
   for (const std::vector<int>& piece : prepared.components.faces) {
-    if (area_of(prepared, piece) < kLeast * prepared.area) continue;
+    if (area_of(prepared, piece) < kMin * prepared.area) continue;
     std::optional<FacesOfBall> found = ball_of_all(prepared, piece, tolerance);
     if (!found) found = ball_of_much(prepared, piece, tolerance);
     if (!found) continue;
@@ -208,8 +208,8 @@ bool fixes(const GroupPlacement& placement, const Ball& ball, double tolerance) 
 
 bool little_but_cut_balls(const PreparedMesh& prepared, const Balls& balls, const std::vector<int>& faces,
                           const GroupPlacement& placement, double tolerance) {
-  constexpr double kAll = 0.98;   // of a ball
-  constexpr double kLeast = 0.3;  // of the region, beside balls
+  constexpr double kAll = 0.98;  // of a ball
+  constexpr double kMin = 0.3;   // of the region, beside balls
   if (balls.all.empty()) return false;
   std::vector<double> inside(balls.all.size(), 0);
   double area = 0;
@@ -223,7 +223,7 @@ bool little_but_cut_balls(const PreparedMesh& prepared, const Balls& balls, cons
     const Ball& ball = balls.all[b];
     if (inside[b] > 0 && inside[b] < kAll * ball.area && fixes(placement, ball, tolerance)) rest -= inside[b];
   }
-  return rest < kLeast * area;
+  return rest < kMin * area;
 }
 
 }  // namespace orbifit

@@ -18,12 +18,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kLeastShare = 0.001;    // of the mesh's area that a part, or all its copies, must have
+constexpr double kMinShare = 0.001;      // of the mesh's area that a part, or all its copies, must have
 constexpr double kSameDirection = 0.03;  // radians
-constexpr std::size_t kMostPairs = 24;   // members of a class of which all pairs are looked at
+constexpr std::size_t kMaxPairs = 24;    // members of a class of which all pairs are looked at
 constexpr std::size_t kNeighbours = 6;
-constexpr std::size_t kMostAxes = 60;
-constexpr std::size_t kMostPlanes = 40;
+constexpr std::size_t kMaxAxes = 60;
+constexpr std::size_t kMaxPlanes = 40;
 constexpr double kRevolutionAngle = 0.1;  // radians
 
 // What a motion that carries one part onto another must carry along.
@@ -89,8 +89,8 @@ std::optional<Line> own_axis(const PreparedMesh& prepared, const std::vector<int
     if (deviations[2] - deviations[1] > 0.03 * deviations[2]) return std::nullopt;
     return Line{shape.centroid, solver.eigenvectors().col(0)};
   }
-  constexpr std::size_t kMostFaces = 600;
-  const std::size_t count = std::min(faces.size(), kMostFaces);
+  constexpr std::size_t kMaxFaces = 600;
+  const std::size_t count = std::min(faces.size(), kMaxFaces);
   Points points(static_cast<Eigen::Index>(count), 3);
   Points normals(static_cast<Eigen::Index>(count), 3);
   Eigen::VectorXd weights(static_cast<Eigen::Index>(count));
@@ -122,12 +122,12 @@ class LineSearch {
     for (const CongruenceClass& kind : survey_.classes) {
       double area = 0;
       for (const int c : kind.members) area += shape(c).area;
-      if (area < kLeastShare * prepared_.area) continue;
+      if (area < kMinShare * prepared_.area) continue;
       vote_for_own_axes(kind);
       vote_for_circles(kind);
       vote_for_pairs(kind);
     }
-    return {axes_.best(kMostAxes), planes_.best(kMostPlanes)};
+    return {axes_.best(kMaxAxes), planes_.best(kMaxPlanes)};
   }
 
  private:
@@ -192,7 +192,7 @@ class LineSearch {
 
   void vote_for_pairs(const CongruenceClass& kind) {
     const std::size_t count = kind.members.size();
-    if (count > kMostPairs) {
+    if (count > kMaxPairs) {
       for (const int c : kind.members) {
         for (const int other : neighbours(kind, c)) {
           if (c < other) vote_for_pair(c, other);

@@ -63,10 +63,10 @@ class Coarsening {
       }
       if (!leave_broken_components(coarse)) break;
     }
-    find_stand_ins();
+    find_proxy_faces();
     std::vector<int> all(first_.size());
     std::iota(all.begin(), all.end(), 0);
-    return CoarseMesh{submesh(mesh_, all), std::move(stand_in_)};
+    return CoarseMesh{submesh(mesh_, all), std::move(proxy_face_)};
   }
 
  private:
@@ -87,19 +87,19 @@ class Coarsening {
       mesh_.vertices.row(static_cast<Eigen::Index>(c)) = clusters_[c].place;
       for (const int site : clusters_[c].sites) cluster_of_site_[number(site)] = static_cast<int>(c);
     }
-    stand_in_.assign(sites_.of_face.size(), -1);
+    proxy_face_.assign(sites_.of_face.size(), -1);
     first_.clear();
     const std::vector<char> folds = find_folds();
     for (std::size_t component = 0; component < as_it_is_.size(); ++component) {
       for (const int face : prepared_.components.faces[component]) {
-        int& stand_in = stand_in_[number(face)];
+        int& proxy_face = proxy_face_[number(face)];
         if (as_it_is_[component] != 0) {
-          stand_in = static_cast<int>(first_.size());
+          proxy_face = static_cast<int>(first_.size());
         } else if (like_[number(face)] >= 0 && folds[number(like_[number(face)])] == 0) {
           const int like = like_[number(face)];
-          stand_in = like == face ? static_cast<int>(first_.size()) : stand_in_[number(like)];
+          proxy_face = like == face ? static_cast<int>(first_.size()) : proxy_face_[number(like)];
         }
-        if (stand_in == static_cast<int>(first_.size())) first_.push_back(face);
+        if (proxy_face == static_cast<int>(first_.size())) first_.push_back(face);
       }
     }
     mesh_.faces.resize(static_cast<Eigen::Index>(first_.size()), 3);
@@ -220,36 +220,36 @@ class Coarsening {
   }
 
   // Faces whose corners came together: the nearest of the coarse faces at those corners, with regard to the normal.
-  void find_stand_ins() {
+  void find_proxy_faces() {
     std::vector<std::vector<int>> around(clusters_.size());
     for (Eigen::Index f = 0; f < mesh_.faces.rows(); ++f) {
       for (int k = 0; k < 3; ++k) around[number(mesh_.faces(f, k))].push_back(static_cast<int>(f));
     }
     const Points normals = face_normals(mesh_);
-    parallel_for(context_, stand_in_.size(), [&](std::size_t begin, std::size_t end) {
+    parallel_for(context_, proxy_face_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         if (f % 4096 == 0) context_.check();
-        if (stand_in_[f] < 0) stand_in_[f] = nearest_of(static_cast<int>(f), around, normals);
+        if (proxy_face_[f] < 0) proxy_face_[f] = nearest_of(static_cast<int>(f), around, normals);
       }
     });
     // What dangles has no coarse face at its corners: as its neighbours do.
     std::vector<int> open;
-    for (std::size_t f = 0; f < stand_in_.size(); ++f) {
-      if (stand_in_[f] < 0) open.push_back(static_cast<int>(f));
+    for (std::size_t f = 0; f < proxy_face_.size(); ++f) {
+      if (proxy_face_[f] < 0) open.push_back(static_cast<int>(f));
     }
     std::vector<int> of_site(sites_.group.size(), -1);
     for (std::size_t before = open.size() + 1; !open.empty() && open.size() < before;) {
       before = open.size();
-      for (std::size_t f = 0; f < stand_in_.size(); ++f) {
+      for (std::size_t f = 0; f < proxy_face_.size(); ++f) {
         for (const int site : sites_.of_face[f]) {
-          if (of_site[number(site)] < 0) of_site[number(site)] = stand_in_[f];
+          if (of_site[number(site)] < 0) of_site[number(site)] = proxy_face_[f];
         }
       }
       std::erase_if(open, [&](int f) {
         for (const int site : sites_.of_face[number(f)]) {
-          stand_in_[number(f)] = std::max(stand_in_[number(f)], of_site[number(site)]);
+          proxy_face_[number(f)] = std::max(proxy_face_[number(f)], of_site[number(site)]);
         }
-        return stand_in_[number(f)] >= 0;
+        return proxy_face_[number(f)] >= 0;
       });
     }
   }
@@ -287,8 +287,8 @@ class Coarsening {
   std::vector<int> cluster_of_site_;
   std::vector<int> like_;  // by fine face: the first with its corners' clusters; -1 where two are the same
   Mesh mesh_;
-  std::vector<int> first_;     // by coarse face: the fine face from which it comes
-  std::vector<int> stand_in_;  // by fine face; -1 as long as there is none
+  std::vector<int> first_;       // by coarse face: the fine face from which it comes
+  std::vector<int> proxy_face_;  // by fine face; -1 as long as there is none
 };
 
 }  // namespace
@@ -298,15 +298,15 @@ std::optional<CoarseMesh> coarse_mesh(const PreparedMesh& prepared, const Coarse
   return Coarsening(prepared, options, context).run();
 }
 
-Components carried_pieces(const Components& pieces, const PreparedMesh& fine, const CoarseMesh& coarse) {
+Components transferred_pieces(const Components& pieces, const PreparedMesh& fine, const CoarseMesh& coarse) {
   struct Share {
     int face, piece;
     double area;
   };
   std::vector<Share> shares;
-  shares.reserve(coarse.stand_in.size());
-  for (std::size_t f = 0; f < coarse.stand_in.size(); ++f) {
-    shares.push_back({coarse.stand_in[f], pieces.component_of_face[f], fine.areas[static_cast<Eigen::Index>(f)]});
+  shares.reserve(coarse.proxy_face.size());
+  for (std::size_t f = 0; f < coarse.proxy_face.size(); ++f) {
+    shares.push_back({coarse.proxy_face[f], pieces.component_of_face[f], fine.areas[static_cast<Eigen::Index>(f)]});
   }
   std::ranges::stable_sort(shares, {}, [](const Share& s) { return std::pair(s.face, s.piece); });
   const auto count = static_cast<std::size_t>(coarse.mesh.faces.rows());

@@ -13,8 +13,8 @@ namespace orbifit {
 
 /// A coarse mesh that stands for a fine one.
 struct CoarseMesh {
-  Mesh mesh;                  ///< in the frame of the prepared mesh; components in its order, one each
-  std::vector<int> stand_in;  ///< by face of the fine mesh: the face of `mesh`, of its component, that is where it is
+  Mesh mesh;                    ///< in the frame of the prepared mesh; components in its order, one each
+  std::vector<int> proxy_face;  ///< by face of the fine mesh: the face of `mesh`, of its component, that is where it is
 };
 
 struct CoarseMeshOptions {
@@ -33,6 +33,6 @@ std::optional<CoarseMesh> coarse_mesh(const PreparedMesh& prepared, const Coarse
 
 /// Pieces of the fine mesh as the coarse one has them: each coarse face is in the piece that has most of the area for
 /// which it stands. Pieces keep their order; those that are left with nothing are left out. Costs O(F log F).
-Components carried_pieces(const Components& pieces, const PreparedMesh& fine, const CoarseMesh& coarse);
+Components transferred_pieces(const Components& pieces, const PreparedMesh& fine, const CoarseMesh& coarse);
 
 }  // namespace orbifit

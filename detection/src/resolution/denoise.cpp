@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kFewestVertices = 1500;
+constexpr std::size_t kMinVertices = 1500;
 constexpr double kLongestEdge = 0.02;       // mean, in diagonals
 constexpr double kMedianOfNormal = 0.6745;  // of the absolute value, in standard deviations
 
@@ -50,7 +50,7 @@ Lists neighbours_of_groups(const PreparedMesh& prepared) {
 
 // Faces that share a corner with each face.
 Lists neighbours_of_faces(const PreparedMesh& prepared) {
-  constexpr std::size_t kMost = 64;  // at a corner: the apex of a large fan says nothing about noise
+  constexpr std::size_t kMax = 64;  // at a corner: the apex of a large fan says nothing about noise
   Lists result;
   std::vector<int> around;
   for (Eigen::Index f = 0; f < prepared.mesh.faces.rows(); ++f) {
@@ -58,7 +58,7 @@ Lists neighbours_of_faces(const PreparedMesh& prepared) {
     for (int k = 0; k < 3; ++k) {
       const int group = prepared.weld.group_of_vertex[static_cast<std::size_t>(prepared.mesh.faces(f, k))];
       const std::vector<int>& at = prepared.faces_of_vertex[static_cast<std::size_t>(group)];
-      if (at.size() <= kMost) around.insert(around.end(), at.begin(), at.end());
+      if (at.size() <= kMax) around.insert(around.end(), at.begin(), at.end());
     }
     std::ranges::sort(around);
     around.erase(std::unique(around.begin(), around.end()), around.end());
@@ -147,10 +147,10 @@ std::vector<Roughness> roughness(const PreparedMesh& prepared, const Lists& arou
 // 40 to 43 % are off to the same side (half of those of a remeshed shape with thin parts, two thirds of a lathe's); and
 // wherever the mesh is as fine, the offsets are spread as a normal distribution is.
 bool looks_independent(const Lists& around, const std::vector<Roughness>& rough) {
-  constexpr double kFewestSame = 0.37;
-  constexpr double kMostSame = 0.46;
+  constexpr double kMinSame = 0.37;
+  constexpr double kMaxSame = 0.46;
   constexpr double kTenthOfNormal = 0.1257;  // the quantile of the absolute value, in standard deviations
-  constexpr double kLeastOfMedian = 0.65;
+  constexpr double kMinOfMedian = 0.65;
   std::size_t pairs = 0;
   std::size_t same = 0;
   std::vector<std::pair<double, double>> sizes;  // by the length of edges
@@ -165,7 +165,7 @@ bool looks_independent(const Lists& around, const std::vector<Roughness>& rough)
     }
   }
   const double share = pairs == 0 ? 1 : static_cast<double>(same) / static_cast<double>(pairs);
-  if (share < kFewestSame || share > kMostSame) return false;
+  if (share < kMinSame || share > kMaxSame) return false;
   std::ranges::sort(sizes);
   constexpr std::size_t kParts = 4;
   for (std::size_t part = 0; part < kParts; ++part) {
@@ -174,7 +174,7 @@ bool looks_independent(const Lists& around, const std::vector<Roughness>& rough)
       here.push_back(sizes[i].second);
     }
     const double tenth = quantile_of(here, 0.1) / kTenthOfNormal;
-    if (tenth < kLeastOfMedian * quantile_of(here, 0.5) / kMedianOfNormal) return false;
+    if (tenth < kMinOfMedian * quantile_of(here, 0.5) / kMedianOfNormal) return false;
   }
   return true;
 }
@@ -182,7 +182,7 @@ bool looks_independent(const Lists& around, const std::vector<Roughness>& rough)
 }  // namespace
 
 double noise_of(const PreparedMesh& prepared) {
-  if (prepared.faces_of_vertex.size() < kFewestVertices) return 0;
+  if (prepared.faces_of_vertex.size() < kMinVertices) return 0;
   const Lists around = neighbours_of_groups(prepared);
   const std::vector<Roughness> rough = roughness(prepared, around);
   double edges = 0;

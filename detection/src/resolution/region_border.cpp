@@ -30,8 +30,8 @@ RegionBorder::RegionBorder(const PreparedMesh& fine, const CoarseMesh& coarse, c
       tolerance_(tolerance),
       coarse_of_fine_(inverse(prepared.input_of_normalised)),
       faces_of_(static_cast<std::size_t>(coarse.mesh.faces.rows())) {
-  for (std::size_t f = 0; f < coarse.stand_in.size(); ++f) {
-    faces_of_[static_cast<std::size_t>(coarse.stand_in[f])].push_back(static_cast<int>(f));
+  for (std::size_t f = 0; f < coarse.proxy_face.size(); ++f) {
+    faces_of_[static_cast<std::size_t>(coarse.proxy_face[f])].push_back(static_cast<int>(f));
   }
 }
 

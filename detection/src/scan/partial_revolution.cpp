@@ -24,9 +24,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNormalAngle = 0.26;                      // radians off the axis' plane, 15 degrees
-constexpr double kLeastArc = 70 * std::numbers::pi / 180;  // of a surface that is not merely bent
-constexpr double kSteep = 0.94;                            // cosine to the axis, 20 degrees
+constexpr double kNormalAngle = 0.26;                    // radians off the axis' plane, 15 degrees
+constexpr double kMinArc = 70 * std::numbers::pi / 180;  // of a surface that is not merely bent
+constexpr double kSteep = 0.94;                          // cosine to the axis, 20 degrees
 constexpr int kArcBins = 72;
 constexpr int kScored = 1200;  // points on which a proposed axis is judged
 constexpr int kProposals = 60;
@@ -83,7 +83,7 @@ class Profile {
   // and is more than a sliver: the flat end of a box turns into itself, but its sides do not.
   bool sound() const {
     constexpr double kOutwards = 1.5;
-    constexpr double kMost = 0.6;
+    constexpr double kMax = 0.6;
     constexpr double kSliver = 0.1;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -99,8 +99,8 @@ class Profile {
     const auto around = std::ranges::count_if(places_, [&](const ProfilePoint& p) {
       return p.steep && p.place.x() >= low && p.place.x() <= high && p.place.y() <= far;
     });
-    return static_cast<double>(steep) >= kMost * static_cast<double>(around) &&
-           static_cast<double>(steep) >= kSliver * static_cast<double>(count()) && arc() >= kLeastArc;
+    return static_cast<double>(steep) >= kMax * static_cast<double>(around) &&
+           static_cast<double>(steep) >= kSliver * static_cast<double>(count()) && arc() >= kMinArc;
   }
 
   // Longest run of angles at which steep points of the profile are seen; gaps of two bins are none.
@@ -138,8 +138,8 @@ class Profile {
   // The signed distance of each point from the line through the mean of its neighbours on the profile.
   void measure(double tolerance) {
     constexpr double kCompatible = 0.85;
-    constexpr int kLeastNeighbours = 6;
-    constexpr double kLeastSpread = 0.25;  // radians of angle over which the neighbours must agree
+    constexpr int kMinNeighbours = 6;
+    constexpr double kMinSpread = 0.25;  // radians of angle over which the neighbours must agree
     mean_normal_.assign(places_.size(), Vector2d::Zero());
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const ProfilePoint& here = places_[i];
@@ -164,9 +164,9 @@ class Profile {
           }
         }
       }
-      if (count < kLeastNeighbours) continue;
+      if (count < kMinNeighbours) continue;
       const double together = direction.norm() / count;  // 1: all at one angle
-      if (std::sqrt(std::max(0.0, 2 * (1 - together))) < kLeastSpread) continue;
+      if (std::sqrt(std::max(0.0, 2 * (1 - together))) < kMinSpread) continue;
       mean_normal_[i] = normal.normalized();
       offset_[i] = mean_normal_[i].dot(here.place - mean / count);
       belongs_[i] = std::abs(offset_[i]) <= tolerance ? 1 : 0;

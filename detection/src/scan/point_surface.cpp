@@ -23,7 +23,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kLeastPoints = 50;
+constexpr int kMinPoints = 50;
 
 Vector3d row(const Points& points, int i) {
   return points.row(i);
@@ -148,7 +148,7 @@ std::vector<std::vector<int>> find_clusters(const Points& points, const PointInd
 // Whether hardly any direction from `eye` meets the surface at two depths.
 bool seen_from(const Points& points, const std::vector<double>& spacings, const Vector3d& eye) {
   constexpr double kFewAngles = 2.0;  // spacings
-  constexpr double kMostBehind = 0.05;
+  constexpr double kMaxBehind = 0.05;
   double nearest = std::numeric_limits<double>::infinity();
   std::vector<double> angles;
   for (int i = 0; i < points.rows(); ++i) {
@@ -169,16 +169,16 @@ bool seen_from(const Points& points, const std::vector<double>& spacings, const 
     if (!fresh) at->second = {std::min(at->second[0], p.z()), std::max(at->second[1], p.z())};
   }
   const auto behind = std::ranges::count_if(depths, [](const auto& d) { return d.second[1] - d.second[0] > 0.1; });
-  return static_cast<double>(behind) < kMostBehind * static_cast<double>(depths.size());
+  return static_cast<double>(behind) < kMaxBehind * static_cast<double>(depths.size());
 }
 
 }  // namespace
 
 PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& context) {
-  if (scan.points.rows() < kLeastPoints) {
+  if (scan.points.rows() < kMinPoints) {
     throw InputError("", "",
                      "the scan has " + std::to_string(scan.points.rows()) + " points; symmetries are looked for from " +
-                         std::to_string(kLeastPoints) + " on");
+                         std::to_string(kMinPoints) + " on");
   }
   if (!scan.points.allFinite()) throw InputError("", "points", "a coordinate is not finite");
   const double size = diagonal(scan.points);
@@ -199,10 +199,10 @@ PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& 
     kept = thin(all, outlier, edge, result.kept_of_point);
   }
   const int count = static_cast<int>(kept.size());
-  if (count < kLeastPoints) {
+  if (count < kMinPoints) {
     throw InputError("", "",
                      "the scan has " + std::to_string(count) + " points at places of their own; symmetries " +
-                         "are looked for from " + std::to_string(kLeastPoints) + " on");
+                         "are looked for from " + std::to_string(kMinPoints) + " on");
   }
   const std::vector<FittedPlane> planes = fit_planes(all, kept, all_index, context);
   std::vector<double> thicknesses;

@@ -25,9 +25,9 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr std::array<int, 20> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71};
-constexpr int kIrrational = 11;   // rotations that stand for all
-constexpr double kLeastStep = 5;  // tolerances: shorter steps are not told from none
-constexpr double kOnAxis = 2;     // tolerances: what lies nearer turns with everything
+constexpr int kIrrational = 11;  // rotations that stand for all
+constexpr double kMinStep = 5;   // tolerances: shorter steps are not told from none
+constexpr double kOnAxis = 2;    // tolerances: what lies nearer turns with everything
 constexpr double kWholePiece = 0.9;
 constexpr double kFlatPiece = 0.7;  // of a flat piece that must turn for any of it to speak
 constexpr double kTurnedPiece = 0.1;
@@ -65,18 +65,18 @@ class Turns {
     const std::vector<Motion> motions = rotations_by(turns);
     std::vector<std::size_t> result;
     for (const std::size_t i : among) {
-      if (2 * std::numbers::pi * open_[i].radius / n < kLeastStep * surface_.tolerance) continue;
+      if (2 * std::numbers::pi * open_[i].radius / n < kMinStep * surface_.tolerance) continue;
       if (holds(open_[i].sample, motions)) result.push_back(i);
     }
     return result;
   }
 
   // How far the rotation by 1/n of a turn and the next carry a few of the samples off the surface, rms.
-  double misfit(const std::vector<std::size_t>& of, int n, const SurfaceIndex& whole) const {
-    constexpr std::size_t kMost = 100;
+  double largest_residual(const std::vector<std::size_t>& of, int n, const SurfaceIndex& whole) const {
+    constexpr std::size_t kMax = 100;
     const std::vector<Motion> motions = rotations_by(n > 2 ? std::vector{1.0 / n, 2.0 / n} : std::vector{0.5});
     const double most = 2 * surface_.tolerance;
-    const std::size_t count = std::min(of.size(), kMost);
+    const std::size_t count = std::min(of.size(), kMax);
     double square = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const Vector3d point = surface_.samples.points.row(open_[of[k * of.size() / count]].sample);
@@ -192,7 +192,7 @@ struct Order {
   int n;
   std::vector<std::size_t> kept;  // of the axis's open samples
   double evidence = 0;
-  double misfit = 0;  // rms, of a few of them
+  double residual = 0;  // rms, of a few of them
 };
 
 class AxisSearch {
@@ -219,14 +219,14 @@ class AxisSearch {
     // High orders first: what they explain, such as the half-turns of a dihedral group, is not looked at again. What is
     // small turns by any angle to the tolerance: the order that it has fits best.
     const auto weight = [&](const Order& order) {
-      return order.n * order.evidence / (kNoMisfit * surface_.tolerance + order.misfit);
+      return order.n * order.evidence / (kNoMisfit * surface_.tolerance + order.residual);
     };
     std::ranges::stable_sort(orders_, [&](const Order& x, const Order& y) {
       return (x.n > 2) != (y.n > 2) ? x.n > 2 : weight(x) > weight(y);
     });
     const auto halves = std::ranges::find(orders_, 2, &Order::n);
     // A row of n things has 2 n half-turns; the strongest will do.
-    if (orders_.end() - halves > kMostHalfTurns) orders_.erase(halves + kMostHalfTurns, orders_.end());
+    if (orders_.end() - halves > kMaxHalfTurns) orders_.erase(halves + kMaxHalfTurns, orders_.end());
     search_.settle_all<Place>({}, [&](Place& place) { return next(place); });
     result.regions = search_.take();
     return result;
@@ -237,7 +237,7 @@ class AxisSearch {
 
   // Returns the axes about which more than a little turns.
   std::vector<Line> find_turns() {
-    constexpr double kLeast = 0.01;  // of the surface
+    constexpr double kMin = 0.01;  // of the surface
     turns_.resize(axes_.size());
     parallel_for(context_, axes_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t a = begin; a < end && !late(); ++a) turns_[a] = std::make_unique<Turns>(surface_, axes_[a]);
@@ -246,7 +246,7 @@ class AxisSearch {
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       if (!turns_[a]) continue;
       const auto turned = static_cast<double>(turns_[a]->turned().size());
-      if (turned >= kLeast * static_cast<double>(surface_.samples.faces.size())) turning.push_back(axes_[a]);
+      if (turned >= kMin * static_cast<double>(surface_.samples.faces.size())) turning.push_back(axes_[a]);
     }
     return turning;
   }
@@ -279,7 +279,7 @@ class AxisSearch {
         std::vector<std::size_t> stay = turns.kept(samples, n, m);
         const double evidence = turns.evidence(stay, none);
         if (evidence < options_.least_share) continue;
-        result.push_back({axis, n, stay, evidence, turns.misfit(turns.speaking(stay), n, whole_)});
+        result.push_back({axis, n, stay, evidence, turns.largest_residual(turns.speaking(stay), n, whole_)});
         kept.emplace(n, std::move(stay));
       }
     }
@@ -288,11 +288,11 @@ class AxisSearch {
 
   // Of what turns by any angle, what is mirrored across the axis as well.
   void look_for_middle(const Turns& turns) {
-    constexpr double kLeast = 0.1;          // of the surface
-    constexpr double kLeastOfTurned = 0.6;  // any cylinder by itself has a middle
+    constexpr double kMin = 0.1;          // of the surface
+    constexpr double kMinOfTurned = 0.6;  // any cylinder by itself has a middle
     const auto count = static_cast<double>(surface_.samples.faces.size());
-    const double share = std::max(kLeast, kLeastOfTurned * static_cast<double>(turns.turned().size()) / count);
-    if (static_cast<double>(turns.turned().size()) < kLeast * count) return;
+    const double share = std::max(kMin, kMinOfTurned * static_cast<double>(turns.turned().size()) / count);
+    if (static_cast<double>(turns.turned().size()) < kMin * count) return;
     for (const GroupPlacement& placement : groups_with_middle(surface_, turns.axis(), turns.turned(), share)) {
       search_.settle({"axes", placement, false});
     }
@@ -334,7 +334,7 @@ class AxisSearch {
     return std::nullopt;
   }
 
-  double least(const Order& order) const { return order.n > 2 ? options_.least_share : kLeastOfHalfTurns; }
+  double least(const Order& order) const { return order.n > 2 ? options_.least_share : kMinOfHalfTurns; }
 
   // Half-turns are many; what more there is to theirs, mirrors will say.
   std::vector<GroupPlacement> larger(const Order& order) const {
@@ -362,8 +362,8 @@ class AxisSearch {
   }
 
   static constexpr double kNoMisfit = 0.1;  // tolerances
-  static constexpr std::ptrdiff_t kMostHalfTurns = 12;
-  static constexpr double kLeastOfHalfTurns = 0.03;  // of the surface: any few things have one
+  static constexpr std::ptrdiff_t kMaxHalfTurns = 12;
+  static constexpr double kMinOfHalfTurns = 0.03;  // of the surface: any few things have one
 
   const ScreenedSurface& surface_;
   const SurfaceIndex& whole_;

@@ -27,7 +27,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kMostElements = 120;
+constexpr int kMaxElements = 120;
 constexpr int kSpreadSamples = 500;
 
 /// Regions, and which of them are images of which.
@@ -51,7 +51,7 @@ class Completion {
     for (const FoundRegion& region : regions_) moments_.push_back(surface_moments(prepared_, region.faces));
     for (std::size_t r = 0; r < regions_.size() && !late(); ++r) {
       const PointGroup& group = regions_[r].placement.group;
-      if (group.continuous() || group.order() > kMostElements) continue;
+      if (group.continuous() || group.order() > kMaxElements) continue;
       carry_within(r);
     }
   }
@@ -188,7 +188,7 @@ class Completion {
   // Cheap answers first: most images are known, or there is no surface where they would be.
   Image look(std::size_t q, const Motion& motion) {
     constexpr double kNearlyAll = 0.9;  // of the looks
-    constexpr double kMost = 0.7;
+    constexpr double kMax = 0.7;
     Image image;
     if (late()) return image;
     const GroupPlacement goal = carried(regions_[q].placement, motion);
@@ -206,7 +206,7 @@ class Completion {
       image.same = k;
       return image;
     }
-    if (share_on(q, whole_, motion) < kMost) return image;
+    if (share_on(q, whole_, motion) < kMax) return image;
     for (std::size_t k = 0; k < regions_.size(); ++k) {
       if (k == q || regions_[k].area < 0.95 * regions_[q].area || !contains(k)) continue;
       if (share_on(q, index_of(k), motion) < kNearlyAll) continue;
@@ -307,9 +307,9 @@ class Completion {
   // Of a region that was verified where it was found: fewer samples tell whether anything was lost on the way.
   bool holds(const GroupPlacement& placement, const SurfacePatch& patch) const {
     constexpr int kPairs = 6000;
-    constexpr int kFewest = 150;
+    constexpr int kMin = 150;
     const auto motions = judged_motions(placement.group, placement.frame, placement.centre).size();
-    return verified(patch, placement, context_, std::max(kFewest, kPairs / static_cast<int>(motions)));
+    return verified(patch, placement, context_, std::max(kMin, kPairs / static_cast<int>(motions)));
   }
 
   // Moves the region's placement to the mean of its images under motions that keep the region.

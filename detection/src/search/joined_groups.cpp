@@ -22,8 +22,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostJoined = 120;     // elements: those of Ih
-constexpr int kMostTurns = 12;               // by which mirrors and half-turns alone generate rotations
+constexpr std::size_t kMaxJoined = 120;      // elements: those of Ih
+constexpr int kMaxTurns = 12;                // by which mirrors and half-turns alone generate rotations
 constexpr double kOpenDirection = 0.1;       // of the largest singular value: the common points go on there
 constexpr std::array kSame{0.05, 0.1, 0.2};  // largest entry, about radians, by which an element may differ from itself
 constexpr double kClosed = 1e-9;             // once averaged
@@ -63,7 +63,7 @@ std::optional<Elements> closure(const Elements& generators, double same) {
     for (const Matrix3d& generator : generators) {
       const Matrix3d product = result[k] * generator;
       if (nearest_of(result, product, same) >= 0) continue;
-      if (result.size() == kMostJoined) return std::nullopt;
+      if (result.size() == kMaxJoined) return std::nullopt;
       result.push_back(product);
     }
   }
@@ -129,7 +129,7 @@ std::optional<GroupPlacement> joined_group(const GroupPlacement& a, const GroupP
   const std::optional<ClassifiedGroup> group = generated(linear);
   if (!group || group->group.order() <= std::max(a.group.order(), b.group.order())) return std::nullopt;
   // By fractions of a turn that are fine enough any two mirrors make a group, roughly.
-  if (group->group.n > std::max(kMostTurns, 2 * std::max(a.group.n, b.group.n))) return std::nullopt;
+  if (group->group.n > std::max(kMaxTurns, 2 * std::max(a.group.n, b.group.n))) return std::nullopt;
   return GroupPlacement{group->group, group->frame, centre};
 }
 

@@ -10,11 +10,11 @@ namespace orbifit {
 std::vector<LooserGroup> looser_groups(const PreparedMesh& prepared, const std::optional<PointGroup>& has,
                                        double tolerance, const DirectionSet& screen, const RunContext& context) {
   constexpr int kSamples = 1500;
-  constexpr double kMost = 0.02;  // of the diagonal: beyond, any shape has something
+  constexpr double kMax = 0.02;  // of the diagonal: beyond, any shape has something
   std::vector<int> all(static_cast<std::size_t>(prepared.mesh.faces.rows()));
   std::iota(all.begin(), all.end(), 0);
   const auto group_at = [&](double looser) -> std::optional<PointGroup> {
-    if (looser > kMost) return std::nullopt;
+    if (looser > kMax) return std::nullopt;
     const SurfacePatch patch = make_patch(prepared, all, kSamples, looser, context, "looser");
     const std::optional<OwnGroup> own = find_own_group(patch, &screen, {}, context);
     return own ? std::optional(own->placement.group) : std::nullopt;
@@ -26,7 +26,7 @@ std::vector<LooserGroup> looser_groups(const PreparedMesh& prepared, const std::
   if (has && has->continuous()) return {};
   // What holds at twice the tolerance holds at four times.
   const std::optional<PointGroup> at_four = group_at(4 * tolerance);
-  if (!more(at_four, has) && 4 * tolerance <= kMost) return {};
+  if (!more(at_four, has) && 4 * tolerance <= kMax) return {};
   const std::optional<PointGroup> at_two = group_at(2 * tolerance);
   std::vector<LooserGroup> result;
   if (more(at_two, has)) result.push_back({*at_two, 2 * tolerance});

@@ -32,14 +32,14 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr int kPartSamples = 700;
-constexpr std::size_t kMostPartRegions = 200;
+constexpr std::size_t kMaxPartRegions = 200;
 
 struct Found {
   GroupPlacement placement;
   std::vector<int> parts;  // ascending; what the region covers
   double area = 0;
-  bool known = false;  // found before
-  double misfit = 0;   // largest, a fraction of the diagonal
+  bool known = false;   // found before
+  double residual = 0;  // largest, a fraction of the diagonal
 };
 
 class PartSearch {
@@ -136,7 +136,7 @@ class PartSearch {
   void take(const FoundRegion& region) {
     const SurfacePatch patch =
         make_patch(prepared_, region.faces, kPartSamples, options_.tolerance, context_, "known region");
-    Found found{region.placement, {}, region.area, true, misfit(region.placement, patch)};
+    Found found{region.placement, {}, region.area, true, largest_residual(region.placement, patch)};
     std::vector<double> inside(survey().moments.size(), 0);
     for (const int face : region.faces) {
       inside[static_cast<std::size_t>(prepared_.components.component_of_face[static_cast<std::size_t>(face)])] +=
@@ -205,11 +205,11 @@ class PartSearch {
 
   // Smaller groups on more of the surface: a subgroup may permute parts that the group itself does not.
   void find_subgroup_regions() {
-    constexpr std::size_t kMostGroups = 30;
+    constexpr std::size_t kMaxGroups = 30;
     constexpr double kMaterial = 1.05;
     std::ranges::stable_sort(found_, std::greater<>(), &Found::area);
     const std::vector<Found> groups(found_.begin(),
-                                    found_.begin() + static_cast<std::ptrdiff_t>(std::min(found_.size(), kMostGroups)));
+                                    found_.begin() + static_cast<std::ptrdiff_t>(std::min(found_.size(), kMaxGroups)));
     for (const Found& each : groups) {
       if (late()) return;
       for (SubgroupRegion& region : mover_->subgroup_regions(each.placement, each.parts)) {
@@ -249,7 +249,7 @@ class PartSearch {
                                            std::string(reason)});
   }
 
-  double misfit(const GroupPlacement& placement, const SurfacePatch& patch) const {
+  double largest_residual(const GroupPlacement& placement, const SurfacePatch& patch) const {
     constexpr std::size_t kQueries = 1500;
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
     return measure_residual(patch, motions, context_, kQueries).max;
@@ -258,7 +258,7 @@ class PartSearch {
   // Whether the shape around the parts shows them to be symmetric by coincidence: it is far more exact.
   bool coincidence(const GroupPlacement& placement, const std::vector<int>& parts, double area, double off) const {
     return !placement.group.continuous() && std::ranges::any_of(found_, [&](const Found& around) {
-      return by_coincidence(area, off, around.area, around.misfit, options_.tolerance) &&
+      return by_coincidence(area, off, around.area, around.residual, options_.tolerance) &&
              std::ranges::includes(around.parts, parts);
     });
   }
@@ -295,11 +295,11 @@ class PartSearch {
     if (some_of_a_row(placement, grown)) return note(stage, placement, grown, false, "some of a row that has it");
     if (mere_border(placement, grown))
       return note(stage, placement, grown, false, "only its border gives it the group");
-    const SurfacePatch patch = patch_of(grown, "misfit");
+    const SurfacePatch patch = patch_of(grown, "residual");
     if (options_.pieces && grown.size() > 1 && fades(patch, placement, context_)) {
       return note(stage, placement, grown, false, "fades as the tolerance shrinks");
     }
-    const double off = misfit(placement, patch);
+    const double off = largest_residual(placement, patch);
     if (coincidence(placement, grown, area, off))
       return note(stage, placement, grown, false, "far less exact than a region around it");
     note(stage, placement, grown, true, grown.size() > seed.size() ? "grown and verified" : "verified");
@@ -373,7 +373,7 @@ class PartSearch {
       return note("parts", group, {first}, false, "only its border gives it the group");
     }
     const double strict = strictness(group, look.patch);
-    for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMostPartRegions; ++i) {
+    for (std::size_t i = 0; i < kind.members.size() && found_.size() < kMaxPartRegions; ++i) {
       add("parts", carried(group, kind.motions[i]), {kind.members[i]}, strict);
     }
   }

@@ -15,15 +15,15 @@ namespace {
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kSlides = 0.2;          // sine of the angle between a normal and the mirror plane
-constexpr double kLeastSpeaking = 0.05;  // of what a mirror keeps: else the mirror may be anywhere
+constexpr double kSlides = 0.2;        // sine of the angle between a normal and the mirror plane
+constexpr double kMinSpeaking = 0.05;  // of what a mirror keeps: else the mirror may be anywhere
 constexpr Eigen::Index kVoters = 700;
 constexpr double kNormals = 0.15;  // by how much mirrored normals may differ
 constexpr Eigen::Index kFirstLook = 64;
 constexpr Eigen::Index kSecondLook = 400;
-constexpr std::size_t kMostFound = 400;
-constexpr std::size_t kMostClimbed = 100;
-constexpr std::size_t kMostPlanes = 24;
+constexpr std::size_t kMaxFound = 400;
+constexpr std::size_t kMaxClimbed = 100;
+constexpr std::size_t kMaxPlanes = 24;
 constexpr double kSameDirection = 0.03;  // radians
 constexpr double kSamePlace = 1.5;       // tolerances
 
@@ -117,8 +117,8 @@ Line climbed(const Mirrored& mirrored, Line plane, double tolerance) {
 // a cup has few samples of which two are mirror images, but the axis is known.
 std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const Mirrored& mirrored, const Line& axis,
                                           double least_share) {
-  constexpr std::size_t kMostLooks = 400;
-  constexpr std::size_t kMostOfAxis = 4;
+  constexpr std::size_t kMaxLooks = 400;
+  constexpr std::size_t kMaxOfAxis = 4;
   constexpr double kStep = 0.5;     // tolerances, at the farthest
   constexpr double kRoughly = 0.5;  // of the least share: planes that are a little off keep less
   constexpr double kMostly = 0.4;   // of what does not turn: one plane of many keeps something by chance;
@@ -134,7 +134,7 @@ std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const 
   }
   const double each = surface.prepared.area / static_cast<double>(count);  // area of a sample
   if (static_cast<double>(open.size()) * each < least_share * surface.prepared.area) return {};
-  const std::size_t looks = std::min(open.size(), kMostLooks);
+  const std::size_t looks = std::min(open.size(), kMaxLooks);
   const double weight = static_cast<double>(open.size()) / static_cast<double>(looks) * each;
   const auto steps = static_cast<std::size_t>(std::ceil(std::numbers::pi * radius / (kStep * surface.tolerance)));
   const bool mostly_turned = 2 * static_cast<Eigen::Index>(open.size()) < count;
@@ -153,7 +153,7 @@ std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const 
     }
   }
   std::vector<CandidateLine> result;
-  while (steps > 0 && result.size() < kMostOfAxis) {
+  while (steps > 0 && result.size() < kMaxOfAxis) {
     const auto best = static_cast<std::size_t>(std::ranges::max_element(kept) - kept.begin());
     const double area = weight * static_cast<double>(kept[best]);
     if (static_cast<double>(kept[best]) < least_kept) break;
@@ -199,7 +199,7 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
         continue;
       }
       if (mirrored.share(plane, kFirstLook, least_share) <= 0) continue;
-      if (found.size() >= kMostFound || std::ranges::any_of(found, [&](const CandidateLine& known) {
+      if (found.size() >= kMaxFound || std::ranges::any_of(found, [&](const CandidateLine& known) {
             return same_plane(plane, known.line, surface.tolerance);
           })) {
         continue;
@@ -209,7 +209,7 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
     }
   }
   std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
-  if (found.size() > kMostClimbed) found.resize(kMostClimbed);
+  if (found.size() > kMaxClimbed) found.resize(kMaxClimbed);
   for (CandidateLine& plane : found) {
     plane.line = climbed(mirrored, plane.line, surface.tolerance);
     plane.weight = mirrored.share(plane.line, kSecondLook, 0) * surface.prepared.area;
@@ -227,7 +227,7 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
       if (!is_known(plane)) distinct.push_back(plane);
     }
   }
-  const std::size_t most = kMostPlanes + distinct.size();
+  const std::size_t most = kMaxPlanes + distinct.size();
   for (const CandidateLine& plane : found) {
     if (distinct.size() >= most) break;
     // Climbed to where most turns: planes through an axis are there already.
@@ -262,7 +262,7 @@ std::vector<FoundRegion> find_plane_regions(const ScreenedSurface& surface, cons
       if (explained[static_cast<std::size_t>(i)] == 0) ++evidence;
     }
     return static_cast<double>(evidence) >= options.least_share * static_cast<double>(count) &&
-           static_cast<double>(speaking) >= kLeastSpeaking * static_cast<double>(kept);
+           static_cast<double>(speaking) >= kMinSpeaking * static_cast<double>(kept);
   };
   search.settle_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
     for (; k < planes.size(); ++k) {

@@ -32,7 +32,7 @@ constexpr int kFirstAngles = 12;
 constexpr int kAngles = 48;  // once the axis is known: what interrupts a circle may be thin
 constexpr int kPatchSamples = 700;
 constexpr double kFacesSlack = 1.2;  // of the tolerance, for faces that are collected
-constexpr double kMostOfFlat = 0.8;  // of a flat piece's area
+constexpr double kMaxOfFlat = 0.8;   // of a flat piece's area
 constexpr double kNothingNew = 0.1;  // of the region's area outside of one that says the same
 
 /// The faces about one axis.
@@ -184,7 +184,7 @@ class RevolutionSearch {
     for (std::size_t s = 0; s < prepared_.components.faces.size(); ++s) {
       std::vector<int> kept = faces_of_piece(s, turned);
       if (kept.empty()) continue;
-      if (flat_[s] == 0 || area_of(prepared_, kept) >= kMostOfFlat * areas_[s]) {
+      if (flat_[s] == 0 || area_of(prepared_, kept) >= kMaxOfFlat * areas_[s]) {
         take(kept);
       } else {
         rest.emplace_back(s, std::move(kept));
@@ -199,7 +199,7 @@ class RevolutionSearch {
 
   // The faces of a piece that turn; all if nearly all do.
   std::vector<int> faces_of_piece(std::size_t s, const Turned& turned) const {
-    constexpr std::size_t kLeastShare = 64;  // faces worth a thread
+    constexpr std::size_t kMinShare = 64;  // faces worth a thread
     constexpr double kNearlyAll = 0.97;
     if (areas_[s] <= 0) return {};
     const std::vector<int>& faces = prepared_.components.faces[s];
@@ -218,7 +218,7 @@ class RevolutionSearch {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) turns[i] = turned.turns(candidates[i]) ? 1 : 0;
         },
-        kLeastShare);
+        kMinShare);
     std::vector<int> kept;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (turns[i] != 0) kept.push_back(candidates[i]);
@@ -228,7 +228,7 @@ class RevolutionSearch {
 
   // Whether most of the border of a piece is that of faces that are in.
   bool bounded(std::size_t s, const std::vector<char>& in) const {
-    constexpr double kMost = 0.6;
+    constexpr double kMax = 0.6;
     double border = 0;
     double inside = 0;
     for (const int face : prepared_.components.faces[s]) {
@@ -240,7 +240,7 @@ class RevolutionSearch {
         if (in[other] != 0) inside += side.length;
       }
     }
-    return inside > kMost * border;
+    return inside > kMax * border;
   }
 
   static bool few_turn(const Turned& turned, const std::vector<int>& candidates) {
@@ -294,15 +294,15 @@ bool same_axis(const Line& a, const Line& b, double tolerance) {
 }  // namespace
 
 std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance, const RunContext& context) {
-  constexpr double kAngle = 0.08;        // radians
-  constexpr double kLeastShare = 0.004;  // of the mesh's area
-  constexpr double kLocalShare = 0.05;   // pieces this large are looked at place by place
-  constexpr double kReach = 0.12;        // of the diagonal
+  constexpr double kAngle = 0.08;       // radians
+  constexpr double kMinShare = 0.004;   // of the mesh's area
+  constexpr double kLocalShare = 0.05;  // pieces this large are looked at place by place
+  constexpr double kReach = 0.12;       // of the diagonal
   constexpr int kSeeds = 16;
-  constexpr std::size_t kMostAxes = 48;
+  constexpr std::size_t kMaxAxes = 48;
   std::vector<Line> result;
   const auto add = [&](const Line& line) {
-    if (result.size() >= kMostAxes || line.point.norm() > 2) return;
+    if (result.size() >= kMaxAxes || line.point.norm() > 2) return;
     if (std::ranges::none_of(result, [&](const Line& known) { return same_axis(known, line, tolerance); })) {
       result.push_back(line);
     }
@@ -310,7 +310,7 @@ std::vector<Line> revolution_axes(const PreparedMesh& prepared, double tolerance
   for (const std::vector<int>& faces : prepared.components.faces) {
     context.check();
     const double area = area_of(prepared, faces);
-    if (area < kLeastShare * prepared.area) continue;
+    if (area < kMinShare * prepared.area) continue;
     const Oriented all = oriented_points(prepared, faces, 1500);
     const std::optional<RevolutionFit> fit = fit_axis_of_revolution(all.points, all.normals, all.weights, kAngle);
     if (fit && (fit->planar || fit->spherical)) continue;

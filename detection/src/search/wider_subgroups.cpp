@@ -18,9 +18,9 @@ namespace {
 
 using Elements = KeptSamples::Elements;
 
-constexpr std::size_t kMostMasks = 24;
-constexpr std::size_t kMostIndex = 4;  // smaller subgroups keep much by chance; planes and axes find those that matter
-constexpr double kLeastMask = 0.01;    // of the samples, that the same elements keep
+constexpr std::size_t kMaxMasks = 24;
+constexpr std::size_t kMaxIndex = 4;  // smaller subgroups keep much by chance; planes and axes find those that matter
+constexpr double kMinMask = 0.01;     // of the samples, that the same elements keep
 
 // The sets of elements that keep most samples, as masks.
 std::vector<std::vector<char>> frequent_masks(const KeptSamples& samples) {
@@ -31,13 +31,13 @@ std::vector<std::vector<char>> frequent_masks(const KeptSamples& samples) {
   for (std::size_t i = 0; i < of_sample.size(); ++i) {
     auto at = counts.find(of_sample[i]);
     if (at == counts.end()) continue;
-    if (static_cast<double>(at->second) >= kLeastMask * static_cast<double>(of_sample.size())) {
+    if (static_cast<double>(at->second) >= kMinMask * static_cast<double>(of_sample.size())) {
       order.emplace_back(at->second, i);
     }
     counts.erase(at);
   }
   std::ranges::stable_sort(order, std::greater<>(), &std::pair<std::size_t, std::size_t>::first);
-  if (order.size() > kMostMasks) order.resize(kMostMasks);
+  if (order.size() > kMaxMasks) order.resize(kMaxMasks);
   std::vector<std::vector<char>> result;
   for (const auto& [count, sample] : order) {
     std::vector<char> allowed(samples.linear().size(), 0);
@@ -55,7 +55,7 @@ std::vector<GroupPlacement> wider_subgroups(const GroupPlacement& placement, con
   for (const std::vector<char>& members : subgroups_within(linear, frequent_masks(samples))) {
     Elements group;
     for (std::size_t g = 0; g < members.size(); ++g) group[g] = members[g] != 0;
-    if (group.count() * kMostIndex < linear.size()) break;
+    if (group.count() * kMaxIndex < linear.size()) break;
     if (group == samples.all()) continue;
     std::vector<char> kept = samples.kept_by(group);
     std::vector<char> known(kept.size(), 0);
@@ -89,7 +89,7 @@ std::vector<FoundRegion> find_wider_subgroups(const ScreenedSurface& surface, co
   for (std::size_t r = 0; r < regions.size() && !(options.late && options.late()); ++r) {
     context.check();
     const PointGroup& group = regions[r].placement.group;
-    if (group.continuous() || group.order() < 4 || group.order() > static_cast<int>(KeptSamples::kMostElements)) {
+    if (group.continuous() || group.order() < 4 || group.order() > static_cast<int>(KeptSamples::kMaxElements)) {
       continue;
     }
     const KeptSamples samples(surface, regions[r].placement, context);

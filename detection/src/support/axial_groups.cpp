@@ -17,8 +17,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kMostAngles = 200;
-constexpr int kMostHeights = 800;
+constexpr int kMaxAngles = 200;
+constexpr int kMaxHeights = 800;
 constexpr std::size_t kLooks = 160;  // samples that judge an angle or a height
 constexpr std::size_t kAngles = 2;
 constexpr std::size_t kHeights = 2;
@@ -45,7 +45,7 @@ class AxialSearch {
     // Mirrors whose planes hold the axis: their angles repeat after half of 1/n of a turn.
     const double period = std::numbers::pi / n_;
     const std::vector<double> angles =
-        best(samples_, 0, period, true, surface_.tolerance / std::max(reach_, 1e-9), kMostAngles, kAngles,
+        best(samples_, 0, period, true, surface_.tolerance / std::max(reach_, 1e-9), kMaxAngles, kAngles,
              [&](double angle) { return Motion::about(mirror(across(angle)), foot_); });
     std::vector<GroupPlacement> placements;
     placements.reserve(angles.size());
@@ -104,7 +104,7 @@ class AxialSearch {
         high = std::max(high, at);
       }
       for (const double height :
-           best(samples, low, high, false, surface_.tolerance, kMostHeights, kHeights, motion_at)) {
+           best(samples, low, high, false, surface_.tolerance, kMaxHeights, kHeights, motion_at)) {
         const bool known = std::ranges::any_of(
             result, [&](double other) { return std::abs(height - other) < kSame * surface_.tolerance; });
         if (!known && !mere_plate(height, motion_at(height))) result.push_back(height);

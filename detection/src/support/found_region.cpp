@@ -60,8 +60,8 @@ bool more_by_chance(const PreparedMesh& prepared, const FoundRegion& outer, cons
 }
 
 // Root mean square distance of the region's images from it, its group placed there.
-double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion& region,
-              const GroupPlacement& placement) {
+double largest_residual(const PreparedMesh& prepared, double tolerance, const FoundRegion& region,
+                        const GroupPlacement& placement) {
   constexpr int kSamples = 250;
   constexpr std::size_t kQueries = 2500;
   const RunContext context;
@@ -70,8 +70,8 @@ double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion&
   return measure_residual(patch, motions, context, kQueries).rms;
 }
 
-double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion& region) {
-  return misfit(prepared, tolerance, region, region.placement);
+double largest_residual(const PreparedMesh& prepared, double tolerance, const FoundRegion& region) {
+  return largest_residual(prepared, tolerance, region, region.placement);
 }
 
 // Where pieces of surface were added to components of the same group, whether these say as well where it stands: they
@@ -79,7 +79,9 @@ double misfit(const PreparedMesh& prepared, double tolerance, const FoundRegion&
 void take_placement(const PreparedMesh& prepared, double tolerance, FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kHardly = 1.02;
   if (!outer.of_pieces || inner.of_pieces || outer.placement.group != inner.placement.group) return;
-  if (misfit(prepared, tolerance, outer, inner.placement) > kHardly * misfit(prepared, tolerance, outer)) return;
+  if (largest_residual(prepared, tolerance, outer, inner.placement) >
+      kHardly * largest_residual(prepared, tolerance, outer))
+    return;
   outer.placement = inner.placement;
   outer.residual.reset();
 }
@@ -90,15 +92,15 @@ bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& o
   constexpr double kLittle = 0.5;  // of a region of the same group: that is not about components that are less of it
   if (!outer.of_pieces || inner.of_pieces) return false;
   if (outer.placement.group == inner.placement.group && inner.area < kLittle * outer.area) return false;
-  return misfit(prepared, tolerance, outer) > kFarLess * misfit(prepared, tolerance, inner);
+  return largest_residual(prepared, tolerance, outer) > kFarLess * largest_residual(prepared, tolerance, inner);
 }
 
 // Whether components that are exact were taken into others that are far from it.
 bool less_exact(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   constexpr double kNothing = 0.01;  // tolerances
   constexpr double kFarOff = 0.2;
-  return !outer.of_pieces && !inner.of_pieces && misfit(prepared, tolerance, outer) > kFarOff * tolerance &&
-         misfit(prepared, tolerance, inner) < kNothing * tolerance;
+  return !outer.of_pieces && !inner.of_pieces && largest_residual(prepared, tolerance, outer) > kFarOff * tolerance &&
+         largest_residual(prepared, tolerance, inner) < kNothing * tolerance;
 }
 
 bool same_faces(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {
@@ -149,10 +151,10 @@ double share_of_few(const PointGroup& larger, const PointGroup& smaller) {
 
 bool covers(const PreparedMesh& prepared, const FoundRegion& outer, const FoundRegion& inner) {
   if (inner.area > 1.02 * outer.area || inner.faces.empty() || plainly_outside(inner.faces, outer.faces)) return false;
-  constexpr double kMostBorder = 0.1;  // of the inner region
+  constexpr double kMaxBorder = 0.1;  // of the inner region
   const double most = std::min(0.05 * inner.area, kSliver * prepared.area);
   const double outside = area_outside(prepared, inner.faces, outer.faces);
-  if (outside <= most || outside > kMostBorder * inner.area) return outside <= most;
+  if (outside <= most || outside > kMaxBorder * inner.area) return outside <= most;
   return area_apart(prepared, inner.faces, outer.faces) <= most;
 }
 
@@ -171,11 +173,11 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const Found
   });
 }
 
-bool by_coincidence(double area, double misfit, double area_around, double misfit_around, double tolerance) {
-  constexpr double kMost = 0.5;      // of what is around: the larger part of a shape is no coincidence
+bool by_coincidence(double area, double residual, double area_around, double residual_around, double tolerance) {
+  constexpr double kMax = 0.5;       // of what is around: the larger part of a shape is no coincidence
   constexpr double kNothing = 0.01;  // tolerances
   constexpr double kFarOff = 0.2;
-  return area < kMost * area_around && misfit_around < kNothing * tolerance && misfit > kFarOff * tolerance;
+  return area < kMax * area_around && residual_around < kNothing * tolerance && residual > kFarOff * tolerance;
 }
 
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
@@ -221,7 +223,8 @@ void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vec
       if (!same && !nearly_the_same(prepared, a, b)) continue;
       const int most = elements_of(a) - elements_of(b);
       bool first = most > 0;
-      if (most == 0 && same) first = misfit(prepared, tolerance, a) <= misfit(prepared, tolerance, b);
+      if (most == 0 && same)
+        first = largest_residual(prepared, tolerance, a) <= largest_residual(prepared, tolerance, b);
       if (most == 0 && !same) first = a.area >= b.area;
       dropped[first ? j : i] = 1;
       const FoundRegion& stays = first ? a : b;

@@ -65,8 +65,8 @@ void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vec
 /// large, is exact and shows that this mesh is: triangles that know no symmetry fit no part exactly. Kept, its group
 /// would also clash with the exact ones. To be asked of finite groups only: a turned part's residual is that of its
 /// facets and says nothing.
-/// \param misfit, misfit_around largest residuals \param tolerance of the detector; all fractions of the diagonal
-bool by_coincidence(double area, double misfit, double area_around, double misfit_around, double tolerance);
+/// \param residual, residual_around largest residuals \param tolerance of the detector; all fractions of the diagonal
+bool by_coincidence(double area, double residual, double area_around, double residual_around, double tolerance);
 
 /// Drops regions of at most half the surface to which only their border gives a group: pieces of a larger plane,
 /// cylinder or sphere. \param whole index of the whole mesh

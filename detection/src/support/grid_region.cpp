@@ -16,14 +16,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMostOff = 0.1;      // of a face's points
-constexpr double kMostAstray = 0.5;   // of them, next to a crease, where other normals are
-constexpr double kMostCut = 0.3;      // of the border of what is taken of a flat piece, within the piece
+constexpr double kMaxOff = 0.1;       // of a face's points
+constexpr double kMaxAstray = 0.5;    // of them, next to a crease, where other normals are
+constexpr double kMaxCut = 0.3;       // of the border of what is taken of a flat piece, within the piece
 constexpr double kWholePiece = 0.97;  // of a piece
 constexpr double kSmallPiece = 0.01;  // of the mesh's area: no plate that others stand on
-constexpr double kMostOfSmall = 0.5;  // of a small piece, which then belongs wherever it is cut
+constexpr double kMaxOfSmall = 0.5;   // of a small piece, which then belongs wherever it is cut
 constexpr double kSpacing = 4;        // of a face's points, tolerances
-constexpr int kMostCuts = 6;          // of an edge
+constexpr int kMaxCuts = 6;           // of an edge
 constexpr double kCreaseReach = 3;    // tolerances, as in verification
 
 std::vector<int> with_area(const PreparedMesh& prepared) {
@@ -41,10 +41,10 @@ class FaceTest {
 
   // All motions keep all but a few points of the face. Not for several threads at once.
   bool keep(int face) {
-    face_points(surface_.prepared, face, kSpacing * surface_.tolerance, kMostCuts, points_);
+    face_points(surface_.prepared, face, kSpacing * surface_.tolerance, kMaxCuts, points_);
     at_crease_.assign(points_.size(), -1);
-    const auto allowed = static_cast<std::size_t>(kMostOff * static_cast<double>(points_.size()));
-    const auto most_astray = static_cast<std::size_t>(kMostAstray * static_cast<double>(points_.size()));
+    const auto allowed = static_cast<std::size_t>(kMaxOff * static_cast<double>(points_.size()));
+    const auto most_astray = static_cast<std::size_t>(kMaxAstray * static_cast<double>(points_.size()));
     const Vector3d normal = surface_.prepared.normals.row(face);
     return std::ranges::all_of(motions_, [&](const Motion& motion) {
       const Vector3d turned = motion.linear * normal;
@@ -118,8 +118,8 @@ std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int
     if (in[piece] <= 0) continue;
     const bool whole = in[piece] >= kWholePiece * surface.piece_areas[piece];
     const bool small = surface.piece_areas[piece] < kSmallPiece * surface.prepared.area;
-    const bool mostly = small && in[piece] >= kMostOfSmall * surface.piece_areas[piece];
-    if (!whole && !mostly && surface.piece_flat[piece] != 0 && cut[piece] > kMostCut * border[piece]) continue;
+    const bool mostly = small && in[piece] >= kMaxOfSmall * surface.piece_areas[piece];
+    if (!whole && !mostly && surface.piece_flat[piece] != 0 && cut[piece] > kMaxCut * border[piece]) continue;
     std::ranges::copy_if(pieces.faces[piece], std::back_inserter(result),
                          [&](int f) { return whole || taken[static_cast<std::size_t>(f)] != 0; });
   }

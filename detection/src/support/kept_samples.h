@@ -15,11 +15,11 @@ namespace orbifit {
 /// Which elements of a finite group keep which samples of a surface.
 class KeptSamples {
  public:
-  static constexpr std::size_t kMostElements = 160;
-  using Elements = std::bitset<kMostElements>;  ///< in the order of elements()
+  static constexpr std::size_t kMaxElements = 160;
+  using Elements = std::bitset<kMaxElements>;  ///< in the order of elements()
 
   /// Costs O(S N) grid look-ups for S samples and N elements. \param surface, placement kept by reference
-  /// \pre a finite group of at most kMostElements
+  /// \pre a finite group of at most kMaxElements
   KeptSamples(const ScreenedSurface& surface, const GroupPlacement& placement, const RunContext& context);
 
   const std::vector<Eigen::Matrix3d>& linear() const { return linear_; }

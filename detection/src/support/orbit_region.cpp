@@ -18,11 +18,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPointSpacing = 4;    // of a face's sample points, tolerances
-constexpr int kMostEdgeCuts = 8;       // of each edge
-constexpr double kNearCrease = 3;      // tolerances, as in verification
-constexpr double kMostFarOff = 0.03;   // of a face's points, off the surface
-constexpr double kMostOnOthers = 0.5;  // of a face's points, on faces that are out
+constexpr double kPointSpacing = 4;   // of a face's sample points, tolerances
+constexpr int kMaxEdgeCuts = 8;       // of each edge
+constexpr double kNearCrease = 3;     // tolerances, as in verification
+constexpr double kMaxFarOff = 0.03;   // of a face's points, off the surface
+constexpr double kMaxOnOthers = 0.5;  // of a face's points, on faces that are out
 
 /// Asks whether motions keep faces on a surface.
 class OrbitTest {
@@ -39,7 +39,7 @@ class OrbitTest {
   bool stays(const SurfaceIndex& surface, int face, double most_off, std::vector<Vector3d>& points,
              std::vector<int>& images) const {
     images.clear();
-    face_points(prepared_, face, kPointSpacing * tolerance_, kMostEdgeCuts, points);
+    face_points(prepared_, face, kPointSpacing * tolerance_, kMaxEdgeCuts, points);
     const auto allowed = static_cast<std::size_t>(most_off * static_cast<double>(points.size()));
     const bool kept = std::ranges::all_of(motions_, [&](const Motion& motion) {
       std::size_t off = 0;
@@ -92,7 +92,7 @@ class Erosion {
 
   std::vector<int> run(const SurfaceIndex& whole) {
     std::size_t before = faces_.size();
-    judge(whole, faces_, kMostFarOff);
+    judge(whole, faces_, kMaxFarOff);
     while (!faces_.empty() && faces_.size() < before) {
       before = faces_.size();
       // What lands on faces that are still in does so as before.
@@ -101,14 +101,14 @@ class Erosion {
         const auto out = [&](int image) { return image >= 0 && in_[static_cast<std::size_t>(image)] == 0; };
         if (std::ranges::any_of(images_[static_cast<std::size_t>(face)], out)) doubtful.push_back(face);
       }
-      if (!doubtful.empty()) judge(prepared_.index->part(faces_), doubtful, kMostOnOthers);
+      if (!doubtful.empty()) judge(prepared_.index->part(faces_), doubtful, kMaxOnOthers);
     }
     return faces_;
   }
 
  private:
   void judge(const SurfaceIndex& surface, const std::vector<int>& doubtful, double most_off) {
-    constexpr std::size_t kLeastShare = 64;
+    constexpr std::size_t kMinShare = 64;
     const auto body = [&](std::size_t begin, std::size_t end) {
       std::vector<Vector3d> points;
       for (std::size_t i = begin; i < end; ++i) {
@@ -117,7 +117,7 @@ class Erosion {
         in_[face] = test_.stays(surface, doubtful[i], most_off, points, images_[face]) ? 1 : 0;
       }
     };
-    parallel_for(context_, doubtful.size(), body, kLeastShare);
+    parallel_for(context_, doubtful.size(), body, kMinShare);
     std::vector<int> kept;
     for (const int face : faces_) {
       if (in_[static_cast<std::size_t>(face)] != 0) kept.push_back(face);
@@ -210,7 +210,7 @@ std::vector<int> connected_orbit(const PreparedMesh& prepared, const GroupPlacem
       context.check();
       std::map<int, double> received;  // by piece: the area that falls on it
       for (const int face : pieces.faces[piece]) {
-        face_points(prepared, face, kPointSpacing * tolerance, kMostEdgeCuts, points);
+        face_points(prepared, face, kPointSpacing * tolerance, kMaxEdgeCuts, points);
         const double share = prepared.areas[face] / static_cast<double>(points.size());
         for (const Vector3d& point : points) {
           const int image = test.image(inside, motion, face, point);

@@ -21,11 +21,11 @@ using Family = PointGroup::Family;
 constexpr double kGroupSlack = 2.5;    // tolerances, while directions are not refined yet
 constexpr double kScreenShare = 0.80;  // of the samples, likewise
 constexpr int kGroupSamples = 96;
-constexpr double kSameDirection = 0.03;     // radians
-constexpr std::size_t kMostRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
-constexpr int kMostFailures = 40;           // to fit a rotation: so many look right on nearly a ball only
+constexpr double kSameDirection = 0.03;    // radians
+constexpr std::size_t kMaxRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
+constexpr int kMaxFailures = 40;           // to fit a rotation: so many look right on nearly a ball only
 constexpr double kClassifyTolerance = 0.02;
-constexpr double kNothing = 0.02;  // tolerances: misfits below are none
+constexpr double kNothing = 0.02;  // tolerances: residuals below are none
 
 Matrix3d mirror(const Vector3d& normal) {
   return Matrix3d::Identity() - 2 * normal * normal.transpose();
@@ -43,7 +43,7 @@ bool same_line(const Vector3d& a, const Vector3d& b) {
   return a.cross(b).norm() < kSameDirection;
 }
 
-double misfit(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context) {
+double largest_residual(const SurfacePatch& patch, const GroupPlacement& placement, const RunContext& context) {
   constexpr std::size_t kQueries = 4000;
   return measure_residual(patch, judged_motions(placement.group, placement.frame, placement.centre), context, kQueries)
       .rms;
@@ -93,7 +93,7 @@ class GroupSearch {
     if (!try_sphere(candidates)) {
       collect(candidates, hints);
       for (std::size_t a = 0; a < axes_.size(); ++a) {
-        if (continuous() || rotations_.size() >= kMostRotations || failures_ >= kMostFailures) break;
+        if (continuous() || rotations_.size() >= kMaxRotations || failures_ >= kMaxFailures) break;
         find_rotations(axes_[a], look_about(a));
       }
       if (!continuous()) {
@@ -121,14 +121,14 @@ class GroupSearch {
     constexpr double kFarLess = 0.1;
     constexpr double kFacets = 1.5;
     constexpr double kStrict = 0.3;
-    const double any = misfit(patch_, best_->placement, context_);
+    const double any = largest_residual(patch_, best_->placement, context_);
     if (any < kFacets * sagitta(patch_, best_->placement) + kNothing * patch_.tolerance) return best_;
     SurfacePatch strict = patch_;
     const double share = std::min(1.0, kStrict * any / patch_.tolerance);
     strict.tolerance *= share;
     strict.relative_tolerance *= share;
     const std::optional<OwnGroup> some = GroupSearch(strict, context_, thorough_, true).run(screen, hints);
-    return some && misfit(patch_, some->placement, context_) < kFarLess * any ? some : best_;
+    return some && largest_residual(patch_, some->placement, context_) < kFarLess * any ? some : best_;
   }
 
   bool continuous() const { return best_ && best_->placement.group.continuous(); }
@@ -310,8 +310,8 @@ class GroupSearch {
       ranking = first;
       chosen = axis;
     }
-    constexpr std::size_t kMostTries = 6;
-    if (ranking.size() > kMostTries) ranking.resize(kMostTries);
+    constexpr std::size_t kMaxTries = 6;
+    if (ranking.size() > kMaxTries) ranking.resize(kMaxTries);
     for (const RankedOrder& order : ranking) {
       if (add_rotation(chosen, order.order, ranking)) return;
     }
@@ -340,12 +340,12 @@ class GroupSearch {
     const int n = placement.group.order();
     const auto may_be = [&](int order) { return order < n && n % order != 0; };
     if (std::ranges::none_of(others, may_be, &RankedOrder::order)) return placement;
-    const double off = misfit(patch_, placement, context_);
+    const double off = largest_residual(patch_, placement, context_);
     if (off < kNothing * patch_.tolerance) return placement;
     for (const RankedOrder& other : others) {
       if (!may_be(other.order)) continue;
       GroupPlacement lower = fitted({Family::Cn, other.order}, frame_about(placement.frame.col(2)));
-      if (misfit(patch_, lower, context_) < kFarLess * off && check(lower)) return lower;
+      if (largest_residual(patch_, lower, context_) < kFarLess * off && check(lower)) return lower;
     }
     return placement;
   }

@@ -32,8 +32,8 @@ bool rotates_all(const PointGroup& group) {
   return group.family == Family::K || group.family == Family::Kh;
 }
 
-constexpr int kMostElements = 150;
-constexpr std::size_t kMostMasks = 12;
+constexpr int kMaxElements = 150;
+constexpr std::size_t kMaxMasks = 12;
 
 }  // namespace
 
@@ -216,7 +216,7 @@ std::vector<int> ComponentMover::permuted_among(const std::vector<int>& among, c
 std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacement& placement,
                                                              const std::vector<int>& seed) const {
   std::vector<SubgroupRegion> result;
-  if (placement.group.continuous() || placement.group.order() < 4 || placement.group.order() > kMostElements)
+  if (placement.group.continuous() || placement.group.order() < 4 || placement.group.order() > kMaxElements)
     return result;
   std::vector<Matrix3d> linear = elements(placement.group, placement.frame);
   const std::size_t order = linear.size();
@@ -243,7 +243,7 @@ std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacemen
     }
     if (moved && std::ranges::find(distinct, mask) == distinct.end()) distinct.push_back(mask);
   }
-  if (distinct.empty() || distinct.size() > kMostMasks) return result;
+  if (distinct.empty() || distinct.size() > kMaxMasks) return result;
 
   for (const std::vector<char>& members : subgroups_within(linear, distinct)) {
     std::vector<char> in(count, 0);

@@ -249,11 +249,11 @@ namespace {
 std::vector<CongruenceClass> congruent_members(const PreparedMesh& prepared, const std::vector<int>& group,
                                                const std::vector<SurfaceMoments>& moments, double tolerance,
                                                const RunContext& context) {
-  constexpr int kMostRounds = 8;
+  constexpr int kMaxRounds = 8;
   const std::vector<std::vector<int>>& faces = prepared.components.faces;
   std::vector<CongruenceClass> result;
   std::vector<int> open = group;
-  for (int round = 0; !open.empty() && round < kMostRounds; ++round) {
+  for (int round = 0; !open.empty() && round < kMaxRounds; ++round) {
     const int first = open.front();
     CongruenceClass found{{first}, {Motion{}}};
     std::vector<std::optional<Motion>> motions(open.size());

@@ -29,7 +29,7 @@ std::vector<std::array<FaceSide, 3>> face_sides(const PreparedMesh& prepared) {
 std::vector<int> without_specks(const PreparedMesh& prepared, const std::vector<std::array<FaceSide, 3>>& sides,
                                 const std::vector<int>& faces) {
   constexpr double kSpeck = 0.01;
-  constexpr double kMost = 0.03;
+  constexpr double kMax = 0.03;
   const auto place = [&](int face) {  // among the faces; -1 for others
     const auto found = std::ranges::lower_bound(faces, face);
     return found != faces.end() && *found == face ? static_cast<int>(found - faces.begin()) : -1;
@@ -56,7 +56,7 @@ std::vector<int> without_specks(const PreparedMesh& prepared, const std::vector<
       rest.push_back(faces[i]);
     }
   }
-  return specks <= kMost * all ? rest : faces;
+  return specks <= kMax * all ? rest : faces;
 }
 
 }  // namespace orbifit

@@ -14,8 +14,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr double kMostAlong = 100;  // cells
-constexpr double kHalfWay = 0.75;   // of the spacing: no point of a triangle is farther from those that cover it
+constexpr double kMaxAlong = 100;  // cells
+constexpr double kHalfWay = 0.75;  // of the spacing: no point of a triangle is farther from those that cover it
 
 // Steps to the cells that may hold what lies within `cells` of a point of the cell where they begin.
 std::vector<Vector3i> steps_within(double cells) {
@@ -41,7 +41,7 @@ NearCells::NearCells(const PreparedMesh& prepared, const std::vector<int>& faces
   Eigen::AlignedBox3d box;
   for (const int f : faces) box.extend(corner(f, 0)).extend(corner(f, 1)).extend(corner(f, 2));
   if (box.isEmpty()) return;
-  const double size = std::max(reach, box.sizes().maxCoeff() / kMostAlong);
+  const double size = std::max(reach, box.sizes().maxCoeff() / kMaxAlong);
   if (!(size > 0)) return;
   per_cell_ = 1 / size;
   const std::vector<Vector3i> steps = steps_within(reach / size + kHalfWay);

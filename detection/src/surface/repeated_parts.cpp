@@ -12,7 +12,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kMostHosts = 24;
+constexpr std::size_t kMaxHosts = 24;
 
 using Pair = std::pair<int, int>;
 
@@ -41,7 +41,7 @@ DisjointSets parts_without(const std::vector<char>& host, const std::vector<Pair
 // Area in parts of which there are at least three of about equal area, by numbers of their own.
 double repeated_area(DisjointSets& sets, const std::vector<char>& host, const std::vector<double>& areas) {
   constexpr double kEqual = 0.03;
-  constexpr std::size_t kLeast = 3;
+  constexpr std::size_t kMin = 3;
   std::vector<double> of_root(areas.size(), 0);
   for (std::size_t p = 0; p < areas.size(); ++p) {
     if (host[p] == 0) of_root[static_cast<std::size_t>(sets.root(static_cast<int>(p)))] += areas[p];
@@ -53,7 +53,7 @@ double repeated_area(DisjointSets& sets, const std::vector<char>& host, const st
     std::size_t end = first;
     double sum = 0;
     for (; end < of_root.size() && of_root[end] >= (1 - kEqual) * of_root[first]; ++end) sum += of_root[end];
-    if (end - first >= kLeast) result += sum;
+    if (end - first >= kMin) result += sum;
     first = end;
   }
   return result;
@@ -63,10 +63,10 @@ double repeated_area(DisjointSets& sets, const std::vector<char>& host, const st
 void improve(std::vector<char>& host, double best, const std::vector<int>& largest, const std::vector<Pair>& pairs,
              const std::vector<double>& areas) {
   constexpr int kRounds = 12;
-  constexpr std::size_t kMostTried = 200;
+  constexpr std::size_t kMaxTried = 200;
   for (int round = 0; round < kRounds; ++round) {
     int better = -1;
-    for (std::size_t k = 0; k < std::min(kMostTried, largest.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(kMaxTried, largest.size()); ++k) {
       char& in = host[static_cast<std::size_t>(largest[k])];
       in ^= 1;
       DisjointSets sets = parts_without(host, pairs);
@@ -95,7 +95,7 @@ Components repeated_parts(const PreparedMesh& prepared) {
   std::vector<char> host(areas.size(), 0);
   std::vector<char> best_host = host;
   double best = 0;
-  for (std::size_t k = 0; k < std::min(kMostHosts, largest.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kMaxHosts, largest.size()); ++k) {
     host[static_cast<std::size_t>(largest[k])] = 1;
     DisjointSets sets = parts_without(host, pairs);
     const double repeated = repeated_area(sets, host, areas);

@@ -16,8 +16,8 @@ using Sides = std::vector<std::array<FaceSide, 3>>;
 // Whether the surface about an edge faces the way it does there, as far as `reach`.
 bool smooth_about(const PreparedMesh& prepared, const Sides& sides, int face, const FaceSide& side, double reach) {
   constexpr double kElsewhere = 0.9396926207859084;  // cosine of 20 degrees
-  constexpr double kMost = 0.125;                    // of the area that faces elsewhere
-  constexpr std::size_t kMostFaces = 400;
+  constexpr double kMax = 0.125;                     // of the area that faces elsewhere
+  constexpr std::size_t kMaxFaces = 400;
   const Vector3d normal = (prepared.normals.row(face) + prepared.normals.row(side.face)).normalized();
   const auto end = [&](std::size_t k) -> Vector3d {
     return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(side.ends[k])]);
@@ -31,12 +31,12 @@ bool smooth_about(const PreparedMesh& prepared, const Sides& sides, int face, co
     area += prepared.areas[near[i]];
     if (prepared.normals.row(near[i]).dot(normal) < kElsewhere) elsewhere += prepared.areas[near[i]];
     for (const FaceSide& next : sides[static_cast<std::size_t>(near[i])]) {
-      if (next.face < 0 || near.size() >= kMostFaces) continue;
+      if (next.face < 0 || near.size() >= kMaxFaces) continue;
       if ((face_centroid(prepared, next.face) - middle).norm() > reach || !seen.insert(next.face).second) continue;
       near.push_back(next.face);
     }
   }
-  return elsewhere <= kMost * area;
+  return elsewhere <= kMax * area;
 }
 
 }  // namespace

@@ -12,14 +12,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastReach = 1.0 / 400;  // smaller cells take too much memory
+constexpr double kMinReach = 1.0 / 400;  // smaller cells take too much memory
 constexpr double kCellsInReach = 2;
 constexpr double kSpacing = 1.6;  // of the points that stand for a face, cells
 
 }  // namespace
 
 SurfaceGrid::SurfaceGrid(const PreparedMesh& prepared, const std::vector<int>& faces, double reach)
-    : reach_(std::max(reach, kLeastReach)) {
+    : reach_(std::max(reach, kMinReach)) {
   make_directions();
   per_cell_ = kCellsInReach / reach_;
   Vector3d low = Vector3d::Constant(1e300);

@@ -30,7 +30,7 @@ class SurfaceGrid {
   bool covers(const Eigen::Vector3d& point) const { return mask(point) != 0; }
 
  private:
-  static constexpr double kMost = 4096;
+  static constexpr double kMax = 4096;
   static constexpr int kPlaces = 4;       // within a cell, along each edge
   static constexpr int kDirections = 64;  // on a half-sphere
   static constexpr int kTable = 24;       // of directions: cells along an edge of a cube's face
@@ -45,7 +45,7 @@ class SurfaceGrid {
   // The directions of the normals of what lies near.
   std::uint64_t mask(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d cell = (point - origin_) * per_cell_;
-    if (!(cell.minCoeff() >= 0) || !(cell.maxCoeff() < kMost)) return 0;
+    if (!(cell.minCoeff() >= 0) || !(cell.maxCoeff() < kMax)) return 0;
     const Eigen::Vector3i at = cell.cast<int>();
     if ((at.array() >= cells_.array()).any()) return 0;
     const int block = blocks_[number({at[0] >> 3, at[1] >> 3, at[2] >> 3}, counts_[1], counts_[2])];

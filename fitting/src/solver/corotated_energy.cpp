@@ -35,7 +35,7 @@ double CorotatedEnergy::value(const Points& displacements) const {
   const FourRows moved = in_fours(displacements);
   double stretching = 0;
   for (Eigen::Index i = 0; i < displacements.rows(); ++i) {
-    stretching += sums_.misfit(static_cast<int>(i), rotations, moved);
+    stretching += sums_.squared_residual(static_cast<int>(i), rotations, moved);
   }
   // Each edge was met from both of its ends.
   return laplace_energy(corotation_, rotations_, displacements) + stretch_ * 0.5 * stretching;

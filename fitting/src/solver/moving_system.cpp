@@ -56,7 +56,7 @@ MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double st
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)} {}
 
 VectorXd MovingSystem::at_rest(const VectorXd& coordinates) const {
-  const CarriedRegions::Turns turns = regions_.rest();
+  const ConjugatedRegions::Turns turns = regions_.rest();
   VectorXd q(coordinates.size() + kEntries * static_cast<Index>(turns.size()));
   q.head(coordinates.size()) = coordinates;
   for (std::size_t f = 0; f < turns.size(); ++f) {
@@ -65,16 +65,16 @@ VectorXd MovingSystem::at_rest(const VectorXd& coordinates) const {
   return q;
 }
 
-CarriedRegions::Turns MovingSystem::turns_of(const VectorXd& q) const {
+ConjugatedRegions::Turns MovingSystem::turns_of(const VectorXd& q) const {
   const Index dof = subspace_.degrees_of_freedom();
-  CarriedRegions::Turns turns = regions_.rest();
+  ConjugatedRegions::Turns turns = regions_.rest();
   for (std::size_t f = 0; f < turns.size(); ++f) {
     turns[f] = Eigen::Map<const Eigen::Matrix3d>(q.data() + dof + kEntries * static_cast<Index>(f));
   }
   return turns;
 }
 
-std::shared_ptr<const ConjugatedBasis> MovingSystem::basis_at(const CarriedRegions::Turns& turns) const {
+std::shared_ptr<const ConjugatedBasis> MovingSystem::basis_at(const ConjugatedRegions::Turns& turns) const {
   constexpr std::size_t kKept = 2;  // where a step begins and where it ends: one of them is gone back to
   const auto at = std::ranges::find(known_, turns, &KnownBasis::turns);
   if (at != known_.end()) {
@@ -101,7 +101,7 @@ Points MovingSystem::vertices_at(const VectorXd& q, const RunContext& context) c
 
 VectorXd MovingSystem::turned(const VectorXd& q, const VectorXd& angles, const Points& displacements) const {
   const Index dof = subspace_.degrees_of_freedom();
-  const CarriedRegions::Turns next = regions_.turned(turns_of(q), angles);
+  const ConjugatedRegions::Turns next = regions_.turned(turns_of(q), angles);
   const std::shared_ptr<const ConjugatedBasis> basis = basis_at(next);
   if (basis->conflict > kConflict * subspace_->diagonal || basis->columns.cols() != dof) return {};
   VectorXd result = at_rest(q.head(dof));
@@ -132,7 +132,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   const Index ways = regions_.freedom();
   const auto all_samples = static_cast<double>(samples());
   const SubspaceState now = state_of(hold.around);
-  const CarriedRegions::Turns turns = turns_of(hold.around);
+  const ConjugatedRegions::Turns turns = turns_of(hold.around);
   const Points moved = sample_displacements(subspace_, now);
   const Points& rest = subspace_->sampling.points;
   Mesh deformed;

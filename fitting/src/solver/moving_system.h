@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/lift.h"
 #include "basis/subspace_parts.h"
 #include "deformation/contact_energy.h"
@@ -19,7 +19,7 @@ namespace orbifit {
 /// splay. To first order in the turns; then these are applied exactly, the basis is built anew, and its coordinates are
 /// those nearest to what was solved for, so that every state keeps every carried symmetry to rounding.
 ///
-/// q is the coordinates followed by the turns, the nine entries of one matrix a family (CarriedRegions::Turns).
+/// q is the coordinates followed by the turns, the nine entries of one matrix a family (ConjugatedRegions::Turns).
 class MovingSystem final : public DeformationSystem {
  public:
   /// References are kept. \param subspace  of mode moving \param contacts  as of FitSystem
@@ -44,8 +44,8 @@ class MovingSystem final : public DeformationSystem {
   double contact_energy(const Eigen::VectorXd& q) const override;
 
  private:
-  CarriedRegions::Turns turns_of(const Eigen::VectorXd& q) const;
-  std::shared_ptr<const ConjugatedBasis> basis_at(const CarriedRegions::Turns& turns) const;
+  ConjugatedRegions::Turns turns_of(const Eigen::VectorXd& q) const;
+  std::shared_ptr<const ConjugatedBasis> basis_at(const ConjugatedRegions::Turns& turns) const;
   // Turned by the angles, at the coordinates there that bring the samples nearest to these displacements; none where
   // groups turned so no longer agree.
   Eigen::VectorXd turned(const Eigen::VectorXd& q, const Eigen::VectorXd& angles, const Points& displacements) const;
@@ -53,13 +53,13 @@ class MovingSystem final : public DeformationSystem {
   const Subspace& subspace_;
   const Mesh& mesh_;
   std::vector<Contact> contacts_;
-  CarriedRegions regions_;
+  ConjugatedRegions regions_;
   Eigen::SparseMatrix<double> stiffness_;  // K, of the samples
   Eigen::MatrixXd rigid_;                  // rigid_modes() of the samples
   LiftWeights spread_;                     // samples -> vertices
   ScanStep step_;
   struct KnownBasis {
-    CarriedRegions::Turns turns;
+    ConjugatedRegions::Turns turns;
     std::shared_ptr<const ConjugatedBasis> basis;
   };
   mutable std::vector<KnownBasis> known_;  // of those that were asked for last, the last one last

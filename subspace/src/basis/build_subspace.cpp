@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // Where groups make many samples of few degrees of freedom, thin parts need them; searched for from fewer.
-constexpr int kMostDefaultSamples = 2400;
+constexpr int kMaxDefaultSamples = 2400;
 constexpr int kFirstSamples = 1200;
 constexpr int kDefaultDegreesOfFreedom = 200;
 constexpr int kSearchRounds = 6;
@@ -62,7 +62,7 @@ SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, Gr
   if (options.radius > 0) {
     return sample_symmetrically(mesh, regions, words, sampling_options(mesh, options, options.radius), context);
   }
-  const double target = options.samples > 0 ? options.samples : kMostDefaultSamples;
+  const double target = options.samples > 0 ? options.samples : kMaxDefaultSamples;
   const double first = options.samples > 0 ? options.samples : kFirstSamples;
   double radius = std::sqrt(face_areas(mesh).sum() / (0.7 * first));
   const SymmetricSampler sampler(mesh, regions);

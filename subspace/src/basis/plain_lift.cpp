@@ -14,7 +14,7 @@ constexpr double kPlainCutOff = 0.001;  // of a Gaussian (paper, section 5)
 constexpr double kOutside = 1e-6;       // what a place leaves of samples outside, where nothing else is at hand
 constexpr double kNegligible = 1e-5;    // of the largest weight
 constexpr double kBand = 1;             // width of the fading band, in radii
-constexpr int kMostCells = 1 << 22;
+constexpr int kMaxCells = 1 << 22;
 
 const double kPlainReach = std::sqrt(-2 * std::log(kPlainCutOff));  // in standard deviations
 
@@ -44,7 +44,7 @@ PlainLift::PlainLift(const SymmetricSampling& sampling, const RegionMap& regions
   const Eigen::Vector3d extent = points.colwise().maxCoeff().transpose() - origin_;
   width_ = 0.5 * reach;
   const auto count_of = [&]() -> Eigen::Vector3d { return (extent / width_).array().floor() + 1; };
-  while (count_of().prod() > kMostCells) width_ *= 2;
+  while (count_of().prod() > kMaxCells) width_ *= 2;
   const Eigen::Vector3d counts = count_of();
   for (int k = 0; k < 3; ++k) cells_[static_cast<std::size_t>(k)] = static_cast<int>(counts[k]);
   const double count = counts.prod();

@@ -7,7 +7,7 @@
 
 #include "orbifit/model/errors.h"
 
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 #include "kernels/kernels.h"
 
@@ -193,8 +193,8 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
   const LiftState now = lift_state(basis, state);
 
   // Representatives. Sums take about half a microsecond a block, copies a few nanoseconds.
-  constexpr std::size_t kLeastBlocks = 100;
-  constexpr std::size_t kLeastCopies = 10000;
+  constexpr std::size_t kMinBlocks = 100;
+  constexpr std::size_t kMinCopies = 10000;
   constexpr std::size_t kLanes = OrbitLift::kLanes;
   const std::size_t blocks = lift.first.size() - 1;
   const std::unique_ptr<double[]> sources(new double[4 * kLanes * blocks]);
@@ -217,7 +217,7 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
           source = u;
         }
       },
-      kLeastBlocks);
+      kMinBlocks);
 
   // Their images.
   static_assert(sizeof(VertexOrbits::Follower) == 3 * sizeof(int));
@@ -237,7 +237,7 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
                   .transpose();
         }
       },
-      kLeastCopies);
+      kMinCopies);
   return displacements;
 }
 

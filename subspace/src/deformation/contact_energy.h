@@ -8,7 +8,7 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/subspace/subspace.h"
 
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "deformation/contacts.h"
 
 namespace orbifit {
@@ -74,11 +74,11 @@ struct ContactRows {
   Eigen::VectorXd right;
 };
 
-/// How groups start to turn, see CarriedRegions.
+/// How groups start to turn, see ConjugatedRegions.
 struct SmallTurns {
-  const CarriedRegions& regions;
-  const CarriedRegions::Turns& turns;  ///< where they stand
-  const Eigen::MatrixXd& columns;      ///< of the samples where they are now, 3#S by ways
+  const ConjugatedRegions& regions;
+  const ConjugatedRegions::Turns& turns;  ///< where they stand
+  const Eigen::MatrixXd& columns;         ///< of the samples where they are now, 3#S by ways
 };
 
 /// \param weight        as of ContactEnergy

@@ -230,10 +230,10 @@ Orbits few_of(const Orbits& orbits, const std::vector<Candidate>& candidates, st
               const RunContext& context) {
   constexpr double kWider = 1.4;  // half as many on a surface
   for (int round = 0;; ++round) {
-    constexpr int kMostRounds = 20;  // each pair of parts keeps one at least
+    constexpr int kMaxRounds = 20;  // each pair of parts keeps one at least
     Kept kept(candidates, spacing, context);
     Orbits result = thinned(orbits, kept);
-    if (result.size() <= static_cast<std::size_t>(most) || round == kMostRounds) return result;
+    if (result.size() <= static_cast<std::size_t>(most) || round == kMaxRounds) return result;
     for (double& each : spacing) each *= kWider;
   }
 }
@@ -250,13 +250,13 @@ struct Joints {
 Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits, const std::vector<double>& small_size,
                  double widest, const RunContext& context) {
   constexpr double kOfExtent = 0.6;  // of how far a joint reaches from one of its points: about five about a round one
-  constexpr double kLeastSpacing = 1e-3;  // of the widest
+  constexpr double kMinSpacing = 1e-3;  // of the widest
   Joints result;
   if (orbits.empty()) return result;
   result.spacing.assign(candidates.size(), widest);
   // As fine as the joints that are to be told apart.
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    result.spacing[i] = std::clamp(0.25 * small_size[i], kLeastSpacing * widest, widest);
+    result.spacing[i] = std::clamp(0.25 * small_size[i], kMinSpacing * widest, widest);
   Kept kept(candidates, result.spacing, context);
   thinned(orbits, kept);
   DisjointSets hanging(candidates.size());
@@ -297,7 +297,7 @@ Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits,
     result.small.push_back(2 * reach <= small_size[static_cast<std::size_t>(joint.front())] ? 1 : 0);
     for (const int number : joint) {
       result.spacing[static_cast<std::size_t>(number)] =
-          std::clamp(2 * kOfExtent * reach, kLeastSpacing * widest, widest);
+          std::clamp(2 * kOfExtent * reach, kMinSpacing * widest, widest);
     }
   }
   return result;

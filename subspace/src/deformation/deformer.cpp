@@ -25,7 +25,7 @@ namespace {
 constexpr double kHold = 1e-12;
 
 // Most that handles may weigh, relative to the energy by their traces: half of a double's digits are left to either.
-constexpr double kHardest = 0x1p26;
+constexpr double kMaxHandleWeight = 0x1p26;
 
 // What a contact weighs against equation (3): see kContactWeight.
 double contact_weight(const Corotation& corotation) {
@@ -90,7 +90,7 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   own.handles.add_gram(own.alpha, system);
   const double pulled = system.trace() - own.stiffness.trace();
   const double energy = own.stiffness.trace() - own.of_contacts * static_cast<double>(system.rows());
-  if (const double most = kHardest * energy; pulled > most && most > 0) {
+  if (const double most = kMaxHandleWeight * energy; pulled > most && most > 0) {
     own.alpha *= most / pulled;
     system = own.stiffness;
     own.handles.add_gram(own.alpha, system);

@@ -195,15 +195,15 @@ class PairResidual {
   /// Measures images off the vertices, at most `most` of them, evenly spread: each is worth thousands at vertices.
   /// Where orbits are large it measures fewer.
   void finish(std::size_t most, const RunContext& context) {
-    constexpr std::size_t kFewest = 2;
-    constexpr std::size_t kMostOfOrbits = 30000;  // of their orbits
+    constexpr std::size_t kMin = 2;
+    constexpr std::size_t kMaxOfOrbits = 30000;  // of their orbits
     const std::size_t count = off_vertices_.size();
     // An odd stride near the golden section spreads every beginning of the sequence.
     auto stride = static_cast<std::size_t>(0.618 * static_cast<double>(count));
     while (std::gcd(++stride, count) > 1) continue;
     const std::size_t seen_before = field_.points_seen();
     for (std::size_t i = 0; i < std::min(most, count); ++i) {
-      if (i >= kFewest && field_.points_seen() - seen_before > kMostOfOrbits) break;
+      if (i >= kMin && field_.points_seen() - seen_before > kMaxOfOrbits) break;
       const std::size_t k = i * stride % count;
       context.check();
       const Pair& pair = off_vertices_[k];

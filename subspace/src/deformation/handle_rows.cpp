@@ -11,7 +11,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr std::size_t kMostOfHandle = 48;  // of a handle
+constexpr std::size_t kMaxOfHandle = 48;  // of a handle
 
 // A handle counts as the samples within r of its points, and at least as three.
 double weight_of(const std::vector<int>& vertices, const Mesh& mesh, const Subspace& subspace) {
@@ -26,9 +26,9 @@ double weight_of(const std::vector<int>& vertices, const Mesh& mesh, const Subsp
 }
 
 std::vector<int> spread(const std::vector<int>& vertices) {
-  if (vertices.size() <= kMostOfHandle) return vertices;
+  if (vertices.size() <= kMaxOfHandle) return vertices;
   std::vector<int> result;
-  for (std::size_t k = 0; k < kMostOfHandle; ++k) result.push_back(vertices[k * vertices.size() / kMostOfHandle]);
+  for (std::size_t k = 0; k < kMaxOfHandle; ++k) result.push_back(vertices[k * vertices.size() / kMaxOfHandle]);
   return result;
 }
 

@@ -14,10 +14,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kMostCotangent = 1e4;
+constexpr double kMaxCotangent = 1e4;
 // A triangle's area is rounded at this fraction of its longest side squared.
 constexpr double kNoArea = 1e-15;
-constexpr int kMostCuts = 256;
+constexpr int kMaxCuts = 256;
 constexpr Index kBlock = 16384;  // rows of the lift that are multiplied at once
 constexpr double kGraphShare = 0.02;
 
@@ -45,7 +45,7 @@ struct Corners {
 // How often a triangle's sides are to be cut; a length that is a multiple up to rounding counts as one.
 int cuts(const Mesh& mesh, Index face, double longest) {
   const double ratio = std::sqrt(Corners(mesh, face).longest) / longest;
-  return std::clamp(static_cast<int>(std::ceil(ratio * (1 - 1e-9))), 1, kMostCuts);
+  return std::clamp(static_cast<int>(std::ceil(ratio * (1 - 1e-9))), 1, kMaxCuts);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     if (corners.flat()) continue;
     Vector3d cotangents = corners.dots / corners.doubled_area;
     const double most = cotangents.cwiseAbs().maxCoeff();
-    if (most > kMostCotangent) cotangents *= kMostCotangent / most;
+    if (most > kMaxCotangent) cotangents *= kMaxCotangent / most;
     for (int k = 0; k < 3; ++k) {
       const int i = mesh.faces(f, (k + 1) % 3);
       const int j = mesh.faces(f, (k + 2) % 3);

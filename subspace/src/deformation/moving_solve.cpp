@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 constexpr double kHoldCoordinates = 1e-10;  // of the mean of the diagonal, on coordinates
 constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of the largest
-constexpr double kMostTurn = 0.35;          // radians in one iteration
+constexpr double kMaxTurn = 0.35;           // radians in one iteration
 constexpr double kConflict = 1e-12;         // of the diagonal
 
 // The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset.
@@ -94,7 +94,7 @@ MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation,
       contact_weight_(contact_weight) {}
 
 // As the handles turn all in all.
-CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const VectorXd& targets) const {
+ConjugatedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const VectorXd& targets) const {
   constexpr double kLine = 1e-6;  // of the largest singular value: points on a line leave the turn about it open
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   const Points& rest = handles.rest();
@@ -107,7 +107,7 @@ CarriedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, const 
   }
   const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::Matrix3d>(sum).singularValues();
   if (!(values[1] > kLine * values[0])) return regions_.rest();
-  CarriedRegions::Turns turns = regions_.as_one(blended_rotation(sum));
+  ConjugatedRegions::Turns turns = regions_.as_one(blended_rotation(sum));
   const bool agree = keeps_freedom(subspace_, regions_.rotations(turns), kConflict * subspace_->diagonal);
   return agree ? turns : regions_.rest();
 }
@@ -119,7 +119,7 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
   const SampleEnergy energy(corotation_, spread, handles.weights(), alpha);
   const VectorXd targets = handles.targets(motions);
 
-  CarriedRegions::Turns turns = regions_.rest();
+  ConjugatedRegions::Turns turns = regions_.rest();
   std::vector<Eigen::Matrix3d> local(static_cast<std::size_t>(rest.rows()), Eigen::Matrix3d::Identity());
   const auto turned_coordinates = [&](const std::vector<Eigen::Matrix3d>& by) {
     Points turned(rest.rows(), 3);
@@ -185,8 +185,8 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
       VectorXd angles = both.tail(turning.cols());
       const double largest = angles.cwiseAbs().maxCoeff();
       context.check();
-      if (largest > kMostTurn) angles *= kMostTurn / largest;
-      const CarriedRegions::Turns next = regions_.turned(turns, angles);
+      if (largest > kMaxTurn) angles *= kMaxTurn / largest;
+      const ConjugatedRegions::Turns next = regions_.turned(turns, angles);
       auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(next)));
       if (basis->conflict <= kConflict * subspace_->diagonal) {
         for (Eigen::Index k = 0; k < rest.rows(); ++k) {

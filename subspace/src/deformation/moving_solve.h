@@ -4,7 +4,7 @@
 
 #include "orbifit/subspace/deformer.h"
 
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/lift.h"
 #include "deformation/contact_energy.h"
 #include "deformation/corotation.h"
@@ -25,11 +25,11 @@ class MovingSolve {
                     const SubspaceState& start, const RunContext& context) const;
 
  private:
-  CarriedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
+  ConjugatedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
 
   const Subspace& subspace_;
   const Corotation& corotation_;
-  CarriedRegions regions_;
+  ConjugatedRegions regions_;
   std::vector<Contact> contacts_;
   double contact_weight_;
 };

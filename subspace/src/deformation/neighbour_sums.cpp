@@ -75,11 +75,11 @@ Eigen::Vector3d NeighbourSums::turned(int sample, const FourMatrices& rotations)
   return result;
 }
 
-double NeighbourSums::misfit(int sample, const FourMatrices& rotations, const FourRows& displacements) const {
+double NeighbourSums::squared_residual(int sample, const FourMatrices& rotations, const FourRows& displacements) const {
   const auto i = static_cast<std::size_t>(sample);
-  return kernels().edge_misfits(edges_.data() + std::ptrdiff_t{4} * first_[i], end_.data() + first_[i], count(i),
-                                rotations.data(), displacements.data(), rotations.col(sample).data(),
-                                displacements.col(sample).data());
+  return kernels().edge_residuals(edges_.data() + std::ptrdiff_t{4} * first_[i], end_.data() + first_[i], count(i),
+                                  rotations.data(), displacements.data(), rotations.col(sample).data(),
+                                  displacements.col(sample).data());
 }
 
 }  // namespace orbifit

@@ -28,7 +28,7 @@ class NeighbourSums {
   Eigen::Vector3d turned(int sample, const FourMatrices& rotations) const;
 
   /// sum of |e + u_i - u_j - (R_i + R_j) / 2 e|^2
-  double misfit(int sample, const FourMatrices& rotations, const FourRows& displacements) const;
+  double squared_residual(int sample, const FourMatrices& rotations, const FourRows& displacements) const;
 
   /// sum of |e|^2
   double size(int sample) const { return sizes_[static_cast<std::size_t>(sample)]; }

@@ -8,7 +8,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kLeastWeight = 0.01;
+constexpr double kMinWeight = 0.01;
 
 // The median distance of each sample's neighbours; of an even number the mean of the middle two.
 Eigen::VectorXd local_scales(const Points& samples, const SampleEdges& edges) {
@@ -50,7 +50,7 @@ Eigen::SparseMatrix<double> point_laplacian(const Points& samples, const SampleE
   for (const auto& [i, j] : edges) {
     // Belkin's factor 1 / h^4: energies do not depend on the local scale.
     const double weight =
-        areas[i] * areas[j] * std::max(kLeastWeight, closeness(i, j)) / (scales[i] * scales[i] * scales[j] * scales[j]);
+        areas[i] * areas[j] * std::max(kMinWeight, closeness(i, j)) / (scales[i] * scales[i] * scales[j] * scales[j]);
     entries.emplace_back(i, i, weight);
     entries.emplace_back(j, j, weight);
     entries.emplace_back(i, j, -weight);

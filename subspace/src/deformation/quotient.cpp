@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 #include "kernels/kernels.h"
 
@@ -49,10 +49,10 @@ Matrix3d covariance_of(const Corotation& corotation, const Points& moved, int sa
 }  // namespace
 
 Matrix3d nearest_rotation(const Matrix3d& matrix, const Matrix3d& start) {
-  constexpr int kMostSteps = 12;
+  constexpr int kMaxSteps = 12;
   constexpr double kDone = 1e-16;  // squared angle after which the next step would be below rounding
   Matrix3d rotation = start;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     // With R exp[w]: tr = const + w . a - w^T H w / 2; H positive definite at a critical point makes it the maximum.
     const Matrix3d m = rotation.transpose() * matrix;
     const Vector3d a(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
@@ -88,50 +88,73 @@ Matrix3d nearest_rotation(const Matrix3d& matrix, const Matrix3d& start) {
   return blended_rotation(matrix);
 }
 
-Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : freedom_(subspace.degrees_of_freedom()) {
-  const auto samples = static_cast<int>(corotation.rest.rows());
-  Random random(5, "quotient");
-  std::vector<Points> moved;
-  std::vector<Points> laplace;
-  for (int k = 0; k < kNewtonTrials; ++k) {
-    Eigen::VectorXd q(freedom_);
-    for (double& coordinate : q) coordinate = random.normal();
-    moved.push_back(sample_displacements(subspace, q));
-    laplace.push_back(corotation.laplacian * moved.back());
+namespace {
+
+// How samples look under random displacements.
+class Looks {
+ public:
+  Looks(const Subspace& subspace, const Corotation& corotation)
+      : transports_(subspace->basis.transports.samples), corotation_(corotation) {
+    Random random(5, "quotient");
+    for (int k = 0; k < kNewtonTrials; ++k) {
+      Eigen::VectorXd q(subspace.degrees_of_freedom());
+      for (double& coordinate : q) coordinate = random.normal();
+      moved_.push_back(sample_displacements(subspace, q));
+      laplace_.push_back(corotation.laplacian * moved_.back());
+    }
+    for (int sample = 0; sample < static_cast<int>(corotation.rest.rows()); ++sample) {
+      scale_ = std::max(scale_, covariance_of(corotation, corotation.rest, sample).norm());
+    }
   }
-  const auto look = [&](int sample) {
-    const Matrix3d& frame = subspace->basis.transports.samples[static_cast<std::size_t>(sample)].frame;
+
+  const Matrix3d& frame(int sample) const { return transports_[static_cast<std::size_t>(sample)].frame; }
+
+  Look of(int sample) const {
+    const Matrix3d& turned = frame(sample);
     Look result;
-    result.rest = frame.transpose() * covariance_of(corotation, corotation.rest, sample) * frame;
-    result.delta = frame.transpose() * corotation.delta.row(sample).transpose();
+    result.rest = turned.transpose() * covariance_of(corotation_, corotation_.rest, sample) * turned;
+    result.delta = turned.transpose() * corotation_.delta.row(sample).transpose();
     for (std::size_t k = 0; k < kNewtonTrials; ++k) {
-      result.covariance[k] = frame.transpose() * covariance_of(corotation, moved[k], sample) * frame;
-      result.laplace[k] = frame.transpose() * laplace[k].row(sample).transpose();
+      result.covariance[k] = turned.transpose() * covariance_of(corotation_, moved_[k], sample) * turned;
+      result.laplace[k] = turned.transpose() * laplace_[k].row(sample).transpose();
     }
     return result;
-  };
-  double scale = 0;
-  for (int sample = 0; sample < samples; ++sample) {
-    scale = std::max(scale, covariance_of(corotation, corotation.rest, sample).norm());
   }
-  // Frames at samples that stabilisers fix are one of several; neighbourhoods that are images all the same look alike.
+
+  bool alike(const Look& a, const Look& b) const {
+    return difference(a, b) <= kAlike * std::max({1.0, scale_, b.laplace[0].norm(), b.covariance[0].norm()});
+  }
+
+ private:
+  const std::vector<Transport>& transports_;
+  const Corotation& corotation_;
+  std::vector<Points> moved_, laplace_;
+  double scale_ = 0;
+};
+
+}  // namespace
+
+Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : freedom_(subspace.degrees_of_freedom()) {
+  add_columns(subspace, corotation, find_classes(subspace, corotation));
+}
+
+// Frames at samples that stabilisers fix are one of several; neighbourhoods that are images all the same look alike.
+std::vector<int> Quotient::find_classes(const Subspace& subspace, const Corotation& corotation) {
+  const Looks looks(subspace, corotation);
   std::vector<int> representatives;
   for (int orbit = 0; orbit < subspace->sampling.orbits(); ++orbit) {
     std::vector<std::pair<int, Look>> known;
     const auto at = static_cast<std::size_t>(orbit);
     const std::size_t first = counts_.size();
     for (int k = subspace->sampling.first_sample[at]; k < subspace->sampling.first_sample[at + 1]; ++k) {
-      const Look seen = look(k);
-      const double largest = std::max({1.0, scale, seen.laplace[0].norm(), seen.covariance[0].norm()});
-      const auto same = std::ranges::find_if(
-          known, [&](const auto& other) { return difference(other.second, seen) <= kAlike * largest; });
-      const int stands_for_it = same != known.end() ? same->first : k;
-      class_of_sample_.push_back(static_cast<int>(first) + static_cast<int>(same - known.begin()));
-      frame_.emplace_back(
-          subspace->basis.transports.samples[static_cast<std::size_t>(k)].frame *
-          subspace->basis.transports.samples[static_cast<std::size_t>(stands_for_it)].frame.transpose());
+      const Look seen = looks.of(k);
+      const auto same = std::ranges::find_if(known, [&](const auto& other) { return looks.alike(other.second, seen); });
+      const auto number = first + static_cast<std::size_t>(same - known.begin());
+      const int representative = same != known.end() ? same->first : k;
+      class_of_sample_.push_back(static_cast<int>(number));
+      frame_.emplace_back(looks.frame(k) * looks.frame(representative).transpose());
       if (same != known.end()) {
-        counts_[first + static_cast<std::size_t>(same - known.begin())] += 1;
+        counts_[number] += 1;
         continue;
       }
       known.emplace_back(k, seen);
@@ -139,7 +162,11 @@ Quotient::Quotient(const Subspace& subspace, const Corotation& corotation) : fre
       counts_.push_back(1);
     }
   }
+  return representatives;
+}
 
+void Quotient::add_columns(const Subspace& subspace, const Corotation& corotation,
+                           const std::vector<int>& representatives) {
   const Eigen::SparseMatrix<double, Eigen::RowMajor> columns(subspace->basis.columns);
   const Eigen::SparseMatrix<double, Eigen::RowMajor> laplacian(corotation.laplacian);
   using Row = Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator;

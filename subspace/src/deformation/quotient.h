@@ -38,6 +38,10 @@ class Quotient {
   double energy(const Eigen::VectorXd& q, const std::vector<Eigen::Matrix3d>& rotations) const;
 
  private:
+  /// \return the first sample of each class
+  std::vector<int> find_classes(const Subspace& subspace, const Corotation& corotation);
+  void add_columns(const Subspace& subspace, const Corotation& corotation, const std::vector<int>& representatives);
+
   std::vector<double> counts_;          // samples in each class
   std::vector<int> class_of_sample_;    // #S
   std::vector<Eigen::Matrix3d> frame_;  // #S, orthogonal: takes the class's rotation to the sample's by conjugation

@@ -19,7 +19,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int kMostPieces = 16;  // into which a side of a large face is cut
+constexpr int kMaxPieces = 16;  // into which a side of a large face is cut
 
 struct Part {
   std::vector<int> faces;
@@ -116,7 +116,7 @@ class PartSearch {
   void look_from_points(int face, const AlignedBox3d& reach) {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (corner(face, k) - corner(face, (k + 1) % 3)).norm());
-    const int pieces = std::clamp(static_cast<int>(std::ceil(longest / spacing_)), 1, kMostPieces);
+    const int pieces = std::clamp(static_cast<int>(std::ceil(longest / spacing_)), 1, kMaxPieces);
     for (int i = 0; i <= pieces; ++i) {
       for (int j = 0; i + j <= pieces; ++j) {
         const FacePoint own{face, Vector3d(i, j, pieces - i - j) / pieces};
@@ -136,7 +136,7 @@ class PartSearch {
   }
 
   void look_along_edge(int face, int k) {
-    constexpr int kMostCrossings = 64;  // an edge that meets more lies along a surface
+    constexpr int kMaxCrossings = 64;  // an edge that meets more lies along a surface
     const auto ends = std::minmax(mesh_.faces(face, k), mesh_.faces(face, (k + 1) % 3));
     if (!edges_.insert((static_cast<std::uint64_t>(ends.first) << 32) + static_cast<std::uint64_t>(ends.second))
              .second) {
@@ -147,7 +147,7 @@ class PartSearch {
     const double length = along.norm();
     if (!(length > 0)) return;
     double from = 0;
-    for (int crossing = 0; crossing < kMostCrossings && from <= length; ++crossing) {
+    for (int crossing = 0; crossing < kMaxCrossings && from <= length; ++crossing) {
       if (!to_.surface->occluded(start, along, from, length)) return;
       const int hit = to_.surface->first_hit(start, along, from);
       if (hit < 0) return;

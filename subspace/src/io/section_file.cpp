@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kWord = 8;
 constexpr std::size_t kFixedHeader = 32;  // magic, version, number of sections, size of the file, checksum
 constexpr std::size_t kTableRow = 32;     // name, start, size, checksum
-constexpr std::size_t kMostSections = 64;
+constexpr std::size_t kMaxSections = 64;
 constexpr std::size_t kChecksumAt = 24;
 
 std::uint64_t checksum_of(std::string_view bytes) {
@@ -172,7 +172,7 @@ SectionFile::SectionFile(const std::filesystem::path& file, const SectionFormat&
                          std::to_string(bytes.size()) + " bytes instead of " + std::to_string(size));
   }
   const std::size_t header = kFixedHeader + count * kTableRow;
-  if (count > kMostSections || header > bytes.size()) refuse("header", "is damaged: too many sections");
+  if (count > kMaxSections || header > bytes.size()) refuse("header", "is damaged: too many sections");
   if (header_checksum(bytes.substr(0, header)) != number_at<std::uint64_t>(bytes, kChecksumAt)) {
     refuse("header", "is damaged: its checksum is wrong");
   }

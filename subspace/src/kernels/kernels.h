@@ -32,8 +32,8 @@ struct Kernels {
   void (*turned_edges)(const double* edges, const int* end, int count, const double* matrices, double* sum);
 
   /// Likewise, the sum of |d + row - v - (matrix d + M d) / 2|^2.
-  double (*edge_misfits)(const double* edges, const int* end, int count, const double* matrices, const double* rows,
-                         const double* matrix, const double* row);
+  double (*edge_residuals)(const double* edges, const int* end, int count, const double* matrices, const double* rows,
+                           const double* matrix, const double* row);
 
   /// The lower half of A^T A, column-major and `columns` apart, and entries above it: A has `count` rows, row-major.
   /// \param columns  a multiple of four

@@ -92,8 +92,8 @@ void turned_edges(const double* edges, const int* end, int count, const double* 
   *reinterpret_cast<Four*>(sum) = a + b + c;
 }
 
-double edge_misfits(const double* edges, const int* end, int count, const double* matrices, const double* rows,
-                    const double* matrix, const double* row) {
+double edge_residuals(const double* edges, const int* end, int count, const double* matrices, const double* rows,
+                      const double* matrix, const double* row) {
   const auto* here = reinterpret_cast<const Four*>(matrix);
   const Four own = *reinterpret_cast<const Four*>(row);
   Four sum{};
@@ -103,8 +103,8 @@ double edge_misfits(const double* edges, const int* end, int count, const double
         edges[0] * (here[0] + there[0]) + edges[1] * (here[1] + there[1]) + edges[2] * (here[2] + there[2]);
     const Four now = *reinterpret_cast<const Four*>(edges) +
                      (own - *reinterpret_cast<const Four*>(rows + std::ptrdiff_t{4} * end[e]));
-    const Four misfit = now - 0.5 * turned;
-    sum += misfit * misfit;
+    const Four residual = now - 0.5 * turned;
+    sum += residual * residual;
   }
   return sum[0] + sum[1] + sum[2];
 }
@@ -146,7 +146,7 @@ void gram(const double* rows, int count, std::ptrdiff_t columns, double* result)
 using FourMasks = long long __attribute__((vector_size(32)));  // what comparing Fours gives
 
 unsigned nearest_rotations(const double* matrices, double* rotations) {
-  constexpr int kMostSteps = 12;
+  constexpr int kMaxSteps = 12;
   constexpr double kDone = 1e-16;  // squared half angle after which the next step would be below rounding
   const Four one = {1, 1, 1, 1};
   const Four zero{};
@@ -158,7 +158,7 @@ unsigned nearest_rotations(const double* matrices, double* rotations) {
   }
   FourMasks failed{};
   FourMasks done{};
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     // With R exp[w]: tr = const + w . a - w^T H w / 2; H positive definite at a critical point makes it the maximum.
     Four m[9];
     for (int j = 0; j < 3; ++j) {

@@ -3,7 +3,7 @@
 
 namespace orbifit {
 
-const Kernels kPlainKernels{blocked_sums, carried_copies, gather_blocks,     edge_products, turned_edges,
-                            edge_misfits, gram,           nearest_rotations, cholesky_solve};
+const Kernels kPlainKernels{blocked_sums,   carried_copies, gather_blocks,     edge_products, turned_edges,
+                            edge_residuals, gram,           nearest_rotations, cholesky_solve};
 
 }  // namespace orbifit

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr std::size_t kFewestOfRing = 3;
+constexpr std::size_t kMinOfRing = 3;
 // A ring whose profile is wider than this many links is a chain of rings that run into one another.
 constexpr double kWidest = 4;
 
@@ -89,7 +89,7 @@ Rings ring_average(const Region& region, double link, Points& places) {
   Rings result;
   double sum = 0;
   for (const std::vector<Index>& set : linked(profile, link)) {
-    if (set.size() < kFewestOfRing) continue;
+    if (set.size() < kMinOfRing) continue;
     const Eigen::MatrixX2d here = profile(set, Eigen::all);
     if ((here.colwise().maxCoeff() - here.colwise().minCoeff()).maxCoeff() > kWidest * link) continue;
     const Eigen::RowVector2d mean = here.colwise().mean();

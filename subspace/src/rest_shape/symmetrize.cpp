@@ -47,14 +47,14 @@ struct Shape {
 };
 
 // A finite group for the continuous one of a region: that of a related region, carried here, or of its own places.
-std::optional<Region> finite_stand_in(const Shape& shape, const std::vector<Motion>& known, std::size_t number) {
+std::optional<Region> finite_subgroup_of(const Shape& shape, const std::vector<Motion>& known, std::size_t number) {
   const Region& region = shape.annotation.regions[number];
   for (std::size_t r = 0; r < number; ++r) {
     const Region& other = shape.annotation.regions[r];
     if (!shape.finite[r] || !(other.group == region.group) || shape.inside[r].size() != shape.inside[number].size()) {
       continue;
     }
-    std::optional<Region> carried = carried_region(*shape.finite[r], region, known, shape.scale);
+    std::optional<Region> carried = conjugated_region(*shape.finite[r], region, known, shape.scale);
     if (carried) return carried;
   }
   return turning_region(region, shape.places.positions(shape.inside[number], Eigen::all), shape.reach, known);
@@ -73,7 +73,7 @@ Shape prepare(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunC
       shape.finite.emplace_back(region);
       continue;
     }
-    shape.finite.push_back(finite_stand_in(shape, known, shape.inside.size() - 1));
+    shape.finite.push_back(finite_subgroup_of(shape, known, shape.inside.size() - 1));
     if (shape.finite.back()) {
       known.insert(known.end(), shape.finite.back()->elements.begin(), shape.finite.back()->elements.end());
     }

@@ -21,7 +21,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr int kNearest = 8;
-constexpr int kMostShrinkings = 30;
+constexpr int kMaxShrinkings = 30;
 constexpr double kOpposite = 0.5;  // cosine: faces that look the other way by at least 120 degrees
 constexpr double kTouching = 1e-6;
 constexpr double kPerThickness = 0.5;  // r as a fraction of the thickness
@@ -30,7 +30,7 @@ constexpr double kPerThickness = 0.5;  // r as a fraction of the thickness
 // a ball is shrunk until it holds no point of one (Ma, Bae and Choi 2012).
 double thickness(const SurfaceIndex& surface, const Vector3d& point, const Vector3d& normal, double most) {
   double radius = most / 2;
-  for (int step = 0; step < kMostShrinkings; ++step) {
+  for (int step = 0; step < kMaxShrinkings; ++step) {
     const Vector3d centre = point - radius * normal;
     const SurfaceIndex::Nearest nearest = surface.nearest_facing(centre, -normal, kOpposite, radius);
     if (nearest.face < 0 || nearest.distance >= radius * (1 - kTouching)) break;

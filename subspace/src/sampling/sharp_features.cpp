@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kOneCrease = 1e-7;      // of the diagonal
 constexpr double kSameDirection = 1e-6;  // 1 - cosine
-constexpr std::size_t kFewestOnLoop = 3;
+constexpr std::size_t kMinOnLoop = 3;
 
 // The sharp edges of a mesh as a graph over its places.
 struct SharpGraph {
@@ -125,7 +125,7 @@ class Collector {
     }
     const bool loop = corner_[static_cast<std::size_t>(places.front())] == 0;
     std::size_t steps = static_cast<std::size_t>(std::max(1.0, std::round(length / spacing_)));
-    if (loop) steps = std::max(steps, kFewestOnLoop);
+    if (loop) steps = std::max(steps, kMinOnLoop);
     double passed = 0;
     std::size_t next = loop ? 0 : 1;
     for (std::size_t c = 0; c < chain.size(); ++c) {

@@ -33,9 +33,9 @@ using Eigen::Vector3d;
 constexpr double kDoubletSamples = 1e-4;  // of the diagonal (paper, section 5)
 constexpr double kCrowded = 0.4;          // of r
 constexpr double kRingSpacing = 0.9;      // of r
-constexpr int kFewestCopies = 6;
+constexpr int kMinCopies = 6;
 constexpr int kCandidatesPerDisc = 30;
-constexpr int kMostCandidates = 400000;
+constexpr int kMaxCandidates = 400000;
 constexpr int kCandidatesPerPlace = 24;
 constexpr double kBorderSpacing = 0.125;  // of r, between candidates on borders
 constexpr double kOnBorder = 0.02;        // of r: images on borders may be this far off
@@ -121,7 +121,7 @@ std::vector<Candidate> draw_candidates(const Mesh& mesh, const RegionMap& region
   Random random(context.seed, "symmetric sampling");
   const Eigen::VectorXd areas = face_areas(mesh);
   const double discs = areas.sum() / (std::numbers::pi / 4 * least_radius * least_radius);
-  const int count = static_cast<int>(std::clamp(kCandidatesPerDisc * discs, 1000.0, double{kMostCandidates}));
+  const int count = static_cast<int>(std::clamp(kCandidatesPerDisc * discs, 1000.0, double{kMaxCandidates}));
   std::vector<Candidate> candidates;
   append(candidates, options.first, regions, true);
   append(candidates, sample_surface(mesh, count, random), regions, false);
@@ -157,8 +157,8 @@ std::vector<Motion> copy_turns(const Continuum& continuum, const Vector3d& posit
     const double around = 2 * std::numbers::pi * distance / (kRingSpacing * radius);
     const int fold = continuum.fold;
     const int count = fold > 1 ? fold * static_cast<int>(std::ceil(around / fold))
-                               : std::max(kFewestCopies, static_cast<int>(std::ceil(around)));
-    needed = std::max(double{kFewestCopies}, around);
+                               : std::max(kMinCopies, static_cast<int>(std::ceil(around)));
+    needed = std::max(double{kMinCopies}, around);
     for (int k = 1; k < count; ++k) {
       turns.push_back(Motion::rotation(continuum.axis, 2 * std::numbers::pi * k / count, continuum.centre));
     }

@@ -151,7 +151,7 @@ void MovingSurface::frame() {
 }
 
 void MovingSurface::move(const Mesh& mesh, const RunContext& context) {
-  constexpr std::size_t kLeastShare = 2000;
+  constexpr std::size_t kMinShare = 2000;
   mesh_ = &mesh;
   frame();
   // Rounding keeps the order of numbers, so boxes may be those of rounded vertices.
@@ -162,7 +162,7 @@ void MovingSurface::move(const Mesh& mesh, const RunContext& context) {
   }
   parallel_for(
       context, levels_.front().size(),
-      [&](std::size_t begin, std::size_t end) { fit_faces(rounded.get(), begin, end); }, kLeastShare);
+      [&](std::size_t begin, std::size_t end) { fit_faces(rounded.get(), begin, end); }, kMinShare);
   for (std::size_t level = 1; level < levels_.size(); ++level) fit_nodes(level, 0, levels_[level].size());
 }
 

@@ -313,14 +313,14 @@ Orbit orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, G
 
 Orbit snapped_orbit_of(const Eigen::Vector3d& seed, int set, const RegionMap& regions, GroupWords& words,
                        const ClosureOptions& options) {
-  constexpr double kMost = 10;  // doublet distances: motions without a common fixed point do not pull the seed away
+  constexpr double kMax = 10;  // doublet distances: motions without a common fixed point do not pull the seed away
   ClosureOptions snapping = options;
   snapping.snap = options.doublet;
   Orbit orbit = orbit_of(seed, set, regions, words, snapping);
   if (orbit.stabilisers.empty()) return orbit;
   const Eigen::Vector3d start = orbit.points.front().position;
   const Eigen::Vector3d fixed = fixed_point(start, orbit.stabilisers);
-  if (fixed == start || (fixed - start).norm() > kMost * options.doublet) return orbit;
+  if (fixed == start || (fixed - start).norm() > kMax * options.doublet) return orbit;
   const Eigen::Vector3d snapped = orbit.turned_by < 0 ? fixed : orbit.turn(fixed);
   return orbit_of(snapped, orbit.points.front().set, regions, words, options);
 }

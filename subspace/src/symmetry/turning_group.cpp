@@ -141,8 +141,8 @@ std::optional<Vector3d> known_direction(const Region& region, const std::vector<
 
 }  // namespace
 
-std::optional<Region> carried_region(const Region& from, const Region& to, const std::vector<Motion>& known,
-                                     double scale) {
+std::optional<Region> conjugated_region(const Region& from, const Region& to, const std::vector<Motion>& known,
+                                        double scale) {
   for (const Motion& motion : known) {
     if ((motion.linear * from.axis).cross(to.axis).norm() > kSame) continue;
     if ((motion(from.centre) - to.centre).cross(to.axis).norm() > kSame * scale) continue;

@@ -19,7 +19,7 @@ std::optional<Region> turning_region(const Region& region, const Points& places,
 
 /// The same group about another region's axis, where one of `known` takes axis and centre there: related parts get
 /// related groups.
-std::optional<Region> carried_region(const Region& from, const Region& to, const std::vector<Motion>& known,
-                                     double scale);
+std::optional<Region> conjugated_region(const Region& from, const Region& to, const std::vector<Motion>& known,
+                                        double scale);
 
 }  // namespace orbifit

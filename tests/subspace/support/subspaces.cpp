@@ -6,7 +6,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "base/random.h"
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 
 namespace orbifit {
@@ -23,9 +23,9 @@ SubspaceState random_state(const Subspace& subspace, double size, double turn) {
   Random random(11, "coordinates");
   SubspaceState state;
   if (subspace->mode == GroupMode::moving) {
-    const CarriedRegions regions(subspace);
+    const ConjugatedRegions regions(subspace);
     const auto angle = [&] { return turn * random.normal(); };
-    const CarriedRegions::Turns turns =
+    const ConjugatedRegions::Turns turns =
         regions.turned(regions.rest(), Eigen::VectorXd::NullaryExpr(regions.freedom(), angle));
     state.basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace, regions.rotations(turns)));
   }

@@ -345,14 +345,14 @@ ConsistencySearch::Verdict ConsistencySearch::follow(const Move& move, std::size
 }
 
 ConsistencySearch::Verdict ConsistencySearch::gather(std::size_t first, Family& family) {
-  constexpr std::size_t kMostMembers = 2000;
+  constexpr std::size_t kMaxMembers = 2000;
   family.members.push_back({first, Motion{}});
   for (std::size_t at = 0; at < family.members.size(); ++at) {
     context_.check();
     for (std::size_t m = 0; m < moves_.size(); ++m) {
       if (auto refusal = follow(moves_[m], at, family)) return refusal;
     }
-    if (family.members.size() > kMostMembers) return Refusal{"it has images without end", {}};
+    if (family.members.size() > kMaxMembers) return Refusal{"it has images without end", {}};
   }
   return ask_of_overlaps(family);
 }

@@ -1,5 +1,6 @@
 #include "orbifit/model/consistent_annotation.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "consistency/consistency_choice.h"
@@ -12,10 +13,36 @@ std::string to_string(const LeftOut& left_out) {
   return kind + std::to_string(left_out.id) + name + " (" + left_out.group + "): " + left_out.reason;
 }
 
+namespace {
+
+// Whether what was left out is of the annotation, and not an image that was added to it.
+bool is_given(const LeftOut& left_out, const SymmetryAnnotation& annotation) {
+  return left_out.pattern ||
+         std::ranges::any_of(annotation.regions, [&](const Region& region) { return region.id == left_out.id; });
+}
+
+}  // namespace
+
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context) {
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
-  return chosen_annotation(mesh, annotation, context);
+  ConsistentAnnotation result = chosen_annotation(mesh, annotation, context);
+  // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
+  for (bool settled = result.left_out.empty() && result.added == 0; !settled;) {
+    ConsistentAnnotation again = chosen_annotation(mesh, result.annotation, context);
+    settled = again.left_out.empty();
+    result.annotation = std::move(again.annotation);
+    result.largest_movement = std::max(result.largest_movement, again.largest_movement);
+    result.added += again.added;
+    for (LeftOut& left_out : again.left_out) {
+      if (is_given(left_out, annotation)) {
+        result.left_out.push_back(std::move(left_out));
+      } else {
+        --result.added;
+      }
+    }
+  }
+  return result;
 }
 
 SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostStabilisers = 120;
+constexpr std::size_t kMaxStabilisers = 120;
 
 double distance(const Motion& a, const Motion& b, const Extent& extent) {
   return motion_distance(a, b, extent.centre, extent.reach);
@@ -33,7 +33,7 @@ VectorXd as_vector(const std::vector<double>& rows) {
 // All products, as far as they are few.
 std::vector<Motion> closure(const std::vector<Motion>& generators, const Extent& extent, double same) {
   std::vector<Motion> result{Motion{}};
-  for (std::size_t head = 0; head < result.size() && result.size() < kMostStabilisers; ++head) {
+  for (std::size_t head = 0; head < result.size() && result.size() < kMaxStabilisers; ++head) {
     for (const Motion& generator : generators) {
       const Motion product = generator * result[head];
       if (std::ranges::none_of(result, [&](const Motion& m) { return distance(m, product, extent) <= same; })) {
@@ -314,7 +314,7 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
   const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };
   for (const Edge& edge : edges) returns.push_back(inverse(place(edge.to)) * edge.motion * place(edge.from));
   const Extent& first = shapes_.extent(known.shapes[0]);
-  if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMostStabilisers) {
+  if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMaxStabilisers) {
     return Refusal{"its steps and the groups around it do not close", asking};
   }
   return std::nullopt;

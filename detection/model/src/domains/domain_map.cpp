@@ -21,7 +21,7 @@ using Family = PointGroup::Family;
 
 constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
 constexpr double kOnAxis = 1e-12;   // of a point's offset
-constexpr int kMostFold = 120;
+constexpr int kMaxFold = 120;
 constexpr double kPoint = 1e-4;  // of the diagonal: side of the square that a vertex counts as
 
 // One element of each component of a continuous group; mirrors contain the reference direction.
@@ -191,7 +191,7 @@ void DomainMap::share_references() {
         own.reference = (across - own.axis * own.axis.dot(across)).normalized();
       }
     }
-    if (own.fold > kMostFold) own.fold = 1;
+    if (own.fold > kMaxFold) own.fold = 1;
   }
 }
 

@@ -122,93 +122,120 @@ std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains) {
   return by_vertex(point_sets(mesh, domains));
 }
 
+namespace {
+
+// Sets are carried along by every motion of every place, vertex by vertex, until nothing changes.
+class SetClosure {
+ public:
+  SetClosure(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid, PointSets points)
+      : mesh_(mesh),
+        domains_(domains),
+        grid_(grid),
+        normals_(vertex_normals(mesh)),
+        rounding_(kWeld * diagonal(mesh.vertices)),
+        points_(std::move(points)),
+        queued_(points_.root.size(), 0) {}
+
+  PointSets run() {
+    for (std::size_t v = 0; v < points_.root.size(); ++v) {
+      if (points_.root[v] != static_cast<int>(v)) continue;
+      queue_.push_back(static_cast<int>(v));
+      queued_[v] = 1;
+    }
+    for (std::size_t head = 0; head < queue_.size(); ++head) {
+      const int vertex = queue_[head];
+      queued_[static_cast<std::size_t>(vertex)] = 0;
+      const std::vector<int> here = nearest_to(mesh_.vertices.row(vertex).transpose());
+      const std::vector<int> places = domains_.set_places(set_of(vertex));
+      for (const int place : places) {
+        const bool alone = lone_point(here, place);
+        for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
+          carry(vertex, place, element, alone);
+        }
+      }
+    }
+    return std::move(points_);
+  }
+
+ private:
+  int root_of(int vertex) const { return points_.root[static_cast<std::size_t>(vertex)]; }
+  int& set_of(int vertex) { return points_.sets[static_cast<std::size_t>(root_of(vertex))]; }
+
+  void join(int vertex, int set) {
+    const int joined = domains_.joined(set_of(vertex), set);
+    if (joined == set_of(vertex)) return;
+    set_of(vertex) = joined;
+    const int root = root_of(vertex);
+    if (std::exchange(queued_[static_cast<std::size_t>(root)], 1) == 0) queue_.push_back(root);
+  }
+
+  // The vertices nearest to a position; others near it are there for themselves.
+  std::vector<int> nearest_to(const Eigen::Vector3d& position) const {
+    const auto distance = [&](int other) { return (mesh_.vertices.row(other).transpose() - position).norm(); };
+    std::vector<int> near;
+    double least = std::numeric_limits<double>::infinity();
+    grid_.visit(position, [&](int other) {
+      near.push_back(other);
+      least = std::min(least, distance(other));
+    });
+    std::erase_if(near, [&](int other) { return distance(other) > least + rounding_; });
+    return near;
+  }
+
+  // Where a place has one point alone at a position, that is meant, whichever way the surface faces there.
+  bool lone_point(const std::vector<int>& vertices, int place) {
+    constexpr int kNone = -1;
+    int found = kNone;
+    for (const int other : vertices) {
+      if (found == root_of(other) || !domains_.holds(set_of(other), place)) continue;
+      if (found != kNone) return false;
+      found = root_of(other);
+    }
+    return found != kNone;
+  }
+
+  // \param alone  whether the place has one point alone where the vertex is
+  void carry(int vertex, int place, int element, bool alone) {
+    // Parts that touch have vertices at one place; their surfaces face different ways there.
+    constexpr double kSameSide = 0.7;  // cosine: the corners of a part and of what it stands on are farther apart
+    const int arrival = domains_.arrival(place, element);
+    const int carried = domains_.carried_set(set_of(vertex), place, element);
+    const Motion& motion = domains_.elements(place)[static_cast<std::size_t>(element)];
+    const Eigen::Vector3d turned = motion.linear * normals_.row(vertex).transpose();
+    const std::vector<int> near = nearest_to(motion(mesh_.vertices.row(vertex).transpose()));
+    if (std::ranges::any_of(near, [&](int other) { return set_of(other) == carried; })) return;
+    const bool alone_there = alone && lone_point(near, arrival);
+    std::vector<int> met;
+    for (const int other : near) {
+      const bool meant = alone_there ? domains_.holds(set_of(other), arrival)
+                                     : turned.dot(normals_.row(other).transpose()) > kSameSide;
+      if (meant && domains_.comparable(set_of(other), carried)) met.push_back(other);
+    }
+    for (const int other : met) {
+      join(other, carried);
+      // The two are images of one another, also where the other's image has more vertices than this one.
+      join(vertex, domains_.carried_set(set_of(other), arrival, domains_.inverse_element(place, element)));
+    }
+  }
+
+  const Mesh& mesh_;
+  const DomainMap& domains_;
+  const VertexGrid& grid_;
+  Points normals_;
+  double rounding_;
+  PointSets points_;
+  std::vector<int> queue_;  // roots
+  std::vector<char> queued_;
+};
+
+}  // namespace
+
 std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid) {
   PointSets points = point_sets(mesh, domains);
   bool partial = false;
   for (int place = 0; place < domains.places(); ++place) partial = partial || !domains.whole(place);
   if (!partial) return by_vertex(points);
-  // Parts that touch have vertices at one place; their surfaces face different ways there.
-  constexpr double kSameSide = 0.7;  // cosine: the corners of a part and of what it stands on are farther apart
-  const Points normals = vertex_normals(mesh);
-  std::vector<int> queue;
-  std::vector<char> queued(points.root.size(), 0);
-  for (std::size_t v = 0; v < points.root.size(); ++v) {
-    if (points.root[v] != static_cast<int>(v)) continue;
-    queue.push_back(static_cast<int>(v));
-    queued[v] = 1;
-  }
-  const auto set_of = [&](int vertex) -> int& {
-    return points.sets[static_cast<std::size_t>(points.root[static_cast<std::size_t>(vertex)])];
-  };
-  const auto join = [&](int vertex, int set) {
-    const int joined = domains.joined(set_of(vertex), set);
-    if (joined == set_of(vertex)) return;
-    set_of(vertex) = joined;
-    const int root = points.root[static_cast<std::size_t>(vertex)];
-    if (queued[static_cast<std::size_t>(root)] != 0) return;
-    queued[static_cast<std::size_t>(root)] = 1;
-    queue.push_back(root);
-  };
-  // The vertices nearest to a position; others near it are there for themselves.
-  const double rounding = kWeld * diagonal(mesh.vertices);
-  const auto nearest_to = [&](const Eigen::Vector3d& position) {
-    const auto distance = [&](int other) { return (mesh.vertices.row(other).transpose() - position).norm(); };
-    std::vector<int> near;
-    double least = std::numeric_limits<double>::infinity();
-    grid.visit(position, [&](int other) {
-      near.push_back(other);
-      least = std::min(least, distance(other));
-    });
-    std::erase_if(near, [&](int other) { return distance(other) > least + rounding; });
-    return near;
-  };
-  // Where a place has one point alone at a position, that is meant, whichever way the surface faces there.
-  const auto lone_point = [&](const std::vector<int>& vertices, int place) {
-    constexpr int kNone = -1;
-    constexpr int kSeveral = -2;
-    int found = kNone;
-    for (const int other : vertices) {
-      const int root = points.root[static_cast<std::size_t>(other)];
-      if (found == root || !domains.holds(set_of(other), place)) continue;
-      found = found == kNone ? root : kSeveral;
-    }
-    return found >= 0;
-  };
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const int vertex = queue[head];
-    queued[static_cast<std::size_t>(vertex)] = 0;
-    const Eigen::Vector3d position = mesh.vertices.row(vertex).transpose();
-    const Eigen::Vector3d normal = normals.row(vertex).transpose();
-    const std::vector<int> here = nearest_to(position);
-    const std::vector<int> places = domains.set_places(set_of(vertex));
-    for (const int place : places) {
-      const bool alone_here = lone_point(here, place);
-      for (int element = 0; element < static_cast<int>(domains.elements(place).size()); ++element) {
-        const int arrival = domains.arrival(place, element);
-        const int carried = domains.carried_set(set_of(vertex), place, element);
-        const Motion& motion = domains.elements(place)[static_cast<std::size_t>(element)];
-        const Eigen::Vector3d image = motion(position);
-        const Eigen::Vector3d turned = motion.linear * normal;
-        bool same = false;
-        std::vector<int> met;
-        const std::vector<int> near = nearest_to(image);
-        const bool alone = alone_here && lone_point(near, arrival);
-        for (const int other : near) {
-          same = same || set_of(other) == carried;
-          const bool meant =
-              alone ? domains.holds(set_of(other), arrival) : turned.dot(normals.row(other).transpose()) > kSameSide;
-          if (meant && domains.comparable(set_of(other), carried)) met.push_back(other);
-        }
-        if (same) continue;
-        for (const int other : met) {
-          join(other, carried);
-          // The two are images of one another, also where the other's image has more vertices than this one.
-          join(vertex, domains.carried_set(set_of(other), arrival, domains.inverse_element(place, element)));
-        }
-      }
-    }
-  }
-  return by_vertex(points);
+  return by_vertex(SetClosure(mesh, domains, grid, std::move(points)).run());
 }
 
 }  // namespace orbifit

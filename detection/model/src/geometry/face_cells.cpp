@@ -14,9 +14,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFacesInCell = 3;      // of the mean area
-constexpr double kSidesInCell = 0.5;    // of the mean longest side, at least: what is thin has little area
-constexpr double kMostCells = 1 << 20;  // along the longest side of the box
+constexpr double kFacesInCell = 3;     // of the mean area
+constexpr double kSidesInCell = 0.5;   // of the mean longest side, at least: what is thin has little area
+constexpr double kMaxCells = 1 << 20;  // along the longest side of the box
 constexpr std::uint64_t kMix = 0x9E3779B97F4A7C15ULL;  // Fibonacci hashing (Knuth 1998, section 6.4)
 
 }  // namespace
@@ -34,7 +34,7 @@ FaceCells::FaceCells(std::size_t count, const std::function<std::array<Vector3d,
   }
   const auto faces = static_cast<double>(count);
   const double size = std::max(
-      {std::sqrt(kFacesInCell * area / faces), kSidesInCell * sides / faces, box.sizes().maxCoeff() / kMostCells});
+      {std::sqrt(kFacesInCell * area / faces), kSidesInCell * sides / faces, box.sizes().maxCoeff() / kMaxCells});
   if (!(size > 0) || !std::isfinite(size)) return;
   low_ = box.min();
   per_unit_ = 1 / size;
@@ -53,7 +53,7 @@ FaceCells::FaceCells(std::size_t count, const std::function<std::array<Vector3d,
 
 std::uint64_t FaceCells::key_of(const Vector3d& point) const {
   const Vector3d cell = per_unit_ * (point - low_);
-  if (!(cell.minCoeff() >= 0 && cell.maxCoeff() <= kMostCells)) return 0;
+  if (!(cell.minCoeff() >= 0 && cell.maxCoeff() <= kMaxCells)) return 0;
   const auto along = [&](int k) { return static_cast<std::uint64_t>(cell[k]); };
   return 1 + (along(0) | along(1) << 21U | along(2) << 42U);
 }

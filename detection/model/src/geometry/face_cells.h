@@ -14,8 +14,8 @@ namespace orbifit {
 /// a tree takes many times longer to find out; that none is says nothing.
 class FaceCells {
  public:
-  static constexpr std::size_t kMost = 4;         ///< faces that a cell keeps
-  using Faces = std::array<std::int32_t, kMost>;  ///< -1 where there are fewer, at the end
+  static constexpr std::size_t kMax = 4;         ///< faces that a cell keeps
+  using Faces = std::array<std::int32_t, kMax>;  ///< -1 where there are fewer, at the end
 
   /// Without faces.
   FaceCells() = default;

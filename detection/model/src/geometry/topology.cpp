@@ -209,7 +209,7 @@ bool pair_by_vertices(const Mesh& mesh, const Weld& weld, std::span<EdgeUse> use
 
 // Unites sets most of whose faces repeat another set's: the two sides of a sheet.
 void unite_doubled(const Mesh& mesh, const Weld& weld, DisjointSets& sets) {
-  constexpr std::size_t kMost = 8;  // faces on one another: of more none is the side of a sheet
+  constexpr std::size_t kMax = 8;  // faces on one another: of more none is the side of a sheet
   std::vector<std::pair<std::array<int, 3>, int>> corners;
   std::unordered_map<int, std::size_t> sizes;
   for (int f = 0; f < mesh.faces.rows(); ++f) {
@@ -223,7 +223,7 @@ void unite_doubled(const Mesh& mesh, const Weld& weld, DisjointSets& sets) {
   for (std::size_t first = 0; first < corners.size();) {
     std::size_t last = first + 1;
     while (last < corners.size() && corners[last].first == corners[first].first) ++last;
-    for (std::size_t i = first; i < last && last - first <= kMost; ++i) {
+    for (std::size_t i = first; i < last && last - first <= kMax; ++i) {
       for (std::size_t j = first; j < last; ++j) {
         const int mine = sets.root(corners[i].second);
         const int other = sets.root(corners[j].second);

@@ -17,7 +17,7 @@ class VertexGrid {
         tolerance_(tolerance),
         origin_(vertices.rows() > 0 ? Eigen::Vector3d(vertices.row(0)) : Eigen::Vector3d(0, 0, 0)) {
     const double extent = vertices.rows() > 0 ? (vertices.rowwise() - vertices.row(0)).cwiseAbs().maxCoeff() : 0;
-    width_ = std::max(8 * tolerance, extent / kMostCells);
+    width_ = std::max(8 * tolerance, extent / kMaxCells);
     std::size_t size = 16;
     while (size < 2 * static_cast<std::size_t>(vertices.rows())) size *= 2;
     heads_.assign(size, -1);
@@ -34,7 +34,7 @@ class VertexGrid {
   template <class Visit>
   void visit(const Eigen::Vector3d& place, const Visit& visit) const {
     const Eigen::Vector3d scaled = (place - origin_) / width_;
-    if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMostCells)) return;  // farther than any vertex
+    if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) return;  // farther than any vertex
     const double margin = tolerance_ / width_;
     const Eigen::Vector3d low = (scaled.array() - margin).floor();
     const Eigen::Vector3d high = (scaled.array() + margin).floor();
@@ -58,7 +58,7 @@ class VertexGrid {
 
  private:
   // To each side: numbers of cells up to twice that are whole, and the next one is another number.
-  static constexpr double kMostCells = 0x1p50;
+  static constexpr double kMaxCells = 0x1p50;
 
   static Eigen::Vector3d floor(const Eigen::Vector3d& point) { return point.array().floor(); }
 

@@ -1,4 +1,4 @@
-#include "basis/carried_regions.h"
+#include "basis/conjugated_regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,20 +47,20 @@ MatrixXd applied(const LiftWeights& scalar, const MatrixXd& stacked) {
   return result;
 }
 
-bool CarriedRegions::nested(int inner, int outer) const {
+bool ConjugatedRegions::nested(int inner, int outer) const {
   const auto& small = samples_[static_cast<std::size_t>(inner)];
   const auto& large = samples_[static_cast<std::size_t>(outer)];
   return small.size() < large.size() && std::ranges::includes(large, small);
 }
 
-bool CarriedRegions::overlap(int a, int b) const {
+bool ConjugatedRegions::overlap(int a, int b) const {
   std::vector<int> common;
   std::ranges::set_intersection(samples_[static_cast<std::size_t>(a)], samples_[static_cast<std::size_t>(b)],
                                 std::back_inserter(common));
   return !common.empty();
 }
 
-CarriedRegions::CarriedRegions(const Subspace& subspace, const RunContext& context) : subspace_(subspace) {
+ConjugatedRegions::ConjugatedRegions(const Subspace& subspace, const RunContext& context) : subspace_(subspace) {
   const RegionMap& regions = *subspace->regions;
   const auto count = static_cast<std::size_t>(regions.count());
   samples_.resize(count);
@@ -96,7 +96,7 @@ CarriedRegions::CarriedRegions(const Subspace& subspace, const RunContext& conte
 // Turns all ways at once, each by another angle. Ways that lose freedom are given up: regions whose mirrors no longer
 // agree would leave their common points no way to move but along both. Of ways that contradict those before them, the
 // first is found by halving: what some ways break, more ways break too.
-void CarriedRegions::keep_agreeing(const RunContext& context) {
+void ConjugatedRegions::keep_agreeing(const RunContext& context) {
   struct Way {
     std::size_t family;
     Vector3d vector;
@@ -143,8 +143,8 @@ void CarriedRegions::keep_agreeing(const RunContext& context) {
 }
 
 // The family of a region: all that the elements of regions around take it to.
-void CarriedRegions::gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
-                            std::vector<char>& taken) {
+void ConjugatedRegions::gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
+                               std::vector<char>& taken) {
   const RegionMap& regions = *subspace_->regions;
   Family family;
   family.members.push_back({order[first], Matrix3d::Identity()});
@@ -198,7 +198,7 @@ void CarriedRegions::gather(std::size_t first, const std::vector<int>& order, co
   families_.push_back(std::move(family));
 }
 
-std::vector<Matrix3d> CarriedRegions::rotations(const Turns& turns) const {
+std::vector<Matrix3d> ConjugatedRegions::rotations(const Turns& turns) const {
   std::vector<Matrix3d> result(samples_.size(), Matrix3d::Identity());
   for (std::size_t f = 0; f < families_.size(); ++f) {
     for (const Member& member : families_[f].members) {
@@ -212,7 +212,7 @@ std::vector<Matrix3d> CarriedRegions::rotations(const Turns& turns) const {
   return result;
 }
 
-CarriedRegions::Turns CarriedRegions::turns_of(const std::vector<Matrix3d>& rotations) const {
+ConjugatedRegions::Turns ConjugatedRegions::turns_of(const std::vector<Matrix3d>& rotations) const {
   Turns result = rest();
   for (std::size_t f = 0; f < families_.size(); ++f) {
     const auto first = static_cast<std::size_t>(families_[f].members.front().region);
@@ -222,7 +222,7 @@ CarriedRegions::Turns CarriedRegions::turns_of(const std::vector<Matrix3d>& rota
   return result;
 }
 
-CarriedRegions::Turns CarriedRegions::as_one(const Matrix3d& rotation) const {
+ConjugatedRegions::Turns ConjugatedRegions::as_one(const Matrix3d& rotation) const {
   Turns result = rest();
   for (std::size_t f = 0; f < families_.size(); ++f) {
     const auto first = static_cast<std::size_t>(families_[f].members.front().region);
@@ -231,7 +231,7 @@ CarriedRegions::Turns CarriedRegions::as_one(const Matrix3d& rotation) const {
   return result;
 }
 
-CarriedRegions::Turns CarriedRegions::turned(const Turns& turns, const Eigen::VectorXd& angles) const {
+ConjugatedRegions::Turns ConjugatedRegions::turned(const Turns& turns, const Eigen::VectorXd& angles) const {
   Turns result = turns;
   Eigen::Index at = 0;
   for (std::size_t f = 0; f < families_.size(); ++f) {
@@ -242,7 +242,7 @@ CarriedRegions::Turns CarriedRegions::turned(const Turns& turns, const Eigen::Ve
   return result;
 }
 
-MatrixXd CarriedRegions::columns(const Turns& turns, const Points& samples, const Points& centres) const {
+MatrixXd ConjugatedRegions::columns(const Turns& turns, const Points& samples, const Points& centres) const {
   const std::vector<Matrix3d> now = rotations(turns);
   MatrixXd result = MatrixXd::Zero(3 * samples.rows(), freedom_);
   Eigen::Index at = 0;
@@ -262,7 +262,7 @@ MatrixXd CarriedRegions::columns(const Turns& turns, const Points& samples, cons
   return result;
 }
 
-MatrixXd CarriedRegions::arms(const Turns& turns, const LiftWeights& spread, const Points& missing) const {
+MatrixXd ConjugatedRegions::arms(const Turns& turns, const LiftWeights& spread, const Points& missing) const {
   const Points none = Points::Zero(static_cast<Eigen::Index>(samples_.size()), 3);
   MatrixXd result = MatrixXd::Zero(3 * missing.rows(), freedom_);
   for (int c = 0; c < 3; ++c) {

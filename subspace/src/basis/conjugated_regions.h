@@ -25,9 +25,9 @@ Eigen::MatrixXd applied(const LiftWeights& scalar, const Eigen::MatrixXd& stacke
 /// to the regions around them obey Q_j = g Q_i g^-1. What takes a region to itself leaves it only the rotations that
 /// commute with it. Regions that overlap without nesting turn together. Ways of turning that contradict one another all
 /// the same are found by trying them and given up, those of smaller regions first.
-class CarriedRegions {
+class ConjugatedRegions {
  public:
-  explicit CarriedRegions(const Subspace& subspace, const RunContext& context = RunContext{});
+  explicit ConjugatedRegions(const Subspace& subspace, const RunContext& context = RunContext{});
 
   /// Number of ways in which families may turn: the length of the vectors below.
   int freedom() const { return freedom_; }

@@ -31,7 +31,7 @@ struct CarryBackOptions {
 /// refined and verified on the fine mesh, drops what fails there.
 /// Costs O(F log F) for each region and pattern, F of its faces.
 /// \param coarse of `fine` \param prepared its mesh, made ready
-Findings carried_back(const PreparedMesh& fine, const CoarseMesh& coarse, const PreparedMesh& prepared, Findings found,
-                      const CarryBackOptions& options, const RunContext& context);
+Findings transferred(const PreparedMesh& fine, const CoarseMesh& coarse, const PreparedMesh& prepared, Findings found,
+                     const CarryBackOptions& options, const RunContext& context);
 
 }  // namespace orbifit

@@ -1,4 +1,4 @@
-#include "resolution/carry_back.h"
+#include "resolution/transfer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 constexpr int kPartSamples = 1000;
 constexpr int kCopySamples = 300;
 constexpr int kRefined = 800;                 // samples
-constexpr std::size_t kBorderQueries = 3000;  // for a misfit
+constexpr std::size_t kBorderQueries = 3000;  // for a residual
 constexpr double kExact = 1e-3;               // root mean square distance, tolerances
 constexpr double kToRefine = 0.8;             // of the time; the rest to verify
 constexpr const char* kNoTime = "no time left";
@@ -43,16 +43,16 @@ class CarryBack {
         border_(fine, coarse, prepared, options.tolerance) {}
 
   Findings run(Findings found) {
-    context_.progress("carrying back", 0);
+    context_.progress("transfer to the fine mesh", 0);
     std::ranges::stable_sort(found.regions, std::greater<>(), &FoundRegion::area);
     std::vector<FoundRegion> refined(found.regions.size());
     for_each(refined.size(), [&](std::size_t i) {
       if (i == 0 || !late(kToRefine)) refined[i] = refined_on_fine(found.regions[i]);
     });
     drop_unrefined(found.regions, refined);
-    context_.progress("carrying back", 0.4);
+    context_.progress("transfer to the fine mesh", 0.4);
     const std::vector<GroupPlacement> goals = consistent(found.regions, refined);
-    context_.progress("carrying back", 0.5);
+    context_.progress("transfer to the fine mesh", 0.5);
     std::vector<std::string> objections(refined.size(), kNoTime);
     for_each(refined.size(), [&](std::size_t i) {
       if (i == 0 || !late(1)) objections[i] = settle(refined[i], goals[i]);
@@ -112,7 +112,7 @@ class CarryBack {
 
   void note(const std::string& subject, const std::string& reason) const {
     if (options_.explanation == nullptr) return;
-    options_.explanation->notes.push_back({"carrying back", subject, false, reason});
+    options_.explanation->notes.push_back({"transfer to the fine mesh", subject, false, reason});
   }
 
   bool is_whole(const FoundRegion& region) const {
@@ -130,7 +130,8 @@ class CarryBack {
     options.first_width = 1.5;
     const GroupPlacement refined = refine(patch, region.placement, context_, options);
     // Where vertices are images of one another the surface is as well, all but exactly.
-    region.placement = misfit(patch, refined) < kExact * patch.tolerance ? refine_on_vertices(patch, refined) : refined;
+    region.placement =
+        largest_residual(patch, refined) < kExact * patch.tolerance ? refine_on_vertices(patch, refined) : refined;
     return region;
   }
 
@@ -141,7 +142,7 @@ class CarryBack {
     return patch;
   }
 
-  double misfit(const SurfacePatch& patch, const GroupPlacement& placement) const {
+  double largest_residual(const SurfacePatch& patch, const GroupPlacement& placement) const {
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
     return measure_residual(patch, motions, context_, kBorderQueries).rms;
   }
@@ -177,7 +178,7 @@ class CarryBack {
     mark_creases(patch.samples, patch.tolerance, patch.at_crease);
     mark_creases(patch.part_samples, patch.tolerance, patch.part_at_crease);
     const GroupPlacement alone = region.placement;
-    if (misfit(patch, goal) <= kAsWell * misfit(patch, alone) + kNothing) region.placement = goal;
+    if (largest_residual(patch, goal) <= kAsWell * largest_residual(patch, alone) + kNothing) region.placement = goal;
     Verification verification = verify_group(patch, region.placement, context_);
     if (!passes(verification)) {
       region.placement = alone;
@@ -197,7 +198,7 @@ class CarryBack {
     for (std::size_t s = 0; s < at_crease.size(); ++s) {
       if (at_crease[s] != 0) continue;
       const Vector3d point = coarse_of_fine(samples.points.row(static_cast<Eigen::Index>(s)));
-      const int face = coarse_.stand_in[static_cast<std::size_t>(samples.faces[s])];
+      const int face = coarse_.proxy_face[static_cast<std::size_t>(samples.faces[s])];
       at_crease[s] = near_crease(prepared_, point, face, 3 * tolerance) ? 1 : 0;
     }
   }
@@ -260,8 +261,8 @@ class CarryBack {
 
 }  // namespace
 
-Findings carried_back(const PreparedMesh& fine, const CoarseMesh& coarse, const PreparedMesh& prepared, Findings found,
-                      const CarryBackOptions& options, const RunContext& context) {
+Findings transferred(const PreparedMesh& fine, const CoarseMesh& coarse, const PreparedMesh& prepared, Findings found,
+                     const CarryBackOptions& options, const RunContext& context) {
   return CarryBack(fine, coarse, prepared, options, context).run(std::move(found));
 }
 

@@ -1,4 +1,4 @@
-#include "resolution/carry_back.h"
+#include "resolution/transfer.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -134,18 +134,18 @@ std::vector<std::string> carried_groups(bool time_left, Explanation& explanation
   const PreparedMesh fine = prepare(four_legs());
   const std::optional<CoarseMesh> coarse = coarse_mesh(fine, {kTolerance, 0}, {});
   if (!coarse) return {"no coarse mesh"};
-  const PreparedMesh stand_in = prepare(coarse->mesh);
+  const PreparedMesh proxy_face = prepare(coarse->mesh);
   const Eigen::Vector3d centre =
-      inverse(stand_in.input_of_normalised)(inverse(fine.input_of_normalised)(Eigen::Vector3d(0, 0, 0)));
+      inverse(proxy_face.input_of_normalised)(inverse(fine.input_of_normalised)(Eigen::Vector3d(0, 0, 0)));
   Findings found;
   for (const char* group : {"C4", "C2"}) {
     const GroupPlacement placement{*PointGroup::parse(group), GroupFrame::Identity(), centre};
-    found.regions.push_back({placement, test::all_faces(coarse->mesh), stand_in.area, group});
+    found.regions.push_back({placement, test::all_faces(coarse->mesh), proxy_face.area, group});
   }
   const auto late = [&](double) { return !time_left; };
   std::vector<std::string> groups;
   for (const FoundRegion& region :
-       carried_back(fine, *coarse, stand_in, std::move(found), {kTolerance, 2000, &explanation, late}, {}).regions) {
+       transferred(fine, *coarse, proxy_face, std::move(found), {kTolerance, 2000, &explanation, late}, {}).regions) {
     groups.push_back(region.placement.group.symbol());
   }
   return groups;
