@@ -19,6 +19,9 @@ test_packages=( # for the baselines, the adapters, the Python package, the tests
   parallel slurmctld slurmd slurm-client munge snakemake sqlite3 procps
   doxygen dpkg-dev file
 )
+fuzz_packages=( # for tests/fuzz.sh
+  clang-14 libclang-rt-14-dev llvm-14
+)
 editor_packages=( # to build the editor's page anew, and to try it in a browser
   emscripten libnanoflann-dev nodejs chromium
 )

@@ -21,7 +21,7 @@ enum ExitCode {
   kNoResult = 1,  ///< a fit that did not converge, a check above its limit
   kUsage = 2,
   kBadInput = 3,
-  kTimeout = 4,
+  kTimeout = 4,     ///< or the memory allowed is used up (--max-memory)
   kSomeFailed = 5,  ///< items of a batch
   kInterrupted = 130
 };

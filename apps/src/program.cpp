@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -22,6 +23,7 @@
 
 #include "console.h"
 #include "interruption.h"
+#include "memory_limit.h"
 #include "other_program.h"
 #include "picture_options.h"
 #include "stop_guard.h"
@@ -36,8 +38,14 @@ struct CommonOptions {
   std::uint64_t seed = 1;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   double timeout = 0;
+  std::uint64_t memory = 0;  // bytes; 0: no limit
   std::string output_format;
   bool data_on_output = false;
+};
+
+// Which limits the call names; 0 is not to mean none.
+struct GivenOptions {
+  bool timeout = false, memory = false;
 };
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
@@ -54,6 +62,11 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
       ->group(group);
   app.add_option("--timeout", options.timeout, "Stop without a result after so many seconds (exit code 4)")
       ->type_name("SECONDS")
+      ->group(group);
+  app.add_option("--max-memory", options.memory,
+                 "Stop without a result where more memory than that would be needed, such as 500M or 4G (exit code 4)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE")
       ->group(group);
   app.add_option("--output-format", options.output_format,
                  "Format of a file written to standard output ('-' as its name): obj, ply, xyz ...")
@@ -79,7 +92,7 @@ void name_standard_output(CLI::App& app, CommonOptions& options, const std::stri
   }
 }
 
-CommandContext make_context(const CommonOptions& options, bool has_timeout, Console& console) {
+CommandContext make_context(const CommonOptions& options, const GivenOptions& given, Console& console) {
   if (options.threads < 1 || options.threads > 4096) {
     throw UsageError("--threads is " + std::to_string(options.threads) + ": must be from 1 to 4096");
   }
@@ -93,7 +106,8 @@ CommandContext make_context(const CommonOptions& options, bool has_timeout, Cons
   context.run.seed = options.seed;
   context.run.threads = options.threads;
   context.run.interrupted = &interruption();
-  if (has_timeout) {
+  if (given.memory && options.memory == 0) throw UsageError("--max-memory is 0: must be a positive size");
+  if (given.timeout) {
     if (!(options.timeout > 0 && options.timeout <= 1e9)) {
       throw UsageError("--timeout is " + short_number(options.timeout) + ": must be a positive number of seconds");
     }
@@ -134,8 +148,11 @@ int fail_at_once(bool json, const std::string& text, int code) {
   return code;
 }
 
+constexpr const char* kOutOfMemory = "not enough memory";
+constexpr const char* kAboveMaxMemory = "not enough memory: more is needed than --max-memory allows";
+
 // Runs one command and turns every failure into its exit code.
-int run(const CommandBody& body, const CommonOptions& options, bool has_timeout) {
+int run(const CommandBody& body, const CommonOptions& options, const GivenOptions& given) {
   Console console(options.quiet);
   CommandContext context;
   // Nothing follows the object that the command printed, or the file that it wrote.
@@ -147,7 +164,11 @@ int run(const CommandBody& body, const CommonOptions& options, bool has_timeout)
   };
   const std::string timeout_text = "stopped after " + short_number(options.timeout) + " s (--timeout)";
   try {
-    context = make_context(options, has_timeout, console);
+    context = make_context(options, given, console);
+    std::optional<MemoryLimit> limit;
+    if (options.memory > 0) {
+      limit.emplace(options.memory, [&] { return fail_at_once(wants_object(), kAboveMaxMemory, kTimeout); });
+    }
     const StopGuard guard(context.run, [&](StopReason reason) {
       const bool timeout = reason == StopReason::timeout;
       return fail_at_once(wants_object(), timeout ? timeout_text : "interrupted", timeout ? kTimeout : kInterrupted);
@@ -164,7 +185,7 @@ int run(const CommandBody& body, const CommonOptions& options, bool has_timeout)
   } catch (const InterruptedError& error) {
     return fail(error.what(), kInterrupted);
   } catch (const std::bad_alloc&) {
-    return fail("not enough memory", kNoResult);
+    return options.memory > 0 ? fail(kAboveMaxMemory, kTimeout) : fail(kOutOfMemory, kNoResult);
   } catch (const std::exception& error) {
     return fail(std::string("internal error: ") + error.what(), kNoResult);
   }
@@ -256,7 +277,8 @@ int run_program(std::span<const Command> commands, int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "'orbifit COMMAND --help' shows a command's examples and options.\n"
-      "Exit codes: 0 success, 1 no result, 2 wrong usage, 3 bad input, 4 timeout, 130 interrupted.");
+      "Exit codes: 0 success, 1 no result, 2 wrong usage, 3 bad input, 4 timeout or too little memory allowed, "
+      "130 interrupted.");
   CommonOptions options;
   std::vector<CommandBody> bodies(commands.size());
   for (std::size_t c = 0; c < commands.size(); ++c) {
@@ -293,7 +315,7 @@ int run_program(std::span<const Command> commands, int argc, char** argv) {
   const CLI::App* chosen = app.get_subcommands().front();
   for (std::size_t c = 0; c < commands.size(); ++c) {
     if (chosen->get_name() != commands[c].name) continue;
-    return run(bodies[c], options, chosen->count("--timeout") > 0);
+    return run(bodies[c], options, {chosen->count("--timeout") > 0, chosen->count("--max-memory") > 0});
   }
   return kUsage;
 }

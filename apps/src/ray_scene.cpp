@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <new>
 
 #include <Eigen/Geometry>
 #include <tbb/task_arena.h>
@@ -95,7 +96,7 @@ Eigen::Vector3f linear_colour(const Colour& colour) {
 
 RayScene::RayScene(const Scene& scene, const Eigen::Matrix<double, 2, 3>& frame, float beside)
     : device_(rtcNewDevice("set_affinity=0")), centre_(0.5 * frame.row(0) + 0.5 * frame.row(1)) {
-  if (device_ == nullptr) throw Error("Embree cannot create its device");
+  if (device_ == nullptr) throw std::bad_alloc();  // for threads or their stacks
   const double size = (frame.row(1) - frame.row(0)).norm();
   scale_ = size > 0 ? 1 / size : 1;
   for (const SurfaceLayer& layer : scene.surfaces) {

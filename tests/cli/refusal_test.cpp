@@ -121,6 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"Limit", "check cube.ply cube.json --max-residual -1", 2, "--max-residual is -1"},
         Refusal{"Threads", "info cube.ply --threads 0", 2, "--threads is 0: must be from 1 to 4096"},
         Refusal{"Timeout", "info cube.ply --timeout -1", 2, "--timeout is -1: must be a positive number"},
+        Refusal{"Memory", "info cube.ply --max-memory 0", 2, "--max-memory is 0: must be a positive size"},
+        Refusal{"MemoryUnit", "info cube.ply --max-memory 3parsecs", 2, "--max-memory"},
         Refusal{"Seed", "info cube.ply --seed x", 2, "--seed"},
         Refusal{"UnknownModel", "generate teapot -o out", 2, "teapot"},
         Refusal{"NoModel", "generate -o out", 2, "a model's NAME is needed"},

@@ -12,8 +12,8 @@ namespace orbifit::python {
 
 namespace {
 
-constexpr double kMaxCoordinate = 1e100;  // as readers of files demand
-constexpr double kOrthogonal = 1e-6;      // largest entry of R R^T - 1, as in an annotation's file
+constexpr double kMaxCoordinate = 1e50;  // as readers of files demand
+constexpr double kOrthogonal = 1e-6;     // largest entry of R R^T - 1, as in an annotation's file
 
 std::string shape_text(const py::array& array) {
   return py::str(array.attr("shape")).cast<std::string>();
@@ -126,7 +126,7 @@ Points points_from(const py::handle& values, const std::string& name) {
     for (Eigen::Index row = 0; row < points.rows(); ++row) {
       for (const double value : points.row(row)) {
         if (std::abs(value) <= kMaxCoordinate) continue;
-        throw InputError("", entry(name, row), "holds " + number_text(value) + "; it must be finite, at most 1e100");
+        throw InputError("", entry(name, row), "holds " + number_text(value) + "; it must be finite, at most 1e50");
       }
     }
   }

@@ -45,7 +45,7 @@ std::filesystem::path path_from(const py::handle& file);
 /// \throw InputError for another shape, TypeError for what holds no real numbers
 DoubleArray doubles_from(const py::handle& values, const std::string& name, int dimensions);
 
-/// #P by 3, finite and at most 1e100. \throw InputError naming the first row that is not
+/// #P by 3, finite and at most 1e50. \throw InputError naming the first row that is not
 Points points_from(const py::handle& values, const std::string& name);
 
 /// Three finite numbers.

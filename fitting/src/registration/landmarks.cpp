@@ -1,5 +1,6 @@
 #include "orbifit/fitting/landmarks.h"
 
+#include <cmath>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -7,15 +8,16 @@
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
+#include "files/json_text.h"
+#include "files/mesh_builder.h"
 
 namespace orbifit {
 
 std::vector<Landmark> read_landmarks(const std::filesystem::path& file, const Mesh& mesh) {
-  const auto document = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto document = parse_json(file.string(), read_file(file));
   const auto fail = [&](const std::string& key, const std::string& reason) {
     throw InputError(file.string(), key, reason);
   };
-  if (document.is_discarded()) fail("", "is not JSON");
   if (!document.is_object() || !document.contains("landmarks") || !document.at("landmarks").is_array()) {
     fail("landmarks", "must be a list");
   }
@@ -38,6 +40,9 @@ std::vector<Landmark> read_landmarks(const std::filesystem::path& file, const Me
       const auto& coordinate = target.at(static_cast<std::size_t>(k));
       if (!coordinate.is_number()) fail(key + ".target", "must be three numbers");
       landmark.target[k] = coordinate.get<double>();
+      if (!(std::abs(landmark.target[k]) <= kLargestCoordinate)) {
+        fail(key + ".target", "must be three numbers of at most 1e50 in size");
+      }
     }
     for (std::size_t i = 0; i < landmarks.size(); ++i) {
       const std::string other = "landmarks[" + std::to_string(i) + "]";

@@ -43,15 +43,11 @@ PlainLift::PlainLift(const SymmetricSampling& sampling, const RegionMap& regions
   origin_ = points.colwise().minCoeff();
   const Eigen::Vector3d extent = points.colwise().maxCoeff().transpose() - origin_;
   width_ = 0.5 * reach;
-  double count = 0;
-  do {
-    count = 1;
-    for (int k = 0; k < 3; ++k) {
-      cells_[static_cast<std::size_t>(k)] = 1 + static_cast<int>(std::min(1e6, extent[k] / width_));
-      count *= cells_[static_cast<std::size_t>(k)];
-    }
-    if (count > kMaxCells) width_ *= 2;
-  } while (count > kMaxCells);
+  const auto count_of = [&]() -> Eigen::Vector3d { return (extent / width_).array().floor() + 1; };
+  while (count_of().prod() > kMaxCells) width_ *= 2;
+  const Eigen::Vector3d counts = count_of();
+  for (int k = 0; k < 3; ++k) cells_[static_cast<std::size_t>(k)] = static_cast<int>(counts[k]);
+  const double count = counts.prod();
   const auto cell_of = [&](Eigen::Index k) {
     const Eigen::Vector3d at = (points.row(k).transpose() - origin_) / width_;
     return (static_cast<int>(at[0]) * cells_[1] + static_cast<int>(at[1])) * cells_[2] + static_cast<int>(at[2]);

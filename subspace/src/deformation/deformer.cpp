@@ -24,6 +24,9 @@ namespace {
 // Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal without the contacts.
 constexpr double kHold = 1e-12;
 
+// Most that handles may weigh, relative to the energy by their traces: half of a double's digits are left to either.
+constexpr double kMaxHandleWeight = 0x1p26;
+
 // What a contact weighs against equation (3): see kContactWeight.
 double contact_weight(const Corotation& corotation) {
   return kContactWeight * corotation.laplacian.squaredNorm() / static_cast<double>(corotation.laplacian.cols());
@@ -84,7 +87,14 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   own.alpha = alpha;
   // Equation (4), left.
   Eigen::MatrixXd system = own.stiffness;
-  own.handles.add_gram(alpha, system);
+  own.handles.add_gram(own.alpha, system);
+  const double pulled = system.trace() - own.stiffness.trace();
+  const double energy = own.stiffness.trace() - own.of_contacts * static_cast<double>(system.rows());
+  if (const double most = kMaxHandleWeight * energy; pulled > most && most > 0) {
+    own.alpha *= most / pulled;
+    system = own.stiffness;
+    own.handles.add_gram(own.alpha, system);
+  }
   if (system.size() > 0) system.diagonal().array() += kHold * (system.diagonal().mean() - own.of_contacts);
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorisation(system);
   if (factorisation.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");

@@ -12,12 +12,19 @@
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
+#include "files/json_text.h"
+#include "files/mesh_builder.h"
 
 namespace orbifit {
 
 namespace {
 
 using Json = nlohmann::json;
+
+// A place where vertices may be as well.
+bool within_reach(const Json& number) {
+  return std::abs(number.get<double>()) <= kLargestCoordinate;
+}
 
 // Reads values of one file, with the file's name and the key in every message.
 class HandleReader {
@@ -31,7 +38,7 @@ class HandleReader {
   double number(const Json& object, const std::string& name, const std::string& key, double fallback) const {
     if (!object.contains(name)) return fallback;
     const Json& value = object.at(name);
-    if (!value.is_number() || !std::isfinite(value.get<double>())) fail(key + name, "must be a number");
+    if (!value.is_number() || !within_reach(value)) fail(key + name, "must be a number of at most 1e50 in size");
     return value.get<double>();
   }
 
@@ -40,9 +47,8 @@ class HandleReader {
     const bool three = value.is_array() && value.size() == 3 &&
                        std::ranges::all_of(value, [](const Json& v) { return v.is_number(); });
     if (!three) fail(key + name, "must be three numbers");
-    const Eigen::Vector3d result(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
-    if (!result.allFinite()) fail(key + name, "must be three finite numbers");
-    return result;
+    if (!std::ranges::all_of(value, within_reach)) fail(key + name, "must be three numbers of at most 1e50 in size");
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
   }
 
  private:
@@ -140,8 +146,7 @@ Handle read_handle(const HandleReader& reader, const Json& object, const std::st
 
 HandleSet read_handles(const std::filesystem::path& file, const Mesh& mesh) {
   const HandleReader reader(file);
-  const Json document = Json::parse(read_file(file), nullptr, false);
-  if (document.is_discarded()) reader.fail("", "is not JSON");
+  const Json document = parse_json(file.string(), read_file(file));
   if (!document.is_object() || !document.contains("handles") || !document.at("handles").is_array()) {
     reader.fail("handles", "must be a list");
   }

@@ -9,6 +9,7 @@
 #include "orbifit/subspace/radius_field.h"
 
 #include "files/file.h"
+#include "files/json_text.h"
 
 namespace orbifit {
 
@@ -55,8 +56,7 @@ class Reader {
 
 RadiusFieldOptions read_radius_field(const std::filesystem::path& file, double base) {
   const Reader reader(file);
-  const Json document = Json::parse(read_file(file), nullptr, false);
-  if (document.is_discarded()) reader.fail("", "is not JSON");
+  const Json document = parse_json(file.string(), read_file(file));
   if (!document.is_object()) reader.fail("", "must be an object with areas, feature_size or both");
   RadiusFieldOptions options;
   options.base = base;

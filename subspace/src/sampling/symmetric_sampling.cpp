@@ -14,11 +14,18 @@
 #include "orbifit/model/errors.h"
 
 #include "base/random.h"
+#include "files/text.h"
 #include "sampling/symmetric_sampler.h"
 
 namespace orbifit {
 
 namespace {
+
+std::string short_text(double number) {
+  std::string text;
+  append_number(text, number);
+  return text;
+}
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -271,7 +278,7 @@ SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOpti
     append(sampling, orbit, regions_, radius, points, radii);
     if (points.size() > static_cast<std::size_t>(options.most_samples)) {
       throw InputError(
-          "", "radius " + std::to_string(options.radius),
+          "", "radius " + short_text(options.radius),
           "more than " + std::to_string(options.most_samples) + " samples are needed; take a larger radius");
     }
     // The candidate counts as covered even where its orbit moved off by almost r.

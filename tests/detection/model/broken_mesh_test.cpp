@@ -64,7 +64,7 @@ std::vector<BrokenMesh> broken_meshes() {
       {"ObjNan", "a.obj", "v 0 0 0\nv nan 0 0\n", "line 2: coordinate x is nan: not a finite number"},
       {"ObjInfinite", "a.obj", "v 0 -inf 0\n", "line 1: coordinate y is -inf"},
       {"ObjOverflow", "a.obj", "v 0 0 1e999\n", "line 1: coordinate z is inf"},
-      {"ObjHuge", "a.obj", "v 0 0 2e100\n", "line 1: coordinate z is 2e+100: beyond 1e100"},
+      {"ObjHuge", "a.obj", "v 0 0 2e100\n", "line 1: coordinate z is 2e+100: beyond 1e50"},
       {"ObjWord", "a.obj", "v 0 0 zero\n", "line 1: 'zero' is not a number"},
       {"ObjTwoCoordinates", "a.obj", "v 0 0\n", "line 1: a vertex needs three coordinates"},
       {"ObjIndexTooLarge", "a.obj", triangle + "f 1 2 4\n", "line 4: vertex index 3 (counted from 0) is out of range"},
@@ -112,7 +112,7 @@ std::vector<BrokenMesh> broken_meshes() {
        "line 5: a facet with 2 vertices"},
       {"StlOpen", "a.stl", "solid\nfacet\nvertex 0 0 0\n", "the file ends within a facet"},
       {"StlEmpty", "a.stl", "solid\nendsolid\n", "has no vertices"},
-      {"GltfNoJson", "a.gltf", "hello", "not a glTF file"},
+      {"GltfNoJson", "a.gltf", "hello", "line 1: is not JSON: syntax error"},
       {"GlbTruncated", "a.glb", "glTF\x02", "truncated"},
   };
 }

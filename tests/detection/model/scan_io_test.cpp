@@ -218,7 +218,7 @@ std::vector<BrokenScan> broken_scans() {
       {"XyzNanOnly", "a.xyz", "nan 0 0\n0 0 inf\n", "has no finite point (2 are not)"},
       {"XyzWord", "a.xyz", "0 0 0\n1 two 3\n", "line 2: '1 two 3' is not a row of numbers"},
       {"XyzTwo", "a.xyz", "0 0 0\n1 2\n", "line 2: a point needs three coordinates"},
-      {"XyzHuge", "a.xyz", "0 0 0\n1e200 0 0\n", "line 2: coordinate x is 1e+200: beyond 1e100"},
+      {"XyzHuge", "a.xyz", "0 0 0\n1e200 0 0\n", "line 2: coordinate x is 1e+200: beyond 1e50"},
       {"PtsCount", "a.pts", "0 0 0\n", "line 1: the number of points must stand here"},
       {"PtsFew", "a.pts", "4000000000\n0 0 0\n", "the file ends after 1 of 4000000000 points"},
       {"PcdHeader", "a.pcd", "VERSION .7\nFIELDS x y\n", "the file ends before the line DATA"},

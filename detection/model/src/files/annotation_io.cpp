@@ -11,6 +11,8 @@
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
+#include "files/json_text.h"
+#include "files/mesh_builder.h"
 #include "files/text.h"
 #include "groups/element_list.h"
 
@@ -56,7 +58,8 @@ class AnnotationReader {
       : file_(std::move(file)), mesh_(mesh), diagonal_(diagonal(mesh.vertices)) {}
 
   SymmetryAnnotation read(const std::string& text) {
-    const Json root = parse(text);
+    const Json root = parse_json(file_, text);
+    if (!(diagonal_ > 0)) throw InputError("", "mesh", "has no extent: all its vertices are at one place");
     if (!root.is_object()) refuse("", "must hold a JSON object");
     if (string(root, "format", "") != "symmetry-annotation") {
       refuse("format", "is " + in_quotes(string(root, "format", "")) + ", not 'symmetry-annotation'");
@@ -85,21 +88,6 @@ class AnnotationReader {
     throw InputError(file_, where, reason);
   }
 
-  Json parse(const std::string& text) const {
-    try {
-      return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-      const std::size_t end = std::min(error.byte, text.size());
-      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-      const std::string_view what = error.what();
-      const std::size_t reason = what.find("syntax error");
-      refuse("line " + std::to_string(line),
-             "is not JSON: " + std::string(reason == std::string_view::npos ? what : what.substr(reason)));
-    } catch (const Json::exception& error) {
-      refuse("", std::string("is not JSON: ") + error.what());
-    }
-  }
-
   static std::string path(const std::string& where, const char* key) { return where.empty() ? key : where + "." + key; }
 
   const Json& member(const Json& object, const char* key, const std::string& where) const {
@@ -122,7 +110,7 @@ class AnnotationReader {
   double finite(const Json& value, const std::string& where) const {
     if (!value.is_number()) refuse(where, "must be a number");
     const auto result = value.get<double>();
-    if (!(std::abs(result) <= 1e100)) refuse(where, "must be a number of at most 1e100 in size");
+    if (!(std::abs(result) <= kLargestCoordinate)) refuse(where, "must be a number of at most 1e50 in size");
     return result;
   }
 

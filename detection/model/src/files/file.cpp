@@ -70,7 +70,7 @@ void write_directly(const fs::path& name, const fs::path& file, std::string_view
 
 // The process's own: whoever ends it must know of all of them.
 struct Unfinished {
-  std::mutex mutex;
+  std::recursive_mutex mutex;  // a MemoryLimit may end the process on a thread that holds it
   std::set<fs::path> names;
 
   static Unfinished& all() {

@@ -14,6 +14,7 @@
 
 #include "files/binary.h"
 #include "files/file.h"
+#include "files/json_text.h"
 #include "files/mesh_formats.h"
 #include "files/text.h"
 
@@ -33,7 +34,7 @@ class GltfReader {
   GltfReader(const fs::path& file, std::string_view content, MeshBuilder& builder) : file_(file), builder_(builder) {
     const bool binary = content.size() >= 4 && load<std::uint32_t>(content.data()) == kMagic;
     const std::string_view text = binary ? split(content) : content;
-    root_ = Json::parse(text, nullptr, false);
+    root_ = parse_json(file.string(), text);
     if (!root_.is_object()) refuse("", "not a glTF file: it holds no JSON object");
   }
 
@@ -105,7 +106,7 @@ class GltfReader {
     const Json* found = find(object, key);
     if (found == nullptr) return otherwise;
     if (!found->is_number_integer() || found->get<double>() < 0 || found->get<double>() > 9e15) {
-      refuse(where + "." + key, "must be an integer, at least 0");
+      refuse(where.empty() ? key : where + "." + key, "must be an integer, at least 0");
     }
     return found->get<std::int64_t>();
   }
@@ -156,7 +157,12 @@ class GltfReader {
   Eigen::Matrix4d transform(const Json& node, const std::string& where) const {
     Eigen::Matrix4d result = Eigen::Matrix4d::Identity();
     std::array<double, 16> matrix{};
-    if (numbers(node, "matrix", matrix, where)) return Eigen::Map<const Eigen::Matrix4d>(matrix.data());
+    if (numbers(node, "matrix", matrix, where)) {
+      result = Eigen::Map<const Eigen::Matrix4d>(matrix.data());
+      if (result.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        refuse(where + ".matrix", "must end its columns with 0 0 0 1");
+      return result;
+    }
     std::array<double, 3> translation{0, 0, 0};
     std::array<double, 4> rotation{0, 0, 0, 1};  // x, y, z, w
     std::array<double, 3> scale{1, 1, 1};
@@ -232,6 +238,10 @@ class GltfReader {
     std::vector<std::int64_t> corners;
     if (const std::int64_t indices = integer(primitive, "indices", -1, where); indices >= 0) {
       const Accessor numbers = accessor(indices, 1);
+      if (numbers.type == kFloat || numbers.type == kByte || numbers.type == kShort) {
+        refuse("accessors[" + std::to_string(indices) + "].componentType",
+               "is " + std::to_string(numbers.type) + ": indices must be unsigned");
+      }
       corners.reserve(static_cast<std::size_t>(numbers.count));
       for (std::int64_t i = 0; i < numbers.count; ++i)
         corners.push_back(static_cast<std::int64_t>(numbers.value(i, 0)));
@@ -335,10 +345,17 @@ class GltfReader {
       refuse(where + ".uri", in_quotes(text) + ": only files are read");
     } else {
       const fs::path name = decode_percent(text);
+      if (std::ranges::any_of(name.native(), [](char c) { return static_cast<unsigned char>(c) < ' '; })) {
+        refuse(where + ".uri", in_quotes(name.native()) + " is no name of a file");
+      }
       if (name.is_absolute() || std::ranges::any_of(name, [](const fs::path& part) { return part == ".."; })) {
         refuse(where + ".uri", in_quotes(text) + " leaves the file's folder: not read");
       }
-      bytes = read_file(file_.parent_path() / name);
+      try {
+        bytes = read_file(file_.parent_path() / name);
+      } catch (const InputError& error) {
+        refuse(where + ".uri", error.what());
+      }
     }
     return bytes;
   }

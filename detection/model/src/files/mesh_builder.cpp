@@ -29,7 +29,7 @@ void check_coordinates(const std::string& file, long long line, long long vertex
     append_number(value, point[k]);
     throw InputError(file, place(line, "vertex", vertex),
                      std::string("coordinate ") + "xyz"[k] + " is " + value +
-                         (std::isfinite(point[k]) ? ": beyond 1e100" : ": not a finite number"));
+                         (std::isfinite(point[k]) ? ": beyond 1e50" : ": not a finite number"));
   }
 }
 

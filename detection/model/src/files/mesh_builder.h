@@ -9,8 +9,8 @@
 
 namespace orbifit {
 
-/// Coordinates beyond this would overflow when squared twice, as areas and volumes are.
-inline constexpr double kLargestCoordinate = 1e100;
+/// The sixth power of a coordinate beyond this would overflow; squares of volumes are such.
+inline constexpr double kLargestCoordinate = 1e50;
 
 /// \throw InputError when a coordinate is not finite or beyond kLargestCoordinate
 void check_coordinates(const std::string& file, long long line, long long vertex, const double (&point)[3]);

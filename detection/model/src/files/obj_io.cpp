@@ -25,7 +25,7 @@ std::int64_t parse_corner(std::string_view word, const MeshBuilder& builder, lon
   if (!number) refuse(" is not a corner of a face: an integer is needed");
   if (*number == 0) refuse(" names vertex 0: vertices count from 1");
   if (*number > 0) return *number - 1;
-  if (-*number > builder.vertices()) {
+  if (*number < -builder.vertices()) {
     refuse(" is out of range: " + std::to_string(builder.vertices()) + " vertices stand before it");
   }
   return builder.vertices() + *number;

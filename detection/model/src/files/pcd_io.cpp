@@ -204,6 +204,10 @@ class BodyReader {
       }
       add([&](const Field& field) { return row[field.column]; }, lines.line());
     }
+    if (lines.next_content(line)) {
+      throw InputError(builder_.file(), place(lines.line(), "", 0),
+                       "more points than the " + std::to_string(header_.points) + " that the header announces");
+    }
   }
 
   void read_binary(std::string_view bytes) {

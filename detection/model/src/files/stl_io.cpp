@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 
 #include <Eigen/Geometry>
@@ -25,10 +26,10 @@ void add_triangle(MeshBuilder& builder, long long line) {
 void read_binary(std::string_view content, MeshBuilder& builder) {
   const std::size_t triangles = load<std::uint32_t>(content.data() + 80);
   const std::size_t held = (content.size() - kHeader) / kTriangle;
-  if (held < triangles) {
-    throw InputError(builder.file(), "face " + std::to_string(held),
-                     "the file is truncated: its header announces " + std::to_string(triangles) +
-                         " triangles, it holds " + std::to_string(held));
+  if (held != triangles) {
+    throw InputError(builder.file(), "face " + std::to_string(std::min(held, triangles)),
+                     std::string(held < triangles ? "the file is truncated: " : "") + "its header announces " +
+                         std::to_string(triangles) + " triangles, it holds " + std::to_string(held));
   }
   builder.reserve(3 * triangles, triangles);
   for (std::size_t t = 0; t < triangles; ++t) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <new>
 #include <numeric>
 #include <string>
 
@@ -29,7 +30,7 @@ Device shared_device() {
     device = Device(rtcNewDevice("set_affinity=0"), [](RTCDevice handle) {
       if (handle != nullptr) rtcReleaseDevice(handle);
     });
-    if (!device) throw Error("Embree cannot create its device");
+    if (!device) throw std::bad_alloc();  // for threads or their stacks; nothing else is ever missing
     current = device;
   }
   return device;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -14,8 +15,9 @@ class VertexGrid {
   VertexGrid(const Points& vertices, double tolerance)
       : vertices_(vertices),
         tolerance_(tolerance),
-        width_(8 * tolerance),
         origin_(vertices.rows() > 0 ? Eigen::Vector3d(vertices.row(0)) : Eigen::Vector3d(0, 0, 0)) {
+    const double extent = vertices.rows() > 0 ? (vertices.rowwise() - vertices.row(0)).cwiseAbs().maxCoeff() : 0;
+    width_ = std::max(8 * tolerance, extent / kMaxCells);
     std::size_t size = 16;
     while (size < 2 * static_cast<std::size_t>(vertices.rows())) size *= 2;
     heads_.assign(size, -1);
@@ -32,6 +34,7 @@ class VertexGrid {
   template <class Visit>
   void visit(const Eigen::Vector3d& place, const Visit& visit) const {
     const Eigen::Vector3d scaled = (place - origin_) / width_;
+    if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) return;  // farther than any vertex
     const double margin = tolerance_ / width_;
     const Eigen::Vector3d low = (scaled.array() - margin).floor();
     const Eigen::Vector3d high = (scaled.array() + margin).floor();
@@ -54,6 +57,9 @@ class VertexGrid {
   }
 
  private:
+  // To each side: numbers of cells up to twice that are whole, and the next one is another number.
+  static constexpr double kMaxCells = 0x1p50;
+
   static Eigen::Vector3d floor(const Eigen::Vector3d& point) { return point.array().floor(); }
 
   std::size_t slot(const Eigen::Vector3d& cell) const {
@@ -66,7 +72,8 @@ class VertexGrid {
   }
 
   const Points& vertices_;
-  double tolerance_, width_;
+  double tolerance_;
+  double width_ = 0;
   Eigen::Vector3d origin_;
   std::vector<int> heads_, next_;
 };

@@ -15,7 +15,7 @@ namespace orbifit {
 /// primitives with their nodes' transforms applied, in node order.
 /// \throw InputError with file, line or element and
 /// reason: unreadable, empty, truncated, an index out of range, a
-///        coordinate not finite or beyond 1e100, no vertices, no faces, an unknown ending
+///        coordinate not finite or beyond 1e50, no vertices, no faces, an unknown ending
 Mesh read_mesh(const std::filesystem::path& file);
 
 /// Writes by the file's ending: OBJ and OFF with 17 digits, PLY binary little endian in double, STL binary (float),
