@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -44,7 +45,7 @@ constexpr Level kLevels[] = {
     {"3views", FitLevel::three_views}, {"1view", FitLevel::one_view}, {"anywhere", FitLevel::anywhere}};
 
 constexpr double kSoftWeight = 100;  // of the symmetry's penalty against the data
-constexpr const char* kMethods[] = {"ours", "rigid", "free", "soft", "copied", "pcl"};
+constexpr const char* kMethods[] = {"ours", "landmarks", "rigid", "free", "soft", "copied", "pcl"};
 
 // The scan without what is far from the template as it was found.
 PointCloud own_scan(const FitCase& each, const Similarity& pose, const RunContext& context) {
@@ -69,6 +70,22 @@ PointCloud copied_scan(const FitCase& each, const PointCloud& scan, const Simila
       append(result.points, scan.points);
       append(result.viewpoints, scan.viewpoints);
     }
+  }
+  return result;
+}
+
+// Vertices far from one another, and where they truly are.
+std::vector<Landmark> spread_landmarks(const FitCase& each) {
+  constexpr int kLandmarks = 4;
+  const Points& rest = each.model.mesh.vertices;
+  Eigen::VectorXd nearest = (rest.rowwise() - rest.colwise().mean()).rowwise().squaredNorm();
+  std::vector<Landmark> result;
+  while (result.size() < kLandmarks) {
+    Eigen::Index vertex = 0;
+    nearest.maxCoeff(&vertex);
+    if (result.empty()) nearest.setConstant(std::numeric_limits<double>::infinity());
+    nearest = nearest.cwiseMin((rest.rowwise() - rest.row(vertex)).rowwise().squaredNorm());
+    result.push_back({static_cast<int>(vertex), each.truth.vertices.row(vertex).transpose()});
   }
   return result;
 }
@@ -113,15 +130,17 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   row.method = method;
   FitOptions chosen;
   chosen.align = false;
-  const bool symmetric = method == "ours" || method == "soft";
+  const bool by_landmarks = method == "landmarks";
+  const bool symmetric = method == "ours" || by_landmarks || method == "soft";
   const SymmetryAnnotation annotation = symmetric ? each.model.truth : without_symmetry(each.model);
   const double start = seconds_now();
   try {
     // All but PCL find the pose in the same way, where it is not known.
     const bool pcl = method == "pcl";
+    const bool searches = method == "ours" || by_landmarks || method == "free";
     Similarity pose = each.pose;
     if (each.level == FitLevel::anywhere && !pcl) {
-      chosen.place = method == "ours" || method == "free";
+      chosen.place = searches;
       pose = Similarity{};
       if (!chosen.place) {
         const auto placements =
@@ -131,10 +150,10 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
       }
     }
     PointCloud scan = each.scan;
-    const bool searches = method == "ours" || method == "free";
     if (each.level == FitLevel::anywhere && !searches && !pcl) scan = own_scan(each, pose, context);
     if (method == "copied") scan = copied_scan(each, scan, pose);
-    const FitInput input{each.model.mesh, annotation, scan, pose};
+    FitInput input{each.model.mesh, annotation, scan, pose};
+    if (by_landmarks) input.landmarks = spread_landmarks(each);
     const FitResult result = pcl ? placed_by_pcl(each, context) : fitted_by(method, input, chosen, context);
     row.seconds = seconds_now() - start;
     if (pcl) row.placing = row.seconds;
@@ -211,7 +230,7 @@ CommandBody fitting(CLI::App& app) {
       ->type_name("LEVEL,...");
   app.add_option("--methods", options->methods, "Only these methods")
       ->delimiter(',')
-      ->check(CLI::IsMember({"ours", "rigid", "free", "soft", "copied", "pcl"}))
+      ->check(CLI::IsMember({"ours", "landmarks", "rigid", "free", "soft", "copied", "pcl"}))
       ->type_name("METHOD,...");
   add_stage_run(app, options->stages, "poses, noise and the fit");
   app.add_option("--write", options->folder, "Write templates, scans, truths and fits into this folder")

@@ -90,6 +90,16 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
                           {"covered", placement.visible_coverage},
                           {"score", placement.score()}});
   }
+  nlohmann::ordered_json others = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < result.others.size(); ++i) {
+    const Motion& motion = result.others[i];
+    others.push_back(
+        {{"used", result.other_used[i] != 0}, {"pose", pose_to_json({1, motion.linear, motion.translation})}});
+  }
+  nlohmann::ordered_json landmarks = nlohmann::ordered_json::array();
+  for (const LandmarkAgreement& each : result.landmarks) {
+    landmarks.push_back({{"vertex", each.vertex}, {"residual", each.residual}, {"left_out", each.left_out}});
+  }
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
   for (const RegionResidual& region : symmetry.regions) {
     regions.push_back({{"id", region.id},
@@ -110,6 +120,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
   return {{"converged", result.converged},
           {"stopped_because", result.stopped_because},
           {"pose", pose_to_json(result.pose)},
+          {"other_scans", others},
           {"placements", placements},
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
@@ -121,6 +132,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},
+          {"landmarks", landmarks},
           {"hidden_fraction", result.hidden_fraction},
           {"symmetry",
            {{"field_residual", result.field_residual}, {"worst_excess", symmetry.worst_excess}, {"regions", regions}}},

@@ -58,7 +58,9 @@ constexpr std::array kCommands{
     Command{"fit", "Fit a template to a scan; its symmetries are kept and complete what the scan does not show.",
             "orbifit fit chair.obj scan.ply -o fitted.obj\n"
             "orbifit fit chair.obj scan.ply --annotation chair.json -o fitted.obj --report fit.json --html fit.html\n"
-            "orbifit fit chair.obj scan.ply --landmarks landmarks.json -o fitted.obj",
+            "orbifit fit chair.obj scan.ply --landmarks landmarks.json -o fitted.obj\n"
+            "orbifit fit chair.obj front.ply back.ply -o fitted.obj\n"
+            "orbifit fit chair.obj depth.png --intrinsics 525,525,319.5,239.5 --mask mask.png -o fitted.obj",
             commands::fit},
     kCompare,
     Command{"generate", "Generate a model whose symmetries are known.",

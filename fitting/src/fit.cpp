@@ -1,6 +1,7 @@
 #include "orbifit/fitting/fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -9,10 +10,13 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "fit_loop.h"
 #include "fit_starts.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
+#include "joined_scans.h"
 #include "other_scale.h"
+#include "placed_scan.h"
 #include "relaxation.h"
 #include "solver/fit_system.h"
 #include "stage_clock.h"
@@ -25,6 +29,7 @@ namespace {
 // onto which the template was put as well as can be, leaves more.
 constexpr double kLeastOfPlaced = 0.8;
 constexpr double kLeastSeen = 0.04;    // of the fitted surface: an edge lies along any line
+constexpr double kSofter = 0.75;       // of the levels: where fits of a shape that is known begin
 constexpr double kWell = 0.995;        // confidence from which another scale is not tried
 constexpr double kWorthwhile = 0.005;  // what another scale, or a place that suits the template less, must explain more
 
@@ -67,7 +72,6 @@ struct Best {
 // the template's thickness, unless that explains less by more than it had to explain more.
 void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions& options, const RunContext& context,
                      Best& best) {
-  constexpr double kSofter = 0.75;  // of the levels
   const std::optional<PlacedScan> other = at_other_scale(input, best.start);
   if (!other) return;
   FitResult grown = fit_from(input, *other, system, options, context);
@@ -76,6 +80,7 @@ void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions&
   if (worth(grown) <= worth(best.result) + kWorthwhile) return;
   FitState back = with_scale(best.start.pose.scale, grown.pose, {grown.q, grown.basis}, system.subspace(), input.mesh);
   const int level = static_cast<int>(kSofter * options.levels);
+  back.others = grown.others;
   FitResult shrunk = fit_from(std::move(back), level, input, *other, system, options, context);
   const int in_all = before + grown.iterations_in_all + shrunk.iterations_in_all;
   best.start = *other;
@@ -127,8 +132,7 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
     }
   }
   best->result.iterations_in_all = iterations;
-  if (best->result.confidence * (1 - best->result.cut_off) < kWell && input.landmarks.empty() &&
-      input.handles.empty()) {
+  if (!options.fixed_scale && best->result.confidence * (1 - best->result.cut_off) < kWell) {
     systems.share(1, context, [&](std::size_t, FitSystem& system, const RunContext& own) {
       try_other_scale(input, system, options, own, *best);
     });
@@ -136,9 +140,13 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
   return std::move(*best);
 }
 
+double explained_share(const FitResult& result) {
+  return result.inlier_ratio * result.overlap;
+}
+
 // Whether the fit is one, and why not.
 void conclude(const FitOptions& options, FitResult& result) {
-  const double explained = result.inlier_ratio * result.overlap;
+  const double explained = explained_share(result);
   const double seen = 1 - result.hidden_fraction;
   const bool explains =
       explained >= options.min_inlier_ratio && (result.placements.empty() || result.inlier_ratio >= kLeastOfPlaced);
@@ -151,25 +159,105 @@ void conclude(const FitOptions& options, FitResult& result) {
 
 }  // namespace
 
+namespace {
+
+// A fit before it is judged, and what it came from.
+struct Trial {
+  FitInput input;  // with the landmarks that agree with where it started
+  Best best;
+};
+
+FitInput with_landmarks(const FitInput& input, const std::vector<char>& chosen) {
+  FitInput result = input;
+  result.landmarks.clear();
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i] != 0) result.landmarks.push_back(input.landmarks[i]);
+  }
+  return result;
+}
+
+// With the other scans, once the first one has told the shape well enough to find them by it: from the template's rest
+// shape and from that shape, whichever explains more.
+void fit_all_scans(const FitInput& input, const FitOptions& options, const RunContext& context, Best& best) {
+  if (input.others.empty()) return;
+  const FitResult first = std::move(best.result);
+  best.start = join_scans(input, best.start, first, options, context);
+  FitSystem system(*input.subspace, input.mesh, options.stretch,
+                   contacts_to_keep(*input.subspace, input.mesh, options, context));
+  best.result = fit_from(input, best.start, system, options, context);
+  FitState state = with_scale(best.start.pose.scale, first.pose, {first.q, first.basis}, *input.subspace, input.mesh);
+  FitResult further = fit_from(std::move(state), static_cast<int>(kSofter * options.levels), input, best.start, system,
+                               options, context);
+  const int in_all = first.iterations_in_all + best.result.iterations_in_all + further.iterations_in_all;
+  if (worth(further) > worth(best.result) + kWorthwhile) best.result = std::move(further);
+  best.result.iterations_in_all = in_all;
+  if (!options.fixed_scale && best.result.confidence < kWell) try_other_scale(input, system, options, context, best);
+  for (std::size_t k = 0; k < best.start.others.size(); ++k) {
+    best.result.others[k] = best.result.others[k] * best.start.others[k];
+  }
+  best.result.other_used = best.start.other_used;
+}
+
+Trial trial_of(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
+               StageClock& clock) {
+  FitStarts starts = find_starts(input, options, doubt_landmarks, context, clock);
+  FitInput agreed = with_landmarks(input, starts.agrees);
+  if (!agreed.subspace) {
+    agreed.subspace =
+        std::make_shared<Subspace>(build_subspace(input.mesh, input.annotation, options.subspace, context));
+    clock.finished("subspace");
+  }
+  Best best = best_of(std::move(starts.places), agreed, *agreed.subspace, options, context);
+  fit_all_scans(agreed, options, context, best);
+  best.result.placements = std::move(starts.placements);
+  clock.finished("fit");
+  return {std::move(agreed), std::move(best)};
+}
+
+// Landmarks that agree with one another may all be wrong, or be too few to tell. Where a fit from their pose explains
+// too little of the scan, one from where the scan has the template, which explains more, is better.
+Trial better_in_doubt(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock,
+                      Trial trial) {
+  const FitResult& told = trial.best.result;
+  const bool found = !told.placements.empty();
+  if (!options.place || found || input.landmarks.empty() || !input.handles.empty()) return trial;
+  if (told.inlier_ratio >= kLeastOfPlaced && explained_share(told) >= options.min_inlier_ratio) return trial;
+  FitInput again = input;
+  again.subspace = trial.input.subspace;
+  Trial other = trial_of(again, options, true, context, clock);
+  return worth(other.best.result) > worth(told) + kWorthwhile ? std::move(other) : std::move(trial);
+}
+
+// How near the fit has brought the vertices to the targets. What it says of a landmark in the end counts, not whether
+// it agreed with the template as it is: the shape may differ there. Those that are far have not counted, and are named.
+void tell_landmarks(const FitInput& input, const RunContext& context, FitResult& result) {
+  const double size = diagonal(result.fitted.vertices);
+  for (std::size_t i = 0; i < input.landmarks.size(); ++i) {
+    const Landmark& landmark = input.landmarks[i];
+    const double off = (result.fitted.vertices.row(landmark.vertex).transpose() - landmark.target).norm() / size;
+    result.landmarks.push_back({landmark.vertex, off, off > kLastReach});
+    if (off <= kLastReach) continue;
+    context.message("left out landmarks[" + std::to_string(i) + "]: its target is " +
+                    std::to_string(std::lround(100 * off)) + " % of the diagonal away from where vertex " +
+                    std::to_string(landmark.vertex) + " lies by the other landmarks and the scan");
+  }
+}
+
+}  // namespace
+
 FitResult fit(const FitInput& input, const FitOptions& options, const RunContext& context) {
   options.validate();
   std::vector<StageTime> times;
   StageClock clock(times);
-  FitStarts starts = find_starts(input, options, context, clock);
-  std::shared_ptr<const Subspace> subspace = input.subspace;
-  if (!subspace) {
-    subspace = std::make_shared<Subspace>(build_subspace(input.mesh, input.annotation, options.subspace, context));
-    clock.finished("subspace");
-  }
-  Best best = best_of(std::move(starts.places), input, *subspace, options, context);
-  FitResult result = std::move(best.result);
-  result.placements = std::move(starts.placements);
-  clock.finished("fit");
+  Trial first = trial_of(input, options, false, context, clock);
+  Trial trial = better_in_doubt(input, options, context, clock, std::move(first));
+  FitResult result = std::move(trial.best.result);
+  tell_landmarks(input, context, result);
   result.field_residual =
-      worst_field_residual(*subspace, input.mesh, input.annotation, {result.q, result.basis}, context);
+      worst_field_residual(*trial.input.subspace, input.mesh, input.annotation, {result.q, result.basis}, context);
   clock.finished("assessment");
   if ((options.judge_groups || options.drop_unsupported) && !input.annotation.regions.empty()) {
-    judge_groups(input, best.start, options, context, result);
+    judge_groups(trial.input, trial.best.start, options, context, result);
     clock.finished("groups");
   }
   result.times = std::move(times);

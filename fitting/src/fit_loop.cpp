@@ -13,7 +13,6 @@ namespace orbifit {
 namespace {
 
 constexpr double kFirstReach = 0.15;  // of the diagonal: correspondences farther apart are none, at the start
-constexpr double kLastReach = 0.04;   // and at the end
 // Offsets far above the robust scale hardly count. It shrinks last: parts that the soft template has yet to reach
 // would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
 constexpr double kFirstRobust = 0.05;
@@ -36,11 +35,12 @@ constexpr const char* kUsedUp = "the iterations allowed are used up";
 
 }  // namespace
 
-FitLoop::FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
-                 const FitOptions& options, const RunContext& context)
+FitLoop::FitLoop(const FitInput& input, const PlacedScan& start, DeformationSystem& system, const FitOptions& options,
+                 const RunContext& context)
     : input_(input),
-      scan_(scan),
-      views_(views),
+      start_(start),
+      scan_(start.scan),
+      views_(*start.views),
       system_(system),
       options_(options),
       context_(context),
@@ -67,7 +67,7 @@ double FitLoop::stiffness_for(double noise) const {
 
 FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   CorrespondenceOptions options;
-  options.max_distance = (kFirstReach + (kLastReach - kFirstReach) * now.progress) * size_;
+  options.max_distance = reach_of(now);
   options.signed_normals = views_.signed_normals;
   // Far points are left out while the template is far; in the end the robust weights judge each by itself.
   options.trim = options_.trim + (1 - options_.trim) * now.progress;
@@ -77,9 +77,12 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   options.robust_scale = robust;
   options.every = now.every;
   Matches result;
-  result.points = to_template(state.pose, scan_.points);
-  result.pairs = find_correspondences(surface_, result.points, normals_to_template(state.pose, scan_.normals), options,
-                                      context_, &likely_);
+  add_pulls(state, now, result);
+  const bool several = !state.others.empty();
+  const PreparedScan put = several ? with_others_moved(start_, state.others) : PreparedScan{};
+  result.points = to_template(state.pose, several ? put.points : scan_.points);
+  const Points normals = normals_to_template(state.pose, several ? put.normals : scan_.normals);
+  result.pairs = find_correspondences(surface_, result.points, normals, options, context_, &likely_);
   result.of_scan = static_cast<int>(result.pairs.size());
   result.rms = weighted_rms(result.pairs) / size_;
   result.spread = typical_distance(result.pairs) / size_;
@@ -93,9 +96,13 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.energy *= now.every;
   if (now.progress >= kSilhouetteFrom && views_.silhouette.knows_viewpoints()) {
     if (!cut_off_) cut_off_ = views_.silhouette.cut_off(deformed_, surface_, state.pose, context_);
-    if (*cut_off_) return result;
-    result.energy +=
-        views_.silhouette.add(deformed_, surface_, result.points, state.pose, robust, result.pairs, context_);
+    if (!*cut_off_) {
+      result.energy +=
+          views_.silhouette.add(deformed_, surface_, result.points, state.pose, robust, result.pairs, context_);
+    }
+  }
+  if (several && now.others_open) {
+    for (Correspondence& pair : result.pairs) pair.view = start_.view_of[static_cast<std::size_t>(pair.scan_point)];
   }
   return result;
 }
@@ -106,13 +113,25 @@ double FitLoop::share_of(const Matches& matches, int every) const {
   return static_cast<double>(system_.samples()) / std::max(1.0, every * matches.of_scan + silhouettes);
 }
 
+double FitLoop::reach_of(const Stage& now) const {
+  return (kFirstReach + (kLastReach - kFirstReach) * now.progress) * size_;
+}
+
+void FitLoop::add_pulls(const FitState& state, const Stage& now, Matches& matches) const {
+  matches.pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
+  for (std::size_t i = 0; i < matches.pulls.size(); ++i) {
+    Pull& pull = matches.pulls[i];
+    const double distance = (deformed_.vertices.row(pull.vertex).transpose() - pull.target).norm();
+    const bool landmark = i < input_.landmarks.size();
+    matches.pull_energy += pull.weight * (landmark ? robust_error(distance, reach_of(now)) : distance * distance);
+    if (landmark) pull.weight *= robust_weight(distance, reach_of(now));
+  }
+}
+
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
   const double regularity = system_.regularity(state.q) + system_.growth_cost(std::log(unit(state)));
-  double result = share * matches.energy + now.stiffness * regularity + system_.symmetry_energy(state.q) +
-                  system_.contact_energy(state.q);
-  for (const Pull& pull : pulls_towards(input_, state.pose, options_.landmark_weight)) {
-    result += pull.weight * (deformed_.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm();
-  }
+  const double result = share * matches.energy + matches.pull_energy + now.stiffness * regularity +
+                        system_.symmetry_energy(state.q) + system_.contact_energy(state.q);
   return result / (unit(state) * unit(state));
 }
 
@@ -124,12 +143,19 @@ void FitLoop::move_to(const FitState& state) {
 
 void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
                    FitIteration& record) {
-  const auto pulls = pulls_towards(input_, state.pose, options_.landmark_weight);
-  const DeformationSystem::Hold hold{now.stiffness, damping, state.q, now.scale_open, -std::log(unit(state))};
+  const DeformationSystem::Hold hold{now.stiffness,
+                                     damping,
+                                     state.q,
+                                     now.scale_open,
+                                     -std::log(unit(state)),
+                                     now.others_open ? static_cast<int>(state.others.size()) : 0};
   const DeformationSystem::Solution solution =
-      system_.solve(matches.pairs, share, matches.points, pulls, hold, context_);
+      system_.solve(matches.pairs, share, matches.points, matches.pulls, hold, context_);
   const Points before = system_.samples_at(state.q);
   state.q = solution.q;
+  for (std::size_t k = 0; k < solution.other_steps.size(); ++k) {
+    state.others[k] = conjugate(state.pose, solution.other_steps[k]) * state.others[k];
+  }
   const Motion back = inverse(solution.scan_step);
   const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
   state.pose = state.pose * Similarity{1, back.linear, back.translation} *
@@ -199,6 +225,7 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
 
 std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std::vector<FitIteration>& iterations) {
   first_scale_ = state.pose.scale;
+  state.others.resize(start_.others.size());
   move_to(state);
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(0);
@@ -219,6 +246,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   std::string reason = kUsedUp;
   now.every = 1;
   now.scale_open = scale_open;
+  now.others_open = true;
   for (const double robust : kSettling) {
     now.robust = robust * size_;
     // Settled once, the fit has reached what it had left unexplained for being on its way.

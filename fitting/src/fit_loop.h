@@ -8,18 +8,26 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
+#include "placed_scan.h"
 #include "registration/correspondences.h"
 #include "scan/scan_preparation.h"
 #include "solver/deformation_system.h"
+#include "solver/pulls.h"
 #include "solver/scan_views.h"
 #include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
+/// Of the diagonal: in the end correspondences farther apart are none, and landmarks farther from their targets hardly
+/// count.
+inline constexpr double kLastReach = 0.04;
+
 /// Where a fit has come to.
 struct FitState {
   Similarity pose;    ///< template -> scan
   Eigen::VectorXd q;  ///< of the system's unknowns
+  /// Of the scans but the first, from where they were put at the start; empty where they are as they were put.
+  std::vector<Motion> others = {};
 };
 
 /// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it. Then the
@@ -28,9 +36,9 @@ struct FitState {
 /// holds still instead of swaying from one iteration to the next.
 class FitLoop {
  public:
-  /// All references are kept. \param views  of the same scan \param system  turned as the iterations go
-  FitLoop(const FitInput& input, const PreparedScan& scan, const ScanViews& views, DeformationSystem& system,
-          const FitOptions& options, const RunContext& context);
+  /// All references are kept. \param start  its scan and views \param system  turned as the iterations go
+  FitLoop(const FitInput& input, const PlacedScan& start, DeformationSystem& system, const FitOptions& options,
+          const RunContext& context);
 
   /// Improves the state in place. \param first_level  of FitOptions::levels, where to begin \param scale_open  whether
   /// the template's scale is sought as well, once it is soft \return why it stopped
@@ -43,6 +51,7 @@ class FitLoop {
     double robust = 0;  // Geman-McClure's scale, template units as the fit began
     int every = 1;      // each so manieth point of the scan is looked at
     bool scale_open = false;
+    bool others_open = false;  // whether the other scans move
   };
   struct Matches {
     std::vector<Correspondence> pairs;  // those of silhouettes after those of the scan
@@ -51,12 +60,18 @@ class FitLoop {
     double rms = 0;     // fraction of the diagonal
     double spread = 0;  // likewise, of the distances, whatever the outliers
     double energy = 0;  // robust, of all points: an unmatched one counts as one infinitely far; squared units of now
+    std::vector<Pull> pulls;
+    double pull_energy = 0;  // of landmarks, robust, and handles
   };
   Stage stage(int iteration) const;
   // The least that offsets of this size from the surface, fractions of the diagonal, warrant.
   double stiffness_for(double noise) const;
   Matches match(const FitState& state, const Stage& now);
   double share_of(const Matches& matches, int every) const;
+  // Farther apart than this, places that belong together count for little or nothing: template units.
+  double reach_of(const Stage& now) const;
+  // The landmarks, each by how near it is, and the handles, which are to be followed.
+  void add_pulls(const FitState& state, const Stage& now, Matches& matches) const;
   double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
   FitIteration record_of(const Matches& matches, const Stage& now, double energy) const;
   // One solve from there. \param share of each pair; what the record says of the step is filled in
@@ -69,6 +84,7 @@ class FitLoop {
   double unit(const FitState& state) const { return first_scale_ / state.pose.scale; }
 
   const FitInput& input_;
+  const PlacedScan& start_;
   const PreparedScan& scan_;
   const ScanViews& views_;
   DeformationSystem& system_;

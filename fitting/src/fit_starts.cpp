@@ -1,7 +1,10 @@
 #include "fit_starts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -9,18 +12,59 @@
 #include "placement/surface_placements.h"
 #include "quiet_context.h"
 #include "registration/alignment.h"
+#include "registration/landmark_consensus.h"
 #include "scan/scan_preparation.h"
+#include "solver/pulls.h"
 
 namespace orbifit {
 
 namespace {
 
-FitStarts found_starts(const FitInput& input, const FitOptions& options, const ScanPreparationOptions& preparation,
+constexpr double kSameShape = 0.001;  // of the diagonal: landmarks that agree so well are of a shape that is the same
+
+// Rotations that bring the whole template onto itself: poses that differ by one of them are one to the scan, but not
+// to a landmark. The identity among them.
+std::vector<Motion> rotations_of(const SymmetryAnnotation& annotation, const Mesh& mesh) {
+  std::vector<Motion> result{Motion{}};
+  for (const Region& region : annotation.regions) {
+    if (static_cast<Eigen::Index>(region.faces.size()) != mesh.faces.rows()) continue;
+    std::ranges::copy_if(region.elements, std::back_inserter(result),
+                         [](const Motion& element) { return element.linear.determinant() > 0; });
+  }
+  return result;
+}
+
+// Puts each placement the way round in which landmarks lie nearest to their targets, robustly; and where there are
+// placements at which all of them are near, keeps those alone.
+void choose_by_landmarks(const FitInput& input, std::vector<Placement>& found) {
+  if (input.landmarks.empty()) return;
+  const std::vector<Motion> rotations = rotations_of(input.annotation, input.mesh);
+  std::vector<Placement> chosen;
+  for (Placement& placement : found) {
+    const Similarity pose = placement.pose;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Motion& rotation : rotations) {
+      const Similarity turned = pose * Similarity{1, rotation.linear, rotation.translation};
+      const double sum = landmark_sum(input.mesh, input.landmarks, turned, kNearTemplate);
+      if (sum >= least) continue;
+      least = sum;
+      placement.pose = turned;
+    }
+    const std::vector<char> near = near_targets(input.mesh, input.landmarks, placement.pose, kNearTemplate);
+    if (std::ranges::count(near, 0) == 0) chosen.push_back(placement);
+  }
+  if (!chosen.empty()) found = std::move(chosen);
+}
+
+FitStarts found_starts(const FitInput& input, const MatchSurface& surface, const LandmarkConsensus& said,
+                       const FitOptions& options, const ScanPreparationOptions& preparation,
                        const RunContext& context) {
   FitStarts result;
-  const MatchSurface surface(input.mesh);
-  std::vector<Placement> found =
-      find_placements(surface, input.annotation, input.scan, options.placement, context, input.pose);
+  PlacementOptions placement = options.placement;
+  if (options.fixed_scale) placement.scale = input.pose.scale;
+  const Similarity given = input.landmarks.empty() ? input.pose : said.pose;
+  std::vector<Placement> found = find_placements(surface, input.annotation, input.scan, placement, context, given);
+  choose_by_landmarks(input, found);
   // Side by side; others in place of those that have too little of the scan near them.
   std::size_t tied = 0;
   while (tied < found.size() && found[tied].score() >= options.tie * found.front().score()) ++tied;
@@ -31,12 +75,13 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
     const RunContext own = quiet_context(context, count);
     parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        placed[i] =
-            placed_scan(surface, input.scan, found[first + i].pose, input.pose, options.placement, preparation, own);
+        placed[i] = found_scan(surface, input.scan, found[first + i].pose, given, options.placement, preparation, own);
       }
     });
     for (auto& each : placed) {
-      if (each) result.places.push_back(std::move(*each));
+      if (!each) continue;
+      each->scale_open = each->scale_open && !options.fixed_scale;
+      result.places.push_back(std::move(*each));
     }
     first += count;
   }
@@ -44,34 +89,79 @@ FitStarts found_starts(const FitInput& input, const FitOptions& options, const S
   return result;
 }
 
-FitStarts starts_of(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
+// How far places of the template are said to be from where its rest shape has them, fraction of the diagonal.
+double slack_of(const FitInput& input, const LandmarkConsensus& said, const Similarity& pose) {
+  FitInput handled = input;
+  handled.landmarks.clear();
+  double squared = 0;
+  for (const Pull& pull : pulls_towards(handled, pose, 1)) {
+    squared = std::max(squared, (input.mesh.vertices.row(pull.vertex).transpose() - pull.target).squaredNorm());
+  }
+  return std::max(said.largest_residual, std::sqrt(squared) / diagonal(input.mesh.vertices));
+}
+
+// The pose with scale in which the template as it is explains most of the scan near the given one: from there it is
+// told what is the template's, whose lengths may be others. The given one where that is another place.
+Similarity best_explaining(const MatchSurface& surface, const PreparedScan& scan, const Similarity& given) {
+  constexpr int kEnough = 1500;
+  const auto count = static_cast<int>(scan.points.rows());
+  std::vector<int> some;
+  for (int i = 0; i < count; i += std::max(1, count / kEnough)) some.push_back(i);
+  const Similarity found = align_with_scale(surface, scan, some, given, {});
+  return near_given(surface.mesh(), found, given) ? found : given;
+}
+
+PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const LandmarkConsensus& said,
+                       const FitOptions& options, const ScanPreparationOptions& preparation,
+                       const RunContext& context) {
+  const bool refined = options.align && input.landmarks.empty() && input.handles.empty();
+  Similarity pose = input.landmarks.empty() ? input.pose : said.pose;
+  PlacedScan whole;
+  whole.scan = prepare_scan(input.scan, preparation, context);
+  if (refined) pose = align_rigidly(surface, whole.scan, pose, context);
+  whole.pose = pose;
+  const Similarity best = best_explaining(surface, whole.scan, pose);
+  std::optional<PlacedScan> placed =
+      placed_scan(surface, input.scan, best, slack_of(input, said, best), options.placement, preparation, context);
+  if (!placed) return whole;
+  placed->pose = pose;
+  // Landmarks of another shape tell its size no better than they fit it.
+  placed->scale_open = !options.fixed_scale && !input.landmarks.empty() && said.largest_residual > kSameShape &&
+                       !near_given(surface.mesh(), pose, input.pose);
+  // Other things may have drawn it aside.
+  if (refined && placed->overlap < 1) placed->pose = align_rigidly(surface, placed->scan, pose, context);
+  return std::move(*placed);
+}
+
+FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
+                    StageClock& clock) {
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
+  const MatchSurface surface(input.mesh);
+  LandmarkConsensus said = landmark_consensus(input.mesh, input.landmarks, kNearTemplate,
+                                              options.fixed_scale ? std::optional(input.pose.scale) : std::nullopt);
+  if (doubt_landmarks) said.pose = input.pose;
   FitStarts result;
-  const bool given = !input.landmarks.empty() || !input.handles.empty();
-  if (options.place && !given) {
-    result = found_starts(input, options, preparation, context);
+  if (options.place && (doubt_landmarks || !said.determined) && input.handles.empty()) {
+    result = found_starts(input, surface, said, options, preparation, context);
+    if (!result.places.empty()) {
+      result.agrees = near_targets(input.mesh, input.landmarks, result.places.front().pose, kNearTemplate);
+    }
     clock.finished("placement");
-    if (!result.places.empty()) return result;
   }
-  PlacedScan start;
-  start.scan = prepare_scan(input.scan, preparation, context);
-  start.pose = input.pose;
-  clock.finished("scan");
-  if (!input.landmarks.empty()) {
-    start.pose = align_landmarks(input.mesh, input.landmarks);
-  } else if (options.align && !given) {
-    start.pose = align_rigidly(MatchSurface(input.mesh), start.scan, input.pose, context);
+  if (result.places.empty()) {
+    result.places.push_back(given_start(input, surface, said, options, preparation, context));
+    result.agrees = said.agrees;
+    clock.finished("scan");
   }
-  clock.finished("alignment");
-  result.places.push_back(std::move(start));
   return result;
 }
 
 }  // namespace
 
-FitStarts find_starts(const FitInput& input, const FitOptions& options, const RunContext& context, StageClock& clock) {
-  FitStarts result = starts_of(input, options, context, clock);
+FitStarts find_starts(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
+                      StageClock& clock) {
+  FitStarts result = starts_of(input, options, doubt_landmarks, context, clock);
   const RunContext own = quiet_context(context, result.places.size());
   parallel_for(context, result.places.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -11,12 +11,13 @@ namespace orbifit {
 
 void run_fit(DeformationSystem& system, FitState state, int first_level, const FitInput& input, const PlacedScan& start,
              const FitOptions& options, const RunContext& context, FitResult& result) {
-  FitLoop loop(input, start.scan, *start.views, system, options, context);
+  FitLoop loop(input, start, system, options, context);
   result.stopped_because = loop.run(state, first_level, start.scale_open, result.iterations);
   result.iterations_in_all = static_cast<int>(result.iterations.size());
   if (options.condition && !result.iterations.empty()) result.condition = system.condition();
   result.pose = state.pose;
   result.q = std::move(state.q);
+  result.others = std::move(state.others);
 }
 
 namespace {
@@ -30,7 +31,7 @@ void let_groups_turn(const FitInput& input, const PlacedScan& start, const FitSy
   if (!system.turns()) return;
   FitOptions more = options;
   more.max_iterations += result.iterations_in_all;
-  run_fit(system, {result.pose, system.at_rest(result.q)}, 0, input, start, more, context, result);
+  run_fit(system, {result.pose, system.at_rest(result.q), result.others}, 0, input, start, more, context, result);
   const SubspaceState state = system.state_of(result.q);
   result.q = state.q;
   result.basis = state.basis;
@@ -58,7 +59,8 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   deformed.vertices = from_template(result.pose, deformed.vertices);
   result.fitted = std::move(deformed);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
-  assess_fit(input, start.scan, start.views->silhouette.seen(), options, context, result);
+  const PreparedScan put = with_others_moved(start, result.others);
+  assess_fit(input, put, start.views->silhouette.seen(), options, context, result);
   return result;
 }
 

@@ -27,9 +27,8 @@ std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan
 
 FitState with_scale(double scale, const Similarity& pose, const SubspaceState& state, const Subspace& subspace,
                     const Mesh& mesh) {
-  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
   FitState result;
-  result.pose = {scale, pose.linear, pose(centre) - scale * (pose.linear * centre)};
+  result.pose = rescaled(pose, scale, mesh);
   const Points& rest = subspace->sampling.points;
   const Points posed = rest + sample_displacements(subspace, state);
   Points target(rest.rows(), 3);

@@ -14,18 +14,6 @@ namespace orbifit {
 
 namespace {
 
-// Whether a placement says that the scan is about where it was said to be, in the template's units: then its scale is
-// that of the shapes, which differ, and not of the units.
-bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& given) {
-  constexpr double kTurn = 0.3;     // radians
-  constexpr double kOffset = 0.15;  // of the diagonal
-  constexpr double kScale = 0.35;   // of its logarithm
-  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
-  return std::abs(std::log(found.scale / given.scale)) < kScale &&
-         axis_angle(found.linear * given.linear.transpose()).angle < kTurn &&
-         (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
-}
-
 struct Shares {
   double used = 0;  // of the scan's points, that stand where points were kept; planes that were taken out leave none
   double torn_off = 0;  // far from the template, and yet joined to those by others like them
@@ -77,26 +65,68 @@ Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const Surfac
 
 }  // namespace
 
+bool near_given(const Mesh& mesh, const Similarity& found, const Similarity& given) {
+  constexpr double kTurn = 0.3;     // radians
+  constexpr double kOffset = 0.15;  // of the diagonal
+  constexpr double kScale = 0.35;   // of its logarithm
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  return std::abs(std::log(found.scale / given.scale)) < kScale &&
+         axis_angle(found.linear * given.linear.transpose()).angle < kTurn &&
+         (found(centre) - given(centre)).norm() < kOffset * given.scale * diagonal(mesh.vertices);
+}
+
+PreparedScan with_others_moved(const PlacedScan& start, const std::vector<Motion>& moves) {
+  PreparedScan result = start.scan;
+  if (moves.empty()) return result;
+  for (std::size_t i = 0; i < start.view_of.size(); ++i) {
+    const int view = start.view_of[i];
+    if (view == 0) continue;
+    const Motion& move = moves[static_cast<std::size_t>(view - 1)];
+    const auto row = static_cast<Eigen::Index>(i);
+    result.points.row(row) = move(result.points.row(row).transpose()).transpose();
+    result.normals.row(row) = (move.linear * result.normals.row(row).transpose()).transpose();
+    if (result.viewpoints.rows() == result.points.rows()) {
+      result.viewpoints.row(row) = move(result.viewpoints.row(row).transpose()).transpose();
+    }
+  }
+  return result;
+}
+
 std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
-                                      const Similarity& given, const PlacementOptions& options,
+                                      double slack, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context) {
-  constexpr double kNear = 0.12;  // of the diagonal
-  constexpr int kMore = 2;        // points, since planes among them go
+  constexpr int kMore = 2;  // points, where planes among them go
   constexpr Eigen::Index kFewestNear = 10;
-  const Mesh& mesh = surface.mesh();
-  const double size = diagonal(mesh.vertices);
-  const PointCloud near = points_near(surface.index, size, cloud, pose, kNear, context);
+  const double size = diagonal(surface.mesh().vertices);
+  const double reach = kNearTemplate + slack;
+  const PointCloud near = points_near(surface.index, size, cloud, pose, reach, context);
   if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) return std::nullopt;
-  ScanPreparationOptions more = preparation;
-  more.most_points *= kMore;
+  const auto rid_of_planes = [&](const PreparedScan& scan) {
+    return without_planes(surface.index, size, scan, pose, options.reach, context);
+  };
+  PreparedScan prepared = prepare_scan(near, preparation, context);
   PlacedScan result;
-  result.scan = without_planes(surface.index, size, prepare_scan(near, more, context), pose, options.reach, context);
+  result.scan = rid_of_planes(prepared);
+  if (result.scan.points.rows() < prepared.points.rows()) {
+    ScanPreparationOptions more = preparation;
+    more.most_points *= kMore;
+    result.scan = rid_of_planes(prepare_scan(near, more, context));
+  }
   if (result.scan.points.rows() < kFewestNear) return std::nullopt;
-  const Shares shares = shares_of(cloud, result.scan, surface.index, pose, kNear * size * pose.scale, context);
+  const Shares shares = shares_of(cloud, result.scan, surface.index, pose, reach * size * pose.scale, context);
   result.overlap = shares.used;
   result.torn_off = shares.torn_off;
-  result.scale_open = !near_given(mesh, pose, given);
-  result.pose = result.scale_open ? pose : align_rigidly(surface, result.scan, given, context);
+  result.pose = pose;
+  return result;
+}
+
+std::optional<PlacedScan> found_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
+                                     const Similarity& given, const PlacementOptions& options,
+                                     const ScanPreparationOptions& preparation, const RunContext& context) {
+  std::optional<PlacedScan> result = placed_scan(surface, cloud, pose, 0, options, preparation, context);
+  if (!result) return result;
+  result->scale_open = !near_given(surface.mesh(), pose, given);
+  if (!result->scale_open) result->pose = align_rigidly(surface, result->scan, given, context);
   return result;
 }
 

@@ -46,6 +46,9 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   found.iterations_in_all += result.iterations_in_all;
   found.placements = std::move(result.placements);
   found.groups = std::move(result.groups);
+  for (std::size_t k = 0; k < found.others.size(); ++k) found.others[k] = found.others[k] * start.others[k];
+  found.other_used = start.other_used;
+  found.landmarks = std::move(result.landmarks);
   found.dropped = std::move(result.dropped);
   result = std::move(found);
 }

@@ -49,6 +49,12 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"NoTarget", R"({"landmarks": [{"vertex": 1}]})", "landmarks[0]"},
         Broken{"VertexTooHigh", R"({"landmarks": [{"vertex": 99999999, "target": [0, 0, 0]}]})", "landmarks[0].vertex"},
         Broken{"ShortTarget", R"({"landmarks": [{"vertex": 1, "target": [0, 0]}]})", "landmarks[0].target"},
+        Broken{"VertexTwice",
+               R"({"landmarks": [{"vertex": 1, "target": [0, 0, 0]}, {"vertex": 1, "target": [0, 1, 0]}]})",
+               "landmarks[1].vertex: is that of landmarks[0]"},
+        Broken{"OnTopOfOneAnother",
+               R"({"landmarks": [{"vertex": 1, "target": [0, 0, 0]}, {"vertex": 2, "target": [0, 0, 0]}]})",
+               "landmarks[1].target: is that of landmarks[0]"},
         Broken{"TargetIsText", R"({"landmarks": [{"vertex": 1, "target": [0, "x", 0]}]})", "landmarks[0].target"}),
     [](const auto& test) { return std::string(test.param.name); });
 

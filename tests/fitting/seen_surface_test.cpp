@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/surface_index.h"
+
 namespace orbifit {
 namespace {
 

@@ -75,7 +75,7 @@ void define_fit(py::module_& module) {
         if (handles) given.handles = handles_from(*handles, *given.mesh);
         FitOptions options;
         options.subspace = subspace_options(mode, "orbit", radius, samples, {}, false, *given.mesh);
-        options.place = !pose && given.landmarks.empty() && given.handles.empty();
+        options.place = !pose && given.handles.empty();
         options.last_stiffness = stiffness;
         options.scan_points = scan_points;
         options.inlier_distance = inlier_distance;

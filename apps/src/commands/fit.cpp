@@ -12,7 +12,6 @@
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
-#include "orbifit/model/scan_io.h"
 #include "orbifit/subspace/handles.h"
 
 #include "../commands.h"
@@ -21,15 +20,17 @@
 #include "../picture_options.h"
 #include "../subspace_arguments.h"
 #include "files/file.h"
+#include "fit_scans.h"
 
 namespace orbifit::commands {
 
 namespace {
 
 struct FitArguments {
-  std::string mesh, scan, annotation, output, report, html, landmarks, handles, annotation_output;
+  std::string mesh, annotation, output, report, html, landmarks, handles, annotation_output;
   std::vector<double> up;
-  std::vector<double> viewpoint;
+  ScanArguments scans;
+  std::string scale = "any";
   bool aligned = false;
   bool no_contacts = false;
   std::vector<int> without;
@@ -39,11 +40,30 @@ struct FitArguments {
 };
 
 void check_outputs(const FitArguments& arguments) {
-  const std::vector<std::filesystem::path> inputs{arguments.mesh, arguments.scan, arguments.annotation};
-  check_output(arguments.output, {}, {arguments.scan, arguments.annotation});
+  std::vector<std::filesystem::path> inputs{arguments.annotation};
+  for (const std::vector<std::string>* files : {&arguments.scans.files, &arguments.scans.masks}) {
+    inputs.insert(inputs.end(), files->begin(), files->end());
+  }
+  if (!arguments.scans.extrinsics.empty()) inputs.emplace_back(arguments.scans.extrinsics);
+  check_output(arguments.output, {}, inputs);
+  inputs.emplace_back(arguments.mesh);
   if (!arguments.report.empty()) check_output(arguments.report, {".json"}, inputs);
   if (!arguments.html.empty()) check_output(arguments.html, {".html", ".htm"}, inputs);
   if (!arguments.annotation_output.empty()) check_output(arguments.annotation_output, {".json"}, inputs);
+}
+
+std::string named(const std::vector<std::string>& files) {
+  return files.front() +
+         (files.size() > 1 ? " and " + count_of(static_cast<long long>(files.size()) - 1, "other") : "");
+}
+
+void tell_used(const ScanArguments& arguments, const std::vector<PointCloud>& scans, int most, const RunContext& run) {
+  long long points = 0;
+  for (const PointCloud& scan : scans) points += scan.points.rows();
+  if (points <= most) return;
+  run.message(named(arguments.files) + ": " + std::to_string(most) + " of " +
+              (arguments.files.size() > 1 ? "their " : "its ") + count_of(points, "point") +
+              " are used (--scan-points)");
 }
 
 std::string to_text(const FitArguments& arguments, const FitResult& result, const SymmetryReport& symmetry) {
@@ -75,7 +95,7 @@ CommandBody fit(CLI::App& app) {
   const auto arguments = std::make_shared<FitArguments>();
   FitOptions& options = arguments->options;
   app.add_option("TEMPLATE", arguments->mesh, "Mesh to deform and place so that it fits the scan")->required();
-  app.add_option("SCAN", arguments->scan, "Points to fit it to, in any position and at any scale")->required();
+  add_scan_options(app, arguments->scans);
   app.add_option("--annotation", arguments->annotation,
                  "The template's annotation; without it, the symmetries are detected")
       ->type_name("FILE");
@@ -88,13 +108,11 @@ CommandBody fit(CLI::App& app) {
                  "Vertices of the template and their positions in the scan (.json)")
       ->type_name("FILE");
   app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
+  app.add_option("--scale", arguments->scale, "Size of the template in the scan: any, or that of its file (fixed)")
+      ->check(CLI::IsMember({"any", "fixed"}))
+      ->capture_default_str();
   app.add_flag("--aligned", arguments->aligned,
                "The scan is in the template's frame: the pose is neither sought nor refined");
-  app.add_option(
-         "--viewpoint", arguments->viewpoint,
-         "Point from which all of the scan was taken, if its file does not say; 0 0 0 for a scan in the camera's frame")
-      ->expected(3)
-      ->type_name("X Y Z");
   app.add_option(
          "--max-residual", arguments->max_residual,
          "Write no mesh and exit with 1 if the symmetry residual of the fit exceeds this fraction of the diagonal")
@@ -116,8 +134,9 @@ CommandBody fit(CLI::App& app) {
     if (limited && !(arguments->max_residual >= 0)) {
       throw UsageError("--max-residual is " + short_number(arguments->max_residual) + ": must be at least 0");
     }
-    chosen.place = !arguments->aligned && arguments->landmarks.empty() && arguments->handles.empty();
+    chosen.place = !arguments->aligned && arguments->handles.empty();
     chosen.align = !arguments->aligned;
+    chosen.fixed_scale = arguments->scale == "fixed";
     chosen.contacts = !arguments->no_contacts;
     chosen.subspace = arguments->subspace.options;
     chosen.validate();
@@ -125,15 +144,8 @@ CommandBody fit(CLI::App& app) {
     check_outputs(*arguments);
     const Mesh mesh = read_mesh(arguments->mesh);
     chosen.subspace = subspace_options(arguments->subspace, mesh, context.run);
-    PointCloud scan = read_scan(arguments->scan);
-    if (!arguments->viewpoint.empty()) scan.viewpoints = to_point("--viewpoint", arguments->viewpoint).transpose();
-    if (scan.dropped > 0) {
-      context.run.message(arguments->scan + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
-    }
-    if (scan.points.rows() > chosen.scan_points) {
-      context.run.message(arguments->scan + ": " + std::to_string(chosen.scan_points) + " of its " +
-                          count_of(scan.points.rows(), "point") + " are used (--scan-points)");
-    }
+    const std::vector<PointCloud> scans = read_scans(arguments->scans, arguments->aligned, context);
+    tell_used(arguments->scans, scans, chosen.scan_points, context.run);
     SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
                                                                   : read_annotation(arguments->annotation, mesh);
     if (!arguments->without.empty()) annotation = without(arguments->without, annotation);
@@ -142,7 +154,8 @@ CommandBody fit(CLI::App& app) {
     const auto subspace = std::make_shared<Subspace>(build_consistent(mesh, annotation, chosen.subspace, context.run));
     const StageTime building{"subspace", std::chrono::duration<double>(Clock::now() - began).count()};
     chosen.judge_groups = !arguments->report.empty() || !arguments->html.empty() || context.json;
-    FitInput input{mesh, annotation, scan, Similarity{}};
+    FitInput input{mesh, annotation, scans.front(), Similarity{}};
+    for (std::size_t i = 1; i < scans.size(); ++i) input.others.push_back(&scans[i]);
     input.subspace = subspace;
     if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
     if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;
@@ -156,10 +169,10 @@ CommandBody fit(CLI::App& app) {
     if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");
     if (!arguments->html.empty()) {
       const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
-      write_file(arguments->html, fit_to_html(mesh, scan, result, symmetry, up, context.run));
+      write_file(arguments->html, fit_to_html(mesh, joined_scans(scans, result), result, symmetry, up, context.run));
     }
     if (!result.converged) {
-      throw NoResultError("the fit of " + arguments->mesh + " to " + arguments->scan +
+      throw NoResultError("the fit of " + arguments->mesh + " to " + named(arguments->scans.files) +
                           " failed: " + result.stopped_because);
     }
     if (limited && !(result.field_residual <= arguments->max_residual)) {

@@ -25,7 +25,7 @@ bool by_handles_alone(const FitInput& input) {
 PlacedScan baseline_start(const FitInput& input, const FitOptions& options, const RunContext& context) {
   std::vector<StageTime> times;
   StageClock clock(times);
-  return std::move(find_starts(input, options, context, clock).places.front());
+  return std::move(find_starts(input, options, false, context, clock).places.front());
 }
 
 void validate_editing(double alpha, int iterations) {

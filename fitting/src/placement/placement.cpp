@@ -162,14 +162,23 @@ class Search {
       parallel_for(context_, found.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           Random random(context_.seed, source + std::to_string(first + i));
-          run(first + i, random, [&](const Similarity& pose) {
-            const double all = judged(pose, pool.bar);
-            if (all > 0) found[i].push_back({pose, all});
+          run(first + i, random, [&](const Similarity& proposed) {
+            const std::optional<Similarity> pose = at_known_scale(proposed);
+            const double all = pose ? judged(*pose, pool.bar) : 0;
+            if (all > 0) found[i].push_back({*pose, all});
           });
         }
       });
       for (const auto& each : found) pool.add(each);
     }
+  }
+
+  // Where the scale is known, the pose at that one, if it was proposed at much the same.
+  std::optional<Similarity> at_known_scale(const Similarity& pose) const {
+    constexpr double kMuchTheSame = 0.2;  // of its logarithm: how far lengths of shapes of one kind differ
+    if (!options_.scale) return pose;
+    if (std::abs(std::log(pose.scale / *options_.scale)) > kMuchTheSame) return std::nullopt;
+    return rescaled(pose, *options_.scale, mesh_);
   }
 
   // The share of the points that a pose explains; 0 below the bar, and for scales that are not allowed.
@@ -283,7 +292,8 @@ class Search {
     std::vector<Placement> result(starts.size());
     parallel_for(context_, starts.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        result[i].pose = align_with_scale(surface_, scan_, of, starts[i], {iterations, robust, 0.015});
+        result[i].pose =
+            align_with_scale(surface_, scan_, of, starts[i], {iterations, robust, 0.015, options_.scale.has_value()});
         const Similarity back = inverse(result[i].pose);
         const double reach = reach_of(result[i].pose);
         result[i].inlier_ratio = closeness(back, reach / result[i].pose.scale, 1500);
@@ -312,6 +322,7 @@ class Search {
 }  // namespace
 
 void PlacementOptions::validate() const {
+  require(!scale || *scale > 0, "PlacementOptions.scale", scale.value_or(1), "positive");
   require(pairs >= 1, "PlacementOptions.pairs", pairs, "at least 1");
   require(proposals >= 1, "PlacementOptions.proposals", proposals, "at least 1");
   require(scan_points >= 10, "PlacementOptions.scan_points", scan_points, "at least 10");

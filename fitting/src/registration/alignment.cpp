@@ -75,7 +75,8 @@ class PoseSystem {
 
 }  // namespace
 
-Similarity align_landmarks(const Mesh& mesh, const std::vector<Landmark>& landmarks) {
+Similarity align_landmarks(const Mesh& mesh, const std::vector<Landmark>& landmarks,
+                           const std::optional<double>& scale) {
   Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(landmarks.size()));
   Eigen::Matrix3Xd to(3, from.cols());
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
@@ -87,11 +88,13 @@ Similarity align_landmarks(const Mesh& mesh, const std::vector<Landmark>& landma
   // The second singular value is the spread off a line.
   const Eigen::VectorXd spread = Eigen::JacobiSVD<Eigen::MatrixXd>(from.colwise() - from_mean).singularValues();
   if (from.cols() < 3 || spread[1] < 1e-6 * diagonal(mesh.vertices)) {
-    return {1, Eigen::Matrix3d::Identity(), to_mean - from_mean};
+    const double known = scale.value_or(1);
+    return {known, Eigen::Matrix3d::Identity(), to_mean - known * from_mean};
   }
   const Eigen::Matrix4d found = Eigen::umeyama(from, to, true);
-  const double scale = found.topLeftCorner<3, 1>().norm();
-  return {scale, nearest_orthogonal(found.topLeftCorner<3, 3>()), found.topRightCorner<3, 1>()};
+  const Eigen::Matrix3d linear = nearest_orthogonal(found.topLeftCorner<3, 3>());
+  if (scale) return {*scale, linear, to_mean - *scale * (linear * from_mean)};
+  return {found.topLeftCorner<3, 1>().norm(), linear, found.topRightCorner<3, 1>()};
 }
 
 Similarity align_rigidly(const MatchSurface& surface, const PreparedScan& scan, const Similarity& start,
@@ -152,9 +155,14 @@ Similarity align_with_scale(const MatchSurface& surface, const PreparedScan& sca
       any = true;
     }
     if (!any) return pose;
-    pose = pose * inverse(system.scaled().scan);
+    pose = pose * inverse((options.keep_scale ? system.rigid() : system.scaled()).scan);
   }
   return pose;
+}
+
+Similarity rescaled(const Similarity& pose, double scale, const Mesh& mesh) {
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  return {scale, pose.linear, pose(centre) - scale * (pose.linear * centre)};
 }
 
 Motion small_motion(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation, const Eigen::Vector3d& pivot) {

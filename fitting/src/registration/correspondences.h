@@ -33,6 +33,7 @@ struct Correspondence {
   Eigen::Vector3d normal;       ///< unit: of the face, or from its edge to the scan point across that edge
   double distance = 0;          ///< between the two, template units
   double weight = 0;            ///< robust_weight()
+  int view = 0;  ///< of scans that move by themselves the number of the point's; 0: the first, or they do not
 };
 
 /// Geman and McClure's error, distance^2 / (1 + (distance / scale)^2): below scale^2 however far a point is.

@@ -44,6 +44,11 @@ std::vector<Landmark> read_landmarks(const std::filesystem::path& file, const Me
         fail(key + ".target", "must be three numbers of at most 1e50 in size");
       }
     }
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      const std::string other = "landmarks[" + std::to_string(i) + "]";
+      if (landmarks[i].vertex == landmark.vertex) fail(key + ".vertex", "is that of " + other + " too");
+      if (landmarks[i].target == landmark.target) fail(key + ".target", "is that of " + other + " too");
+    }
     landmarks.push_back(landmark);
   }
   if (landmarks.empty()) fail("landmarks", "is empty");

@@ -16,10 +16,11 @@ namespace {
 // Rows of a least-squares problem that have much the same columns: multiplied out together, on those columns alone.
 class Batch {
  public:
-  /// \param last  columns that all rows have, the last ones
-  Batch(const VertexRows& rows, Eigen::Index columns, int last)
+  /// \param step  whose unknowns are the last columns, which all rows have
+  Batch(const VertexRows& rows, Eigen::Index columns, const ScanStep& step)
       : rows_(rows),
-        last_(last),
+        last_(step.unknowns()),
+        common_(step.common()),
         local_of_(static_cast<std::size_t>(columns), -1),
         place_of_(rows.representatives(), -1) {}
 
@@ -80,9 +81,11 @@ class Batch {
     }
   }
 
-  // The unknowns of the pose, the right-hand side, and the weight of the row: its last step.
-  void finish(Eigen::Index row, const Eigen::Matrix<double, 7, 1>& pose, double right, double weight) {
-    all_.row(row).segment(static_cast<Eigen::Index>(columns_.size()) - last_, last_) = pose.tail(last_);
+  // The unknowns of the pose, the number of the scan, the right-hand side, and the weight of the row: its last step.
+  void finish(Eigen::Index row, const Eigen::Matrix<double, 7, 1>& pose, int view, double right, double weight) {
+    const auto count = static_cast<Eigen::Index>(columns_.size());
+    all_.row(row).segment(count - common_, common_) = pose.tail(common_);
+    if (view > 0) all_.row(row).segment<6>(count - last_ + 6 * (view - 1)) = pose.tail<6>();
     right_[row] = right;
     const double root = std::sqrt(weight);
     all_.row(row) *= root;
@@ -132,7 +135,7 @@ class Batch {
   }
 
   const VertexRows& rows_;
-  int last_;
+  int last_, common_;
   std::vector<int> local_of_;  // by column: its place among those used; -1: not used
   std::vector<int> place_of_;  // by representative, likewise
   std::vector<int> columns_, representatives_;
@@ -161,6 +164,12 @@ std::vector<std::size_t> by_representatives(const VertexRows& rows, const Mesh& 
 
 Motion ScanStep::motion(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& solved) const {
   return small_motion(solved.head<3>() / length, solved.tail<3>(), pivot);
+}
+
+std::vector<Motion> ScanStep::other_motions(const Eigen::VectorXd& solved) const {
+  std::vector<Motion> result;
+  for (int k = 0; k < others; ++k) result.push_back(motion(solved.segment<6>(6 * k)));
+  return result;
 }
 
 std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspondence>& pairs,
@@ -209,7 +218,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
         if (pair.barycentric[k] != 0) parts.push_back({mesh.faces(pair.face, k), pair.barycentric[k] * pair.normal});
       }
       batch.add(row, parts);
-      batch.finish(row, of_pose(rest, goal, pair.normal), pair.normal.dot(goal - rest), share * pair.weight);
+      batch.finish(row, of_pose(rest, goal, pair.normal), pair.view, pair.normal.dot(goal - rest), share * pair.weight);
     }
     batch.multiply_out(product);
   };
@@ -218,12 +227,12 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
   for (std::size_t first = 0; first < batches; first += kBatches) {
     const std::size_t count = std::min(kBatches, batches - first);
     parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
-      Batch batch(rows, all, step.unknowns());
+      Batch batch(rows, all, step);
       for (std::size_t b = begin; b < end; ++b) multiply_out((first + b) * kRows, batch, products[b]);
     });
     for (std::size_t b = 0; b < count; ++b) products[b].add_to(total);
   }
-  Batch batch(rows, all, step.unknowns());
+  Batch batch(rows, all, step);
   Batch::Product product;
   for (const Pull& pull : pulls) {
     const Eigen::Vector3d rest = mesh.vertices.row(pull.vertex);
@@ -232,7 +241,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
     for (int c = 0; c < 3; ++c) {
       const Eigen::Vector3d direction = Eigen::Vector3d::Unit(c);
       batch.add(c, {{pull.vertex, direction}});
-      batch.finish(c, of_pose(rest, pull.target, direction), pull.target[c] - rest[c], pull.weight);
+      batch.finish(c, of_pose(rest, pull.target, direction), 0, pull.target[c] - rest[c], pull.weight);
     }
     batch.multiply_out(product);
     product.add_to(total);

@@ -20,14 +20,20 @@ struct DataNormal {
   Eigen::VectorXd side;
 };
 
-/// How a small change of the pose is written: the template's growth times a length, where it may grow; then a motion of
-/// the scan, a rotation vector times the length and a translation. Growth and rotation are about a pivot.
+/// How a small change of the pose is written: of each scan but the first a motion of its own, that comes before the
+/// common one; the template's growth times a length, where it may grow; then a motion of all scans. Motions are a
+/// rotation vector times the length and a translation. Growth and rotations are about a pivot.
 struct ScanStep {
   Eigen::Vector3d pivot;
   double length;       ///< > 0
   bool grows = false;  ///< whether the growth is an unknown
+  int others = 0;      ///< scans but the first
 
-  int unknowns() const { return grows ? 7 : 6; }
+  int common() const { return grows ? 7 : 6; }  ///< the last of the unknowns
+  int unknowns() const { return common() + 6 * others; }
+
+  /// Of the others, from the solution for all unknowns of the pose.
+  std::vector<Motion> other_motions(const Eigen::VectorXd& solved) const;
 
   Motion motion(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& solved) const;
 };
@@ -37,6 +43,7 @@ std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspond
                                   const std::vector<Pull>& pulls);
 
 /// What a fit's data ask for: share w <n, x + gamma (x - pivot) + u - (s + omega x (s - pivot) + tau)>^2 for each pair,
+/// omega and tau being the sum of the common ones and those of the pair's scan,
 /// and each pull's vertex at its target. The last unknowns are those of the pose. Summed in an order that does not
 /// depend on the number of threads. \param rows  u of the vertices in the other unknowns, prepared for those that are
 /// touched \param columns  number of the other unknowns \param mesh  where u = 0

@@ -21,7 +21,8 @@ class DeformationSystem {
  public:
   struct Solution {
     Eigen::VectorXd q;
-    Motion scan_step;  ///< to apply to the scan in the template's frame
+    Motion scan_step;                 ///< to apply to the scan in the template's frame
+    std::vector<Motion> other_steps;  ///< of the scans but the first, to apply before that
     /// Of the template about its centre, after that; q is in units of the grown template.
     double growth = 1;
   };
@@ -33,6 +34,7 @@ class DeformationSystem {
     Eigen::VectorXd around;
     bool scale_open = false;  ///< whether the template may grow, in systems that know of it
     double grown = 0;         ///< logarithm of the growth so far
+    int other_scans = 0;      ///< how many have motions of their own
   };
 
   DeformationSystem(const DeformationSystem&) = delete;

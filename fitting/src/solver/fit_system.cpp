@@ -52,6 +52,7 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   const auto all_samples = static_cast<double>(samples());
   rows_.prepare(touched_vertices(mesh_, pairs, pulls), context);
   step_.grows = hold.scale_open;
+  step_.others = hold.other_scans;
   DataNormal normal = data_normal(rows_, dof, mesh_, step_, pairs, share, scan_points, pulls, context);
   normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() +=
       hold.stiffness * stiffness_matrix_ + hold_matrix_;
@@ -59,8 +60,9 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   normal.matrix.diagonal().tail(step_.unknowns()).array() += kHoldPose * all_samples + hold.damping;
   if (step_.grows) {
     const double cost = hold.stiffness * growth_cost(1) / (step_.length * step_.length);
-    normal.matrix(dof, dof) += cost;
-    normal.side[dof] -= cost * step_.length * hold.grown;
+    const Eigen::Index growth = normal.side.size() - step_.common();
+    normal.matrix(growth, growth) += cost;
+    normal.side[growth] -= cost * step_.length * hold.grown;
   }
   normal.side.head(dof) += hold.stiffness * (subspace_->basis.columns.transpose() * stacked(energy_.pull()));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
@@ -76,10 +78,12 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   }
   Solution solution;
   if (step_.grows) {
-    solution.growth = std::clamp(1 + solved[dof] / step_.length, 1 / kMostGrowth, kMostGrowth);
+    solution.growth =
+        std::clamp(1 + solved[solved.size() - step_.common()] / step_.length, 1 / kMostGrowth, kMostGrowth);
   }
   solution.q = solved.head(dof) / solution.growth;
   solution.scan_step = step_.motion(solved.tail<6>());
+  solution.other_steps = step_.other_motions(solved.tail(step_.unknowns()));
   return solution;
 }
 

@@ -152,6 +152,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
     rows.extend(touched[i], static_cast<int>(dof), turning.middleRows<3>(3 * static_cast<Index>(i)));
   }
 
+  step_.others = hold.other_scans;
   DataNormal normal = data_normal(rows, dof + ways, deformed, step_, pairs, share, scan_points, pulls, context);
   const Points pull = energy_.pull() - Points(stiffness_ * moved);
   const MatrixXd bent = hold.stiffness * applied(LiftWeights(stiffness_), turn_columns);
@@ -177,7 +178,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   normal.side.head(dof) -= still * now.q;
   normal.matrix.diagonal().segment(dof, ways) +=
       (kHoldTurns + hold.damping) * turn_columns.colwise().squaredNorm().transpose();
-  normal.matrix.diagonal().tail<6>().array() += kHoldPose * all_samples + hold.damping;
+  normal.matrix.diagonal().tail(step_.unknowns()).array() += kHoldPose * all_samples + hold.damping;
 
   matrix_ = std::move(normal.matrix);
   factor_.compute(matrix_);
@@ -198,6 +199,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
     solution.q.head(dof) += change.head(dof);
   }
   solution.scan_step = step_.motion(solved.tail<6>());
+  solution.other_steps = step_.other_motions(solved.tail(step_.unknowns()));
   return solution;
 }
 

@@ -30,9 +30,11 @@ struct FitOptions {
   double landmark_weight = 10;    ///< of one landmark or handle, against one sample's share of the data, > 0
   double inlier_distance = 0.01;  ///< of the diagonal: a scan point nearer than this is explained, > 0
   double min_inlier_ratio = 0.5;  ///< explained share of the whole scan below which a fit failed, in [0, 1]
-  bool place = false;             ///< find the pose first, whatever it is; the rough one is one candidate
+  /// Find the pose first, whatever it is, where landmarks do not determine it; the rough one is one candidate.
+  bool place = false;
   PlacementOptions placement;
-  double tie = 0.8;   ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
+  bool fixed_scale = false;  ///< the template has the size that FitInput::pose says, wherever it is found
+  double tie = 0.8;          ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
   int max_tried = 8;  ///< of those, by their score: where there are more than `max_tied` short fits choose among them
   int max_tied = 3;   ///< placements fitted in full, >= 1, <= max_tried
   bool judge_groups = false;  ///< compare with a fit without groups: see GroupAgreement; takes as long again
@@ -60,11 +62,20 @@ struct StageTime {
   double seconds = 0;
 };
 
+/// What a fit makes of a landmark.
+struct LandmarkAgreement {
+  int vertex = 0;
+  double residual = 0;    ///< distance of the fitted vertex from the target, of the fitted mesh's diagonal
+  bool left_out = false;  ///< it contradicts the other landmarks, or the scan
+};
+
 struct FitResult {
   Mesh fitted;                         ///< template's connectivity, scan's frame
   SymmetryAnnotation rest_annotation;  ///< the template's, as it was kept
   SymmetryAnnotation annotation;       ///< the same, carried along into the scan's frame
   Similarity pose;                     ///< template -> scan
+  std::vector<Motion> others;          ///< of FitInput::others each into the scan's frame
+  std::vector<char> other_used;        ///< of each, whether it took part: a scan in which nothing is found does not
   std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
   Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
@@ -83,13 +94,15 @@ struct FitResult {
   /// Of the fitted surface that the viewpoints have before them the share where they have nothing, neither it nor
   /// anything behind, where that is so much that points have been cut off the scan; not in `visible_coverage`.
   double cut_off = 0;
-  double confidence = 0;               ///< inlier_ratio * visible_coverage, less what was torn off, in [0, 1]
-  double landmark_rms = 0;             ///< of landmarks and handles, fraction of the fitted mesh's diagonal
-  std::vector<char> seen;              ///< #V: a scan point lies near the fitted vertex
-  double hidden_fraction = 0;          ///< share of the fitted area around vertices not seen
-  double field_residual = 0;           ///< worst of the regions: see orbifit::field_residual
-  std::vector<GroupAgreement> groups;  ///< what the scan says of the regions' groups, where that was asked
-  std::vector<int> dropped;            ///< ids of regions that were left out since the scan has not their symmetry
+  double confidence = 0;  ///< inlier_ratio * visible_coverage, less what was torn off, in [0, 1]
+  double landmark_rms =
+      0;  ///< of handles and the landmarks that were not left out, fraction of the fitted mesh's diagonal
+  std::vector<LandmarkAgreement> landmarks;  ///< the input's, in its order
+  std::vector<char> seen;                    ///< #V: a scan point lies near the fitted vertex
+  double hidden_fraction = 0;                ///< share of the fitted area around vertices not seen
+  double field_residual = 0;                 ///< worst of the regions: see orbifit::field_residual
+  std::vector<GroupAgreement> groups;        ///< what the scan says of the regions' groups, where that was asked
+  std::vector<int> dropped;  ///< ids of regions that were left out since the scan has not their symmetry
   std::vector<StageTime> times;
 };
 
@@ -97,17 +110,24 @@ struct FitInput {
   const Mesh& mesh;  ///< the template
   const SymmetryAnnotation& annotation;
   const PointCloud& scan;
-  Similarity pose;                       ///< rough pose, template -> scan
-  std::vector<Landmark> landmarks = {};  ///< take precedence over `pose`
-  std::vector<Handle> handles = {};      ///< their motions give places in the template's frame posed by `pose`
+  Similarity pose;  ///< rough pose, template -> scan
+  /// Take precedence over `pose`. Those that contradict the others are left out; where the scan contradicts them all,
+  /// the pose is sought without them if FitOptions::place allows it.
+  std::vector<Landmark> landmarks = {};
+  std::vector<Handle> handles = {};  ///< their motions give places in the template's frame posed by `pose`
   /// Of the mesh and the annotation, as FitOptions::subspace says, where it is built already; null: built by fit().
   std::shared_ptr<const Subspace> subspace = nullptr;
   /// Told after each step of the iterations: its record, the pose, and the vertices then, #V by 3, in the template's
   /// frame. Where several starts are tried each of their steps is told, by several threads where the context has them.
   std::function<void(const FitIteration&, const Similarity&, const Points&)> watch = nullptr;
+  /// More scans of the same object, each in a frame of its own, all at one scale: they have one shape together and a
+  /// pose each. Kept by pointer.
+  std::vector<const PointCloud*> others = {};
 
   /// The same to be fitted with another annotation, which is kept by reference.
-  FitInput with(const SymmetryAnnotation& other) const { return {mesh, other, scan, pose, landmarks, handles}; }
+  FitInput with(const SymmetryAnnotation& other) const {
+    return {mesh, other, scan, pose, landmarks, handles, nullptr, nullptr, others};
+  }
 };
 
 /// Deforms a template to a scan within its symmetric subspace (docs/method.md 7): alternates correspondences and

@@ -14,7 +14,7 @@ struct Landmark {
 };
 
 /// Reads {"landmarks": [{"vertex": 12, "target": [x, y, z]}]}.
-/// \throw InputError naming the file and the key
+/// \throw InputError naming the file and the key, also where two have one vertex or one target
 std::vector<Landmark> read_landmarks(const std::filesystem::path& file, const Mesh& mesh);
 
 }  // namespace orbifit

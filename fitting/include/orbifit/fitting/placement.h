@@ -18,6 +18,7 @@ struct PlacementOptions {
   double reach = 0.035;    ///< of the posed template's diagonal or 0.6 of the scan's: nearer is explained, in (0, 0.2)
   double min_scale = 0.3;  ///< of the template's diagonal against the scan's, > 0
   double max_scale = 2.5;  ///< likewise, > min_scale
+  std::optional<double> scale = {};  ///< where it is known: of all poses that are found, > 0
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
