@@ -61,7 +61,8 @@ double asymmetry(const Mesh& edited, const std::vector<int>& image_of) {
   return worst / diagonal(edited.vertices);
 }
 
-// What commands are to say of which shapes: those that fail; all others succeed.
+// What commands are to say of which shapes: those that fail, and how the line begins; all others succeed. Why a fit to
+// another shape fails is not said: its figures are no promise.
 std::map<std::string, std::string> expected_failures() {
   std::map<std::string, std::string> result;
   std::ifstream stream(ORBIFIT_FAILURES);
@@ -120,7 +121,9 @@ TEST_P(HardShape, EachCommandGivesARightResultOrAReason) {
     const auto failure = failures.find(key);
     const std::string outcome =
         result.code == 0 ? "" : std::to_string(result.code) + " " + result.errors.substr(0, result.errors.find('\n'));
-    EXPECT_EQ(outcome, failure == failures.end() ? "" : failure->second) << key << "\t" << outcome;
+    const std::string expected = failure == failures.end() ? "" : failure->second;
+    EXPECT_EQ(outcome.substr(0, expected.empty() ? outcome.size() : expected.size()), expected)
+        << key << "\t" << outcome;
   }
   const auto image_of = images(mesh);
   for (const char* name : {"edited.ply", "symmetric.ply", "fitted.ply", "copy.off"}) {
