@@ -56,8 +56,8 @@ class Deformer {
   Deformer(Deformer&&) noexcept;
 
   /// Factorises U^T (L^T L + alpha A^T A) U (equation 4). A has a row for each point of a handle, of whose vertices at
-  /// most 48 are taken, evenly; weighted so that a handle counts as the samples near it, however it is tessellated. An alpha that would leave
-  /// the energy fewer than half of a double's digits counts as the largest that does not.
+  /// most 48 are taken, evenly; weighted so that a handle counts as the samples near it, however it is tessellated. An
+  /// alpha that would leave the energy fewer than half of a double's digits counts as the largest that does not.
   /// O(DoF^3 / 3).
   void set_handles(const std::vector<Handle>& handles, double alpha);
 
