@@ -128,9 +128,10 @@ class CarrierSystem {
     const Eigen::Index size = gram_.cols();
     if (size == 0) return MatrixXd::Zero(0, 0);
     compress();
+    if (used_ == 0) return MatrixXd::Identity(size, size);
     Eigen::FullPivLU<MatrixXd> lu(stacked_.topRows(used_));
     lu.setThreshold(kRowRounding);
-    if (used_ == 0 || lu.rank() == 0) return MatrixXd::Identity(size, size);
+    if (lu.rank() == 0) return MatrixXd::Identity(size, size);
     if (lu.rank() == size) return MatrixXd::Zero(size, 0);
     MatrixXd kernel = lu.kernel();
     // Elimination leaves rounding's crumbs where zeros belong.
