@@ -8,7 +8,7 @@
 #include "command.h"
 #include "detection.h"
 #include "remeshing/remesh.h"
-#include "truth/carried_truth.h"
+#include "truth/transferred_truth.h"
 
 namespace orbifit::benchmarks {
 
@@ -29,7 +29,8 @@ Made made_of(Derived derived) {
 }
 
 // Faces by the source that they came from.
-std::vector<int> carried_by_source(const std::vector<int>& faces, const std::vector<int>& source_face, int sources) {
+std::vector<int> transferred_by_source(const std::vector<int>& faces, const std::vector<int>& source_face,
+                                       int sources) {
   std::vector<char> chosen(static_cast<std::size_t>(sources), 0);
   for (const int face : faces) chosen[static_cast<std::size_t>(face)] = 1;
   std::vector<int> result;
@@ -42,17 +43,19 @@ std::vector<int> carried_by_source(const std::vector<int>& faces, const std::vec
 // The same surface in more triangles: what was right stays right.
 TruthModel refined(TruthModel model, Made made) {
   const auto sources = static_cast<int>(model.mesh.faces.rows());
-  const auto carry = [&](std::vector<int>& faces) { faces = carried_by_source(faces, made.source_face, sources); };
-  const auto carry_all = [&](std::vector<Region>& regions, std::vector<Pattern>& patterns) {
-    for (Region& region : regions) carry(region.faces);
+  const auto transfer = [&](std::vector<int>& faces) {
+    faces = transferred_by_source(faces, made.source_face, sources);
+  };
+  const auto transfer_all = [&](std::vector<Region>& regions, std::vector<Pattern>& patterns) {
+    for (Region& region : regions) transfer(region.faces);
     for (Pattern& pattern : patterns) {
-      for (PatternInstance& instance : pattern.instances) carry(instance.faces);
+      for (PatternInstance& instance : pattern.instances) transfer(instance.faces);
     }
   };
   DetectionTruth& truth = model.truth;
-  carry_all(truth.expected.regions, truth.expected.patterns);
-  carry_all(truth.optional_regions, truth.optional_patterns);
-  for (auto& [id, sets] : truth.also_accepted) std::ranges::for_each(sets, carry);
+  transfer_all(truth.expected.regions, truth.expected.patterns);
+  transfer_all(truth.optional_regions, truth.optional_patterns);
+  for (auto& [id, sets] : truth.also_accepted) std::ranges::for_each(sets, transfer);
   model.mesh = std::move(made.mesh);
   truth.expected.mesh_vertices = static_cast<int>(model.mesh.vertices.rows());
   truth.expected.mesh_faces = static_cast<int>(model.mesh.faces.rows());
@@ -116,7 +119,7 @@ TruthModel case_of(const SuiteModel& suite_model, const CaseForm& form, RunConte
   }
   if (form.cut) made = without_a_part(std::move(made), random);
   if (form.remeshed || form.cut) {
-    DetectionTruth truth = carried(model, made.mesh, made.source_face, {}, own);
+    DetectionTruth truth = transferred_truth(model, made.mesh, made.source_face, {}, own);
     model = {std::move(made.mesh), std::move(truth)};
   } else {
     model = refined(std::move(model), std::move(made));

@@ -98,8 +98,8 @@ struct MeshResidual {
 MeshResidual mesh_residual(const Mesh& mesh, const Points& displacements, const Subspace& subspace,
                            const SymmetryAnnotation& annotation, const SubspaceState& state,
                            const RunContext& context) {
-  constexpr double kSamePlace = 1e-9;    // of the diagonal
-  constexpr std::size_t kMost = 200000;  // pairs of one region; beyond, every k-th vertex
+  constexpr double kSamePlace = 1e-9;   // of the diagonal
+  constexpr std::size_t kMax = 200000;  // pairs of one region; beyond, every k-th vertex
   const double size = diagonal(mesh.vertices);
   MeshResidual result;
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
@@ -112,7 +112,7 @@ MeshResidual mesh_residual(const Mesh& mesh, const Points& displacements, const 
     const PointIndex index(places);
     const Motion carried = region_motion(subspace, state, number);
     const std::vector<Motion> elements = subspace->regions->test_elements(number);
-    const std::size_t step = 1 + vertices.size() * elements.size() / kMost;
+    const std::size_t step = 1 + vertices.size() * elements.size() / kMax;
     for (std::size_t v = 0; v < vertices.size(); v += step) {
       if (v / step % 64 == 0) context.check();
       const Vector3d rest = mesh.vertices.row(vertices[v]).transpose();

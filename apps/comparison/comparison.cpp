@@ -90,9 +90,9 @@ std::vector<Method> asked(const std::vector<std::string>& names) {
 
 // Those whose iterations depend on the samples; of the dense ones, no more than they can do in a minute.
 bool times_samples(const Method& method, int samples) {
-  constexpr int kMostOfSvd = 600;
+  constexpr int kMaxOfSvd = 600;
   if (method.name == "kurz" || method.name == "similarity") return false;
-  return method.name != "svd-nullspace" || samples <= kMostOfSvd;
+  return method.name != "svd-nullspace" || samples <= kMaxOfSvd;
 }
 
 void time_samples(const Method& method, const FitInput& input, const ComparisonOptions& options, RunContext& context,
@@ -108,11 +108,11 @@ void time_samples(const Method& method, const FitInput& input, const ComparisonO
 
 void time_meshes(const std::vector<Method>& chosen, const FitInput& input, const ComparisonOptions& options,
                  RunContext& context, Comparison& result) {
-  constexpr Eigen::Index kMostFaces = 400000;
+  constexpr Eigen::Index kMaxFaces = 400000;
   AnnotatedMesh finer{input.mesh, input.annotation};
   for (int round = 0; round < options.meshes; ++round) {
     if (round > 0) {
-      if (4 * finer.mesh.faces.rows() > kMostFaces) break;
+      if (4 * finer.mesh.faces.rows() > kMaxFaces) break;
       finer = divided(finer.mesh, finer.annotation);
     }
     const FitInput other{finer.mesh, finer.annotation, input.scan, input.pose, input.landmarks, input.handles};

@@ -137,15 +137,15 @@ std::vector<Chart> charts(const Comparison& comparison) {
 
 // White where a vertex is symmetric to 1e-6 of the diagonal, deepest red at 1e-2.
 Colour error_colour(double excess) {
-  constexpr double kLeast = -6;
-  constexpr double kMost = -2;
+  constexpr double kMin = -6;
+  constexpr double kMax = -2;
   const double power = std::log10(std::max(excess, 1e-30));
-  return heat_colour(0.5 + 0.5 * std::clamp((power - kLeast) / (kMost - kLeast), 0.0, 1.0));
+  return heat_colour(0.5 + 0.5 * std::clamp((power - kMin) / (kMax - kMin), 0.0, 1.0));
 }
 
 Colour bending_colour(double change) {
-  constexpr double kMost = 8;  // degrees
-  return heat_colour(0.5 + 0.5 * std::min(1.0, kDegrees * change / kMost));
+  constexpr double kMax = 8;  // degrees
+  return heat_colour(0.5 + 0.5 * std::min(1.0, kDegrees * change / kMax));
 }
 
 }  // namespace

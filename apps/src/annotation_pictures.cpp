@@ -38,9 +38,9 @@ std::string named(const std::string& text, const std::string& name) {
 
 // Where a square around the box lies in the picture when it is `size` of its width and height.
 Eigen::Vector4d window_around(const Eigen::Vector4d& box) {
-  constexpr double kRoom = 1.6;     // about the part, so that one sees where it is
-  constexpr double kLeast = 0.025;  // of the picture: sixteen times enlarged
-  const double size = std::max(kLeast, kRoom * std::max(box[2], box[3]));
+  constexpr double kRoom = 1.6;   // about the part, so that one sees where it is
+  constexpr double kMin = 0.025;  // of the picture: sixteen times enlarged
+  const double size = std::max(kMin, kRoom * std::max(box[2], box[3]));
   return {box[0] + 0.5 * box[2] - 0.5 * size, box[1] + 0.5 * box[3] - 0.5 * size, size, size};
 }
 

@@ -26,9 +26,9 @@ struct Demands {
 };
 
 Demands demands_of(const Mesh& mesh, const Handle& handle, const Mesh& edited) {
-  constexpr std::size_t kMost = 48;  // as many as the deformer takes
+  constexpr std::size_t kMax = 48;  // as many as the deformer takes
   Demands demands;
-  const std::size_t count = std::min(kMost, handle.vertices.size());
+  const std::size_t count = std::min(kMax, handle.vertices.size());
   for (std::size_t i = 0; i < count; ++i) {
     const int v = handle.vertices[i * handle.vertices.size() / count];
     const Vector3d place = mesh.vertices.row(v);
@@ -155,19 +155,19 @@ class Forbidden {
 };
 
 std::string blame(const std::vector<const Region*>& regions) {
-  constexpr std::size_t kMostNamed = 4;
+  constexpr std::size_t kMaxNamed = 4;
   std::string names;
   std::string ids;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const std::string id = std::to_string(regions[i]->id);
     ids += (i == 0 ? "" : ",") + id;
-    if (i >= kMostNamed) continue;
+    if (i >= kMaxNamed) continue;
     names += (i == 0                    ? ""
               : i + 1 == regions.size() ? " and "
                                         : ", ") +
              id + " (" + regions[i]->group.symbol() + ", \"" + regions[i]->name + "\")";
   }
-  if (regions.size() > kMostNamed) names += " and " + std::to_string(regions.size() - kMostNamed) + " more";
+  if (regions.size() > kMaxNamed) names += " and " + std::to_string(regions.size() - kMaxNamed) + " more";
   return regions.size() == 1 ? "region " + names + " forbids this; leave it out with --without " + ids
                              : "regions " + names + " forbid this; leave them out with --without " + ids;
 }

@@ -69,9 +69,7 @@ ReportTable placement_table(const FitResult& result) {
   return table;
 }
 
-}  // namespace
-
-nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
+nlohmann::ordered_json iterations_json(const FitResult& result) {
   nlohmann::ordered_json iterations = nlohmann::ordered_json::array();
   for (const FitIteration& iteration : result.iterations) {
     iterations.push_back({{"stiffness", iteration.stiffness},
@@ -81,8 +79,16 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
                           {"damping", iteration.damping},
                           {"change", iteration.change}});
   }
+  return iterations;
+}
+
+nlohmann::ordered_json times_json(const FitResult& result) {
   nlohmann::ordered_json times;
   for (const StageTime& time : result.times) times[time.stage] = time.seconds;
+  return times;
+}
+
+nlohmann::ordered_json placements_json(const FitResult& result) {
   nlohmann::ordered_json placements = nlohmann::ordered_json::array();
   for (const Placement& placement : result.placements) {
     placements.push_back({{"pose", pose_to_json(placement.pose)},
@@ -90,16 +96,28 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
                           {"covered", placement.visible_coverage},
                           {"score", placement.score()}});
   }
+  return placements;
+}
+
+nlohmann::ordered_json others_json(const FitResult& result) {
   nlohmann::ordered_json others = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < result.others.size(); ++i) {
     const Motion& motion = result.others[i];
     others.push_back(
         {{"used", result.other_used[i] != 0}, {"pose", pose_to_json({1, motion.linear, motion.translation})}});
   }
+  return others;
+}
+
+nlohmann::ordered_json landmarks_json(const FitResult& result) {
   nlohmann::ordered_json landmarks = nlohmann::ordered_json::array();
   for (const LandmarkAgreement& each : result.landmarks) {
     landmarks.push_back({{"vertex", each.vertex}, {"residual", each.residual}, {"left_out", each.left_out}});
   }
+  return landmarks;
+}
+
+nlohmann::ordered_json regions_json(const SymmetryReport& symmetry) {
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
   for (const RegionResidual& region : symmetry.regions) {
     regions.push_back({{"id", region.id},
@@ -108,6 +126,10 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
                        {"rest", region.floor.max},
                        {"excess", region.excess.max}});
   }
+  return regions;
+}
+
+nlohmann::ordered_json groups_json(const FitResult& result) {
   nlohmann::ordered_json groups = nlohmann::ordered_json::array();
   for (const GroupAgreement& group : result.groups) {
     groups.push_back({{"region", group.region},
@@ -117,11 +139,17 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
                       {"free_rms", group.free},
                       {"disagrees", group.disagrees}});
   }
+  return groups;
+}
+
+}  // namespace
+
+nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
   return {{"converged", result.converged},
           {"stopped_because", result.stopped_because},
           {"pose", pose_to_json(result.pose)},
-          {"other_scans", others},
-          {"placements", placements},
+          {"other_scans", others_json(result)},
+          {"placements", placements_json(result)},
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
           {"used_fraction", result.overlap},
@@ -132,14 +160,16 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},
-          {"landmarks", landmarks},
+          {"landmarks", landmarks_json(result)},
           {"hidden_fraction", result.hidden_fraction},
           {"symmetry",
-           {{"field_residual", result.field_residual}, {"worst_excess", symmetry.worst_excess}, {"regions", regions}}},
-          {"groups", groups},
+           {{"field_residual", result.field_residual},
+            {"worst_excess", symmetry.worst_excess},
+            {"regions", regions_json(symmetry)}}},
+          {"groups", groups_json(result)},
           {"relaxed", result.dropped},
-          {"seconds", times},
-          {"iterations", iterations}};
+          {"seconds", times_json(result)},
+          {"iterations", iterations_json(result)}};
 }
 
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,

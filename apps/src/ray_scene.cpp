@@ -49,10 +49,10 @@ RTCRayHit ray_hit(const Ray& ray, float beyond, float up_to) {
 
 // What one ray crosses, gathered by a filter that lets it pass.
 struct Crossings {
-  static constexpr std::size_t kMost = 32;  // the nearest ones
+  static constexpr std::size_t kMax = 32;  // the nearest ones
 
   RTCIntersectContext context;  // first, so that Embree's pointer to it is one to all of this
-  std::array<RTCRayHit, kMost> all;
+  std::array<RTCRayHit, kMax> all;
   std::size_t count = 0;
 };
 
@@ -66,7 +66,7 @@ void let_pass(const RTCFilterFunctionNArguments* arguments) {
   RTCRayHit crossing;
   crossing.ray = rtcGetRayFromRayN(arguments->ray, arguments->N, 0);
   crossing.hit = rtcGetHitFromHitN(arguments->hit, arguments->N, 0);
-  if (crossings.count < Crossings::kMost) {
+  if (crossings.count < Crossings::kMax) {
     crossings.all[crossings.count++] = crossing;
     return;
   }

@@ -16,8 +16,8 @@ const Colour kGrey{0.80F, 0.80F, 0.80F};
 const Colour kAxisInk{0.12F, 0.13F, 0.16F};
 
 // Beyond so many planes or axes a picture shows the lines less than it hides the shape.
-constexpr std::size_t kMostPlanes = 6;
-constexpr std::size_t kMostAxes = 8;
+constexpr std::size_t kMaxPlanes = 6;
+constexpr std::size_t kMaxAxes = 8;
 
 Colour from_hue(double hue, double saturation, double value) {
   const auto channel = [&](double shift) {
@@ -74,7 +74,7 @@ std::vector<Eigen::Vector3d> axes_of(const Region& region) {
     const AxisAngle turn = axis_angle(element.linear);
     if (turn.determinant > 0 && turn.angle > 1e-6 && turn.angle < least_angle + 1e-6) add_direction(axes, turn.axis);
   }
-  if (axes.size() > kMostAxes) axes.clear();
+  if (axes.size() > kMaxAxes) axes.clear();
   return axes;
 }
 
@@ -85,7 +85,7 @@ std::vector<Eigen::Vector3d> mirror_normals_of(const Region& region) {
     // A reflection is minus a half turn about the plane's normal.
     if (turn.determinant < 0 && std::abs(turn.angle - std::numbers::pi) < 1e-6) add_direction(normals, turn.axis);
   }
-  if (normals.size() > kMostPlanes) normals.clear();
+  if (normals.size() > kMaxPlanes) normals.clear();
   return normals;
 }
 

@@ -1,8 +1,6 @@
 #include "thumbnail.h"
 
-#include <algorithm>
-#include <functional>
-#include <vector>
+#include "region_colours.h"
 
 namespace orbifit {
 
@@ -15,17 +13,11 @@ constexpr int kRays = 4;                    // a pixel
 
 Image thumbnail(const Mesh& mesh, const SymmetryAnnotation& annotation, const Eigen::Vector3d& up,
                 const RunContext& run) {
-  std::vector<const Region*> by_size;
-  for (const Region& region : annotation.regions) by_size.push_back(&region);
-  std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const Region* region) { return region->faces.size(); });
   Scene scene;
   SurfaceLayer& surface = scene.surfaces.emplace_back();
   surface.mesh = mesh;
-  surface.face_colours.assign(static_cast<std::size_t>(mesh.faces.rows()), Colour(0.75F, 0.75F, 0.75F));
-  for (const Region* region : by_size) {
-    for (const int face : region->faces)
-      surface.face_colours[static_cast<std::size_t>(face)] = region_colour(region->id);
-  }
+  const Points colours = region_face_colours(mesh, annotation.regions);
+  for (const auto& colour : colours.rowwise()) surface.face_colours.emplace_back(colour.transpose().cast<float>());
   ViewOptions view;
   view.width = kWidth;
   view.height = kHeight;

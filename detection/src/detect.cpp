@@ -32,12 +32,12 @@
 #include "resolution/transfer.h"
 #include "search/axis_regions.h"
 #include "search/completion.h"
-#include "search/joined_groups.h"
-#include "search/looser_groups.h"
+#include "search/generated_groups.h"
+#include "search/groups_at_larger_tolerance.h"
+#include "search/maximal_subgroups.h"
 #include "search/part_regions.h"
 #include "search/plane_regions.h"
 #include "search/revolution_regions.h"
-#include "search/wider_subgroups.h"
 #include "support/found_region.h"
 #include "support/own_group.h"
 #include "surface/components.h"
@@ -99,7 +99,7 @@ class Detector {
     limit(start_, options_.time_budget);
     in_time("parts", [this] { find_in_components(); });
     in_time("pieces", [this] { find_in_segments(); });
-    in_time("looser", [this] { tell_of_looser_groups(); });
+    in_time("larger tolerance", [this] { tell_of_larger_tolerance(); });
     if (!late(1)) {
       context_.progress("images", 0);
       drop_repeats(prepared_, options_.tolerance, regions_, options_.explanation);
@@ -191,18 +191,19 @@ class Detector {
   }
 
   // Who looks at a dented box will miss its group: a message says at which tolerance it is found.
-  void tell_of_looser_groups() {
+  void tell_of_larger_tolerance() {
     constexpr int kFew = 4;  // elements: of more there is little to miss
     const std::optional<GroupPlacement> whole = placement_of_whole();
     const std::optional<PointGroup> has = whole ? std::optional(whole->group) : std::nullopt;
     if (late() || (has && (has->continuous() || has->order() > kFew))) return;
-    limited_.progress("looser", 0);
-    const std::vector<LooserGroup> looser = looser_groups(prepared_, has, options_.tolerance, screen_, limited_);
-    if (looser.empty()) return;
+    limited_.progress("larger tolerance", 0);
+    const std::vector<LargerToleranceGroup> hints =
+        groups_at_larger_tolerance(prepared_, has, options_.tolerance, screen_, limited_);
+    if (hints.empty()) return;
     std::string text = "the whole has " + (has ? "only " + has->symbol() : "no symmetry") + " at tolerance " +
                        number(options_.tolerance) + ", but ";
-    for (const LooserGroup& each : looser) {
-      if (&each != &looser.front()) text += " and ";
+    for (const LargerToleranceGroup& each : hints) {
+      if (&each != &hints.front()) text += " and ";
       text += each.group.symbol() + " at " + number(each.tolerance);
     }
     context_.message(text);

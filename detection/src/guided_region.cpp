@@ -66,7 +66,7 @@ class Guide {
   GrownRegion run() {
     if (hint_.group && polyhedral(*hint_.group)) return finished(solid());
     GroupPlacement placement{start(), frame_about(hint_.direction), point_};
-    placement = settled(placement);
+    placement = refined(placement);
     const std::vector<int> faces = faces_;
     const bool found = found_;
     const GroupPlacement larger = hint_.about == About::axis && found ? grown(placement) : placement;
@@ -114,7 +114,7 @@ class Guide {
   }
 
   // By turns the faces that the group keeps, and the placement that suits them, ever stricter.
-  GroupPlacement settled(const GroupPlacement& given) {
+  GroupPlacement refined(const GroupPlacement& given) {
     const SurfacePatch around = surroundings(prepared_, whole_, given, hint_.seeds, options_.tolerance, context_);
     GroupPlacement placement = given;
     if (refines_) {
@@ -149,7 +149,7 @@ class Guide {
   GroupPlacement grown(const GroupPlacement& core) {
     if (hint_.group && *hint_.group == core.group) return core;
     const SurfacePatch patch = patch_of(faces_, options_.samples);
-    if (hint_.group) return settled(placed(*hint_.group, core, patch));
+    if (hint_.group) return refined(placed(*hint_.group, core, patch));
     if (!refines_) return core;
     GroupHints hints;
     hints.axes.push_back(core.frame.col(2));
@@ -158,7 +158,7 @@ class Guide {
     const bool holds =
         contains_group(own->placement, core, patch.moments.centroid, patch.moments.radius, 2 * patch.tolerance);
     if (!holds) return core;
-    return settled(own->placement);
+    return refined(own->placement);
   }
 
   // The group about the core's axis: its centre there and its direction across are looked for.
@@ -218,7 +218,7 @@ class Guide {
     GroupPlacement placement{*hint_.group, GroupFrame::Identity(), point_};
     if (own && polyhedral(own->placement.group)) placement.frame = own->placement.frame;
     if (own && refines_) placement.centre = own->placement.centre;
-    return settled(placement);
+    return refined(placement);
   }
 
   GrownRegion finished(const GroupPlacement& placement) {

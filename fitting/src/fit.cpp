@@ -11,15 +11,15 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "fit_loop.h"
-#include "fit_starts.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
-#include "joined_scans.h"
-#include "other_scale.h"
-#include "placed_scan.h"
 #include "relaxation.h"
 #include "solver/fit_system.h"
 #include "stage_clock.h"
+#include "start/fit_starts.h"
+#include "start/joined_scans.h"
+#include "start/other_scale.h"
+#include "start/placed_scan.h"
 
 namespace orbifit {
 
@@ -27,8 +27,8 @@ namespace {
 
 // Share of explained points of a scan from which what is not the template's has been taken: a scan of something else,
 // onto which the template was put as well as can be, leaves more.
-constexpr double kLeastOfPlaced = 0.8;
-constexpr double kLeastSeen = 0.04;    // of the fitted surface: an edge lies along any line
+constexpr double kMinOfPlaced = 0.8;
+constexpr double kMinSeen = 0.04;      // of the fitted surface: an edge lies along any line
 constexpr double kSofter = 0.75;       // of the levels: where fits of a shape that is known begin
 constexpr double kWell = 0.995;        // confidence from which another scale is not tried
 constexpr double kWorthwhile = 0.005;  // what another scale, or a place that suits the template less, must explain more
@@ -154,8 +154,8 @@ void conclude(const FitOptions& options, FitResult& result) {
   const double explained = explained_share(result);
   const double seen = 1 - result.hidden_fraction;
   const bool explains =
-      explained >= options.min_inlier_ratio && (result.placements.empty() || result.inlier_ratio >= kLeastOfPlaced);
-  result.converged = !result.iterations.empty() && explains && seen >= kLeastSeen;
+      explained >= options.min_inlier_ratio && (result.placements.empty() || result.inlier_ratio >= kMinOfPlaced);
+  result.converged = !result.iterations.empty() && explains && seen >= kMinSeen;
   if (result.iterations.empty() || result.converged) return;
   const auto percent = [](double fraction) { return std::to_string(static_cast<int>(100 * fraction)) + " % of the "; };
   result.stopped_because +=
@@ -226,7 +226,7 @@ Trial better_in_doubt(const FitInput& input, const FitOptions& options, const Ru
   const FitResult& told = trial.best.result;
   const bool found = !told.placements.empty();
   if (!options.place || found || input.landmarks.empty() || !input.handles.empty()) return trial;
-  if (told.inlier_ratio >= kLeastOfPlaced && explained_share(told) >= options.min_inlier_ratio) return trial;
+  if (told.inlier_ratio >= kMinOfPlaced && explained_share(told) >= options.min_inlier_ratio) return trial;
   FitInput again = input;
   again.subspace = trial.input.subspace;
   Trial other = trial_of(again, options, true, context, clock);

@@ -17,14 +17,14 @@ constexpr double kFirstReach = 0.15;  // of the diagonal: correspondences farthe
 // would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
 constexpr double kFirstRobust = 0.05;
 constexpr double kSoftRobust = 0.02;
-constexpr std::array<double, 3> kSettling{0.02, 0.012, 0.007};
+constexpr std::array<double, 3> kConverging{0.02, 0.012, 0.007};
 // The energy weighs data of this noise, a fraction of the diagonal, as the least stiffness is meant for; noisier data
 // count by the inverse of their variance, up to a share of the first stiffness. What is left unexplained where the
 // stiffness has fallen so far tells of noise that neighbours share, which is not seen among them.
 constexpr double kLittleNoise = 0.001;
 constexpr double kStiffest = 0.05;
-constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is settled by then
-constexpr double kStill = 1e-4;          // of the diagonal: the fit has settled when no sample moves more,
+constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is known by then
+constexpr double kStill = 1e-4;          // of the diagonal: the fit has converged when no sample moves more,
 constexpr double kGain = 0.02;           // or when so many steps in turn lowered the energy by less than this share;
 constexpr double kLastGain = 0.002;      // in the end
 constexpr int kStalled = 3;
@@ -175,7 +175,7 @@ FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double
   return record;
 }
 
-std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations) {
+std::string FitLoop::minimise(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations) {
   struct Best {
     FitState state;
     DeformationSystem::Rotations rotations;
@@ -205,13 +205,13 @@ std::string FitLoop::settle(FitState& state, const Stage& now, double gain, std:
     }
     if (stalled >= kStalled) {
       iterations.back().seconds = clock.seconds();
-      reason = "settled: the energy no longer falls";
+      reason = "converged: the energy no longer falls";
       break;
     }
     step(state, best->matches, now, share, damping, iterations.back());
     iterations.back().seconds = clock.seconds();
     if (iterations.back().change < kStill) {
-      reason = "settled: no sample moves by more than 0.01 % of the diagonal";
+      reason = "converged: no sample moves by more than 0.01 % of the diagonal";
       break;
     }
   }
@@ -247,11 +247,11 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   now.every = 1;
   now.scale_open = scale_open;
   now.others_open = true;
-  for (const double robust : kSettling) {
+  for (const double robust : kConverging) {
     now.robust = robust * size_;
-    // Settled once, the fit has reached what it had left unexplained for being on its way.
-    if (robust == kSettling[1]) now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
-    reason = settle(state, now, robust == kSettling.back() ? kLastGain : kGain, iterations);
+    // Converged once, the fit has reached what it had left unexplained for being on its way.
+    if (robust == kConverging[1]) now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
+    reason = minimise(state, now, robust == kConverging.back() ? kLastGain : kGain, iterations);
   }
   return reason;
 }

@@ -8,12 +8,12 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
-#include "placed_scan.h"
 #include "registration/correspondences.h"
 #include "scan/scan_preparation.h"
 #include "solver/deformation_system.h"
 #include "solver/pulls.h"
 #include "solver/scan_views.h"
+#include "start/placed_scan.h"
 #include "symmetry/moving_surface.h"
 
 namespace orbifit {
@@ -78,7 +78,7 @@ class FitLoop {
   void step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
             FitIteration& record);
   // Steps that lower the energy of one stage, until it stalls.
-  std::string settle(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
+  std::string minimise(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
   void move_to(const FitState& state);
   // A length of the template's as the fit began, in its units now.
   double unit(const FitState& state) const { return first_scale_ / state.pose.scale; }
@@ -97,7 +97,7 @@ class FitLoop {
   Mesh deformed_;
   MovingSurface surface_;  // of deformed_
   std::vector<int> likely_;
-  std::optional<bool> cut_off_;  // what viewpoints saw, once the pose is settled
+  std::optional<bool> cut_off_;  // what viewpoints saw, once the pose is known
 };
 
 }  // namespace orbifit

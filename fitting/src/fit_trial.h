@@ -4,8 +4,8 @@
 #include "orbifit/model/run_context.h"
 
 #include "fit_loop.h"
-#include "placed_scan.h"
 #include "solver/fit_system.h"
+#include "start/placed_scan.h"
 
 namespace orbifit {
 

@@ -57,13 +57,13 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
 
 void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
                   FitResult& result) {
-  constexpr int kMostRelaxations = 5;
+  constexpr int kMaxRelaxations = 5;
   const Mesh free = free_fit(input, start, options, context);
   for (int round = 0;; ++round) {
     std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);
     if (round == 0) result.groups = groups;
     std::erase_if(groups, [](const GroupAgreement& group) { return !group.disagrees; });
-    if (!options.drop_unsupported || groups.empty() || round == kMostRelaxations) return;
+    if (!options.drop_unsupported || groups.empty() || round == kMaxRelaxations) return;
     leave_out(groups, input, start, options, context, result);
   }
 }

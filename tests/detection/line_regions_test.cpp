@@ -11,10 +11,10 @@
 
 #include "group/verification.h"
 #include "search/axis_regions.h"
-#include "search/joined_groups.h"
+#include "search/generated_groups.h"
+#include "search/maximal_subgroups.h"
 #include "search/plane_regions.h"
 #include "search/revolution_regions.h"
-#include "search/wider_subgroups.h"
 #include "shapes.h"
 #include "support/axial_groups.h"
 #include "support/own_group.h"
@@ -244,9 +244,9 @@ std::vector<FoundRegion> wider_than_prism(const Screened& screened, int order, c
   return screened.wider({known});
 }
 
-class WiderSubgroups : public testing::TestWithParam<Stacked> {};
+class MaximalSubgroups : public testing::TestWithParam<Stacked> {};
 
-TEST_P(WiderSubgroups, KeepWhatTheGroupDoesNot) {
+TEST_P(MaximalSubgroups, KeepWhatTheGroupDoesNot) {
   const auto& [order, turn, both] = GetParam();
   const Mesh lower = test::prism(order, 1, 0.8);
   const Mesh upper = test::moved(test::prism(order, 0.7, 0.9), test::shift(0, 0, 0.85));
@@ -257,7 +257,7 @@ TEST_P(WiderSubgroups, KeepWhatTheGroupDoesNot) {
   EXPECT_NEAR(screened.share_of(found.front().faces), 1, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Prisms, WiderSubgroups,
+INSTANTIATE_TEST_SUITE_P(Prisms, MaximalSubgroups,
                          testing::Values(Stacked{3, 0, "C3v"}, Stacked{5, 0, "C5v"}, Stacked{6, 0, "C6v"},
                                          Stacked{8, 0, "C8v"}, Stacked{5, 11, "C5"}, Stacked{6, 11, "C6"}),
                          [](const auto& each) { return std::string(each.param.both); });

@@ -69,7 +69,7 @@ TEST_P(FitOfModel, KeepsTheWholesGroupExactly) {
 }
 
 TEST_P(FitOfModel, ComesToRest) {
-  EXPECT_EQ(result_.stopped_because.substr(0, 7), "settled") << result_.stopped_because;
+  EXPECT_EQ(result_.stopped_because.substr(0, 9), "converged") << result_.stopped_because;
   // Steps that do not lower the energy are taken back, so that it ends as low as it ever was with what was far then.
   const FitIteration& last = result_.iterations.back();
   EXPECT_LT(last.energy, result_.iterations.front().energy);

@@ -7,7 +7,7 @@ namespace orbifit::editor {
 
 namespace {
 
-constexpr std::size_t kMostImages = 600;
+constexpr std::size_t kMaxImages = 600;
 constexpr int kAroundCircle = 48;  // images that stand for a continuum
 
 // Of a finite group its elements; of one about an axis rotations by equal angles. None for spheres.
@@ -62,7 +62,7 @@ std::vector<SurfacePoint> SymmetricImages::orbit(const SurfacePoint& point) cons
         const SurfaceIndex::Nearest nearest = surface_.nearest(image, reach_);
         if (nearest.face < 0) continue;
         result.push_back({nearest.face, nearest.barycentric, image});
-        if (result.size() >= kMostImages) return result;
+        if (result.size() >= kMaxImages) return result;
       }
     }
   }

@@ -61,7 +61,29 @@ py::dict entry_of(const RegionResidual& region, bool deformed) {
   return entry;
 }
 
-void define_check(py::module_& module) {
+std::shared_ptr<Check> check(const MeshLike& mesh_like, const Annotation& annotation,
+                             const std::optional<MeshLike>& deformed_like, const std::string& mode, std::uint64_t seed,
+                             std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
+  const MeshPointer mesh = mesh_from(mesh_like);
+  require_fit(annotation.value, *mesh);
+  const CarriedMotions motions = motions_from(mode);
+  MeshPointer deformed;
+  if (deformed_like) {
+    deformed = mesh_from(*deformed_like);
+    if (deformed->vertices.rows() != mesh->vertices.rows() || deformed->faces.rows() != mesh->faces.rows() ||
+        deformed->faces != mesh->faces) {
+      throw InputError("", "deformed", "is no deformation of the mesh: its faces are others");
+    }
+  }
+  return std::make_shared<Check>(Check{run({seed, threads, timeout, progress},
+                                           [&](RunContext& context) {
+                                             return symmetry_residual(*mesh, annotation.value, deformed.get(), motions,
+                                                                      context);
+                                           }),
+                                       deformed != nullptr});
+}
+
+void define_check_report(py::module_& module) {
   py::class_<Check, std::shared_ptr<Check>>(module, "CheckReport",
                                             "How far regions and patterns are from symmetric. Distances are fractions "
                                             "of the diagonal.")
@@ -100,37 +122,17 @@ void define_check(py::module_& module) {
         return "<orbifit.CheckReport: residual " + py::str(py::float_(worst_of(check))).cast<std::string>() + ", " +
                count_text(check.report.regions.size(), "region") + ">";
       });
-  module.def(
-      "check",
-      [](const MeshLike& mesh_like, const Annotation& annotation, const std::optional<MeshLike>& deformed_like,
-         const std::string& mode, std::uint64_t seed, std::optional<int> threads, std::optional<double> timeout,
-         const Progress& progress) {
-        const MeshPointer mesh = mesh_from(mesh_like);
-        require_fit(annotation.value, *mesh);
-        const CarriedMotions motions = motions_from(mode);
-        MeshPointer deformed;
-        if (deformed_like) {
-          deformed = mesh_from(*deformed_like);
-          if (deformed->vertices.rows() != mesh->vertices.rows() || deformed->faces.rows() != mesh->faces.rows() ||
-              deformed->faces != mesh->faces) {
-            throw InputError("", "deformed", "is no deformation of the mesh: its faces are others");
-          }
-        }
-        return std::make_shared<Check>(Check{run({seed, threads, timeout, progress},
-                                                 [&](RunContext& context) {
-                                                   return symmetry_residual(*mesh, annotation.value, deformed.get(),
-                                                                            motions, context);
-                                                 }),
-                                             deformed != nullptr});
-      },
-      py::arg("mesh"), py::arg("annotation"), py::arg("deformed") = py::none(), py::kw_only(),
-      py::arg("mode") = "floating", seed_argument(), threads_argument(), timeout_argument(), progress_argument(),
-      "Measures how symmetric each region is, at rest or after a deformation.\n\n"
-      "Args:\n"
-      "    deformed: the same mesh after a deformation, or its vertices with the same faces.\n"
-      "    mode: how the groups may move along: 'fixed', 'posed', 'floating' or 'moving'.\n" ORBIFIT_RUN_DOC
-      "\nRaises:\n"
-      "    InputError: a deformed mesh with other faces, an annotation of another mesh.");
+}
+
+void define_check(py::module_& module) {
+  module.def("check", &check, py::arg("mesh"), py::arg("annotation"), py::arg("deformed") = py::none(), py::kw_only(),
+             py::arg("mode") = "floating", seed_argument(), threads_argument(), timeout_argument(), progress_argument(),
+             "Measures how symmetric each region is, at rest or after a deformation.\n\n"
+             "Args:\n"
+             "    deformed: the same mesh after a deformation, or its vertices with the same faces.\n"
+             "    mode: how the groups may move along: 'fixed', 'posed', 'floating' or 'moving'.\n" ORBIFIT_RUN_DOC
+             "\nRaises:\n"
+             "    InputError: a deformed mesh with other faces, an annotation of another mesh.");
 }
 
 std::shared_ptr<Symmetrized> symmetrize(const MeshPointer& mesh, const SymmetryAnnotation& annotation,
@@ -195,6 +197,7 @@ void define_symmetrize(py::module_& module) {
 }  // namespace
 
 void define_checks(py::module_& module) {
+  define_check_report(module);
   define_check(module);
   define_symmetrize(module);
 }

@@ -95,6 +95,52 @@ MeshPointer mesh_from(const py::handle& mesh_or_vertices, const py::handle& face
   return faces.is_none() ? mesh_from(mesh_or_vertices) : mesh_from_arrays(mesh_or_vertices, faces);
 }
 
+namespace {
+
+std::shared_ptr<Mesh> with_vertices(const Mesh& mesh, const ArrayLike& vertices) {
+  Mesh moved = mesh;
+  moved.vertices = points_from(vertices, "vertices");
+  if (moved.vertices.rows() != mesh.vertices.rows()) {
+    throw InputError("", "vertices",
+                     "has " + std::to_string(moved.vertices.rows()) + " rows; the mesh has " +
+                         std::to_string(mesh.vertices.rows()) + " vertices");
+  }
+  return std::make_shared<Mesh>(std::move(moved));
+}
+
+void define_mesh_files(py::module_& module) {
+  module.def(
+      "read_mesh",
+      [](const PathLike& file) {
+        const std::filesystem::path path = path_from(file);
+        const py::gil_scoped_release release;
+        return std::make_shared<Mesh>(read_mesh(path));
+      },
+      py::arg("file"),
+      "Reads OBJ, OFF, PLY, STL, glTF or GLB by the file's ending; order and double precision are kept.\n\n"
+      "Raises:\n"
+      "    InputError: with file, line or element and reason.");
+  module.def(
+      "write_mesh",
+      [](const PathLike& file, const MeshLike& mesh, const std::optional<ArrayLike>& colours) {
+        const MeshPointer written = mesh_from(mesh);
+        std::optional<Points> colour;
+        if (colours) colour = points_from(*colours, "colours");
+        const std::filesystem::path path = path_from(file);
+        const py::gil_scoped_release release;
+        write_mesh(path, *written, colour);
+      },
+      py::arg("file"), py::arg("mesh"), py::arg("colours") = py::none(),
+      "Writes OBJ, OFF, PLY, STL or GLB by the file's ending, whole or not at all.\n\n"
+      "Args:\n"
+      "    colours: (m, 3) for faces or (n, 3) for vertices, in [0, 1]; written by PLY only.\n\n"
+      "Raises:\n"
+      "    InputError: the file cannot be written.\n"
+      "    UsageError: an unknown ending.");
+}
+
+}  // namespace
+
 void define_meshes(py::module_& module) {
   py::class_<Mesh, std::shared_ptr<Mesh>>(module, "Mesh",
                                           "A triangle mesh: vertices and faces in their given order.\n\n"
@@ -125,19 +171,7 @@ void define_meshes(py::module_& module) {
           "Length of the bounding box' diagonal, in the mesh's unit.")
       .def_property_readonly(
           "area", [](const Mesh& mesh) { return face_areas(mesh).sum(); }, "Of all faces, in the mesh's unit squared.")
-      .def(
-          "with_vertices",
-          [](const Mesh& mesh, const ArrayLike& vertices) {
-            Mesh moved = mesh;
-            moved.vertices = points_from(vertices, "vertices");
-            if (moved.vertices.rows() != mesh.vertices.rows()) {
-              throw InputError("", "vertices",
-                               "has " + std::to_string(moved.vertices.rows()) + " rows; the mesh has " +
-                                   std::to_string(mesh.vertices.rows()) + " vertices");
-            }
-            return std::make_shared<Mesh>(std::move(moved));
-          },
-          py::arg("vertices"), "The same faces with the vertices elsewhere, (n, 3).")
+      .def("with_vertices", &with_vertices, py::arg("vertices"), "The same faces with the vertices elsewhere, (n, 3).")
       .def(
           "save", [](const Mesh& mesh, const PathLike& file) { write_mesh(path_from(file), mesh); }, py::arg("file"),
           "Writes OBJ, OFF, PLY, STL or GLB by the file's ending: see :func:`write_mesh`.")
@@ -149,34 +183,7 @@ void define_meshes(py::module_& module) {
                     std::to_string(mesh.faces.rows()) + " faces>";
            })
       .def(py::pickle(&state_of, &mesh_from_state));
-  module.def(
-      "read_mesh",
-      [](const PathLike& file) {
-        const std::filesystem::path path = path_from(file);
-        const py::gil_scoped_release release;
-        return std::make_shared<Mesh>(read_mesh(path));
-      },
-      py::arg("file"),
-      "Reads OBJ, OFF, PLY, STL, glTF or GLB by the file's ending; order and double precision are kept.\n\n"
-      "Raises:\n"
-      "    InputError: with file, line or element and reason.");
-  module.def(
-      "write_mesh",
-      [](const PathLike& file, const MeshLike& mesh, const std::optional<ArrayLike>& colours) {
-        const MeshPointer written = mesh_from(mesh);
-        std::optional<Points> colour;
-        if (colours) colour = points_from(*colours, "colours");
-        const std::filesystem::path path = path_from(file);
-        const py::gil_scoped_release release;
-        write_mesh(path, *written, colour);
-      },
-      py::arg("file"), py::arg("mesh"), py::arg("colours") = py::none(),
-      "Writes OBJ, OFF, PLY, STL or GLB by the file's ending, whole or not at all.\n\n"
-      "Args:\n"
-      "    colours: (m, 3) for faces or (n, 3) for vertices, in [0, 1]; written by PLY only.\n\n"
-      "Raises:\n"
-      "    InputError: the file cannot be written.\n"
-      "    UsageError: an unknown ending.");
+  define_mesh_files(module);
 }
 
 }  // namespace orbifit::python

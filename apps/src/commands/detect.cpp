@@ -20,6 +20,8 @@
 
 #include "../commands.h"
 #include "../picture_options.h"
+#include "../region_colours.h"
+#include "../region_listing.h"
 #include "files/file.h"
 
 namespace orbifit::commands {
@@ -32,76 +34,6 @@ struct DetectArguments {
   bool points = false;
   DetectOptions options;
 };
-
-double area_fraction(const Eigen::VectorXd& areas, const std::vector<int>& faces) {
-  double area = 0;
-  for (const int face : faces) area += areas[face];
-  return areas.sum() > 0 ? area / areas.sum() : 0;
-}
-
-nlohmann::ordered_json to_json(const SymmetryAnnotation& found, const Mesh& mesh) {
-  const Eigen::VectorXd areas = face_areas(mesh);
-  nlohmann::ordered_json regions = nlohmann::ordered_json::array();
-  for (const Region& region : found.regions) {
-    regions.push_back({{"id", region.id},
-                       {"name", region.name},
-                       {"group", region.group.symbol()},
-                       {"faces", region.faces.size()},
-                       {"area_fraction", area_fraction(areas, region.faces)},
-                       {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
-                       {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
-  }
-  nlohmann::ordered_json patterns = nlohmann::ordered_json::array();
-  for (const Pattern& pattern : found.patterns) {
-    patterns.push_back({{"id", pattern.id},
-                        {"name", pattern.name},
-                        {"kind", to_string(pattern.kind)},
-                        {"instances", pattern.instances.size()},
-                        {"residual", {{"rms", pattern.residual.rms}, {"max", pattern.residual.max}}}});
-  }
-  return {{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
-}
-
-std::string to_text(const SymmetryAnnotation& found, const Mesh& mesh) {
-  if (found.regions.empty() && found.patterns.empty()) {
-    return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
-  }
-  const Eigen::VectorXd areas = face_areas(mesh);
-  // What is left by rounding is no news here; `check` shows every digit.
-  const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
-  std::string text;
-  if (!found.regions.empty()) {
-    TextTable table({"region", "group", "area %", "faces", "parent", "residual max %", "name"});
-    for (const Region& region : found.regions) {
-      table.add({std::to_string(region.id), region.group.symbol(), percent(area_fraction(areas, region.faces)),
-                 std::to_string(region.faces.size()), region.parent ? std::to_string(*region.parent) : "-",
-                 percent(region.residual.max), region.name});
-    }
-    text += table.text();
-  }
-  if (!found.patterns.empty()) {
-    TextTable table({"pattern", "kind", "instances", "residual max %", "name"});
-    for (const Pattern& pattern : found.patterns) {
-      table.add({std::to_string(pattern.id), to_string(pattern.kind), std::to_string(pattern.instances.size()),
-                 percent(pattern.residual.max), pattern.name});
-    }
-    text += (text.empty() ? "" : "\n") + table.text();
-  }
-  return text + "Residuals are in percent of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
-}
-
-// Every region's colour on the faces for which it is the smallest region; clay elsewhere.
-Points region_colours(const Mesh& mesh, const std::vector<Region>& regions) {
-  Points colours = Points::Constant(mesh.faces.rows(), 3, 0.75);
-  std::vector<const Region*> by_size;
-  for (const Region& region : regions) by_size.push_back(&region);
-  std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const Region* region) { return region->faces.size(); });
-  for (const Region* region : by_size) {
-    const Eigen::RowVector3d colour = region_colour(region->id).cast<double>();
-    for (const int face : region->faces) colours.row(face) = colour;
-  }
-  return colours;
-}
 
 void write_preview(const DetectArguments& arguments, const Mesh& mesh, const SymmetryAnnotation& found,
                    const RunContext& run) {
@@ -172,33 +104,6 @@ class StageTimes {
   std::vector<std::pair<std::string, double>> stages_;
 };
 
-nlohmann::ordered_json points_json(const SymmetryAnnotation& found) {
-  nlohmann::ordered_json regions = nlohmann::ordered_json::array();
-  for (const Region& region : found.regions) {
-    regions.push_back({{"id", region.id},
-                       {"name", region.name},
-                       {"group", region.group.symbol()},
-                       {"points", region.faces.size()},
-                       {"point_fraction", static_cast<double>(region.faces.size()) / found.mesh_faces},
-                       {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
-                       {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
-  }
-  return {{"points", found.mesh_faces}, {"tolerance", found.tolerance}, {"regions", regions}};
-}
-
-std::string points_text(const SymmetryAnnotation& found) {
-  const std::string tolerance = short_number(100 * found.tolerance) + " % of the diagonal.\n";
-  if (found.regions.empty()) return "No symmetry within " + tolerance;
-  TextTable table({"region", "group", "points", "points %", "parent", "residual rms %", "name"});
-  for (const Region& region : found.regions) {
-    table.add({std::to_string(region.id), region.group.symbol(), std::to_string(region.faces.size()),
-               short_number(100.0 * static_cast<double>(region.faces.size()) / found.mesh_faces, 3),
-               region.parent ? std::to_string(*region.parent) : "-", short_number(100 * region.residual.rms, 3),
-               region.name});
-  }
-  return table.text() + "Judged within " + tolerance;
-}
-
 ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& context) {
   if (!arguments.preview.empty() || !arguments.colour.empty()) {
     throw UsageError("--preview and --colour show surfaces; they cannot be used with --points");
@@ -213,20 +118,16 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
   const SymmetryAnnotation found = detect_points(scan, chosen, context.run);
   if (!arguments.explain.empty()) write_explanation(arguments.explain, explanation);
   if (!arguments.output.empty()) write_annotation(arguments.output, found);
-  print(context, context.json ? points_json(found).dump(2) + "\n" : points_text(found));
+  print(context, context.json ? point_listing_json(found).dump(2) + "\n" : point_listing(found));
   return kDone;
 }
 
-}  // namespace
-
-CommandBody detect(CLI::App& app) {
-  const auto arguments = std::make_shared<DetectArguments>();
-  DetectOptions& options = arguments->options;
-  app.add_option("MESH", arguments->mesh, "Mesh whose symmetries are sought; with --points, a scan")
+void add_options(CLI::App& app, DetectArguments& arguments) {
+  DetectOptions& options = arguments.options;
+  app.add_option("MESH", arguments.mesh, "Mesh whose symmetries are sought; with --points, a scan")
       ->required()
       ->type_name("FILE");
-  app.add_option("-o,--output", arguments->output,
-                 "Annotation to write (.json); without it the regions are only listed")
+  app.add_option("-o,--output", arguments.output, "Annotation to write (.json); without it the regions are only listed")
       ->type_name("FILE");
   app.add_option(
          "--tolerance", options.tolerance,
@@ -234,7 +135,7 @@ CommandBody detect(CLI::App& app) {
          "diagonal of the mesh's bounding box")
       ->capture_default_str();
   app.add_flag(
-      "--points", arguments->points,
+      "--points", arguments.points,
       "The file is a scan (PLY, PCD, XYZ, PTS), which may have been taken from one side only. In the annotation, face "
       "numbers are then point numbers, and the numbers of vertices and of faces are both the number of points");
   app.add_option("--time-budget", options.time_budget,
@@ -245,45 +146,54 @@ CommandBody detect(CLI::App& app) {
   app.add_option("--samples", options.samples,
                  "Number of surface samples on which symmetries of the whole mesh are verified")
       ->capture_default_str();
-  app.add_option("--preview", arguments->preview,
+  app.add_option("--preview", arguments.preview,
                  "Pictures of all regions and patterns to write: one sheet (.png) or a page (.html)")
       ->type_name("FILE");
-  app.add_option("--colour,--color", arguments->colour, "Mesh coloured by region to write (.ply)")->type_name("FILE");
+  app.add_option("--colour,--color", arguments.colour, "Mesh coloured by region to write (.ply)")->type_name("FILE");
   app.add_option(
-         "--explain", arguments->explain,
+         "--explain", arguments.explain,
          "Folder to write what each stage kept and dropped, for which reason, and how long it took; created if missing")
       ->type_name("DIR");
-  add_up_option(app, arguments->up, "Upward direction, drawn in the preview and kept in the annotation");
-  return [arguments](CommandContext& context) {
-    arguments->options.validate();
-    if (!arguments->up.empty()) to_direction("--up", arguments->up);
-    if (!arguments->output.empty()) check_output(arguments->output, {".json"}, {arguments->mesh});
-    if (!arguments->preview.empty()) check_output(arguments->preview, {".png", ".html"}, {arguments->mesh});
-    if (!arguments->colour.empty()) check_output(arguments->colour, {".ply"}, {arguments->mesh});
-    if (arguments->points) return detect_in_points(*arguments, context);
-    const Mesh mesh = read_mesh(arguments->mesh);
-    context.run.check();
-    Explanation explanation;
-    DetectOptions chosen = arguments->options;
-    RunContext run = context.run;
-    std::optional<StageTimes> times;
-    if (!arguments->explain.empty()) {
-      chosen.explanation = &explanation;
-      times.emplace(run);
-    }
-    SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
-    if (!arguments->up.empty()) found.up = to_direction("--up", arguments->up);
-    if (times) {
-      write_explanation(arguments->explain, explanation);
-      times->write(arguments->explain);
-    }
-    // The pictures take time: stopped meanwhile, the command leaves nothing.
-    if (!arguments->preview.empty()) write_preview(*arguments, mesh, found, context.run);
-    if (!arguments->output.empty()) write_annotation(arguments->output, found);
-    if (!arguments->colour.empty()) write_mesh(arguments->colour, mesh, region_colours(mesh, found.regions));
-    print(context, context.json ? to_json(found, mesh).dump(2) + "\n" : to_text(found, mesh));
-    return kDone;
-  };
+  add_up_option(app, arguments.up, "Upward direction, drawn in the preview and kept in the annotation");
+}
+
+int run_detect(DetectArguments& arguments, CommandContext& context) {
+  arguments.options.validate();
+  if (!arguments.up.empty()) to_direction("--up", arguments.up);
+  if (!arguments.output.empty()) check_output(arguments.output, {".json"}, {arguments.mesh});
+  if (!arguments.preview.empty()) check_output(arguments.preview, {".png", ".html"}, {arguments.mesh});
+  if (!arguments.colour.empty()) check_output(arguments.colour, {".ply"}, {arguments.mesh});
+  if (arguments.points) return detect_in_points(arguments, context);
+  const Mesh mesh = read_mesh(arguments.mesh);
+  context.run.check();
+  Explanation explanation;
+  DetectOptions chosen = arguments.options;
+  RunContext run = context.run;
+  std::optional<StageTimes> times;
+  if (!arguments.explain.empty()) {
+    chosen.explanation = &explanation;
+    times.emplace(run);
+  }
+  SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
+  if (!arguments.up.empty()) found.up = to_direction("--up", arguments.up);
+  if (times) {
+    write_explanation(arguments.explain, explanation);
+    times->write(arguments.explain);
+  }
+  // The pictures take time: stopped meanwhile, the command leaves nothing.
+  if (!arguments.preview.empty()) write_preview(arguments, mesh, found, context.run);
+  if (!arguments.output.empty()) write_annotation(arguments.output, found);
+  if (!arguments.colour.empty()) write_mesh(arguments.colour, mesh, region_face_colours(mesh, found.regions));
+  print(context, context.json ? listing_json(found, mesh).dump(2) + "\n" : listing(found, mesh));
+  return kDone;
+}
+
+}  // namespace
+
+CommandBody detect(CLI::App& app) {
+  const auto arguments = std::make_shared<DetectArguments>();
+  add_options(app, *arguments);
+  return [arguments](CommandContext& context) { return run_detect(*arguments, context); };
 }
 
 }  // namespace orbifit::commands

@@ -89,104 +89,134 @@ std::string to_text(const FitArguments& arguments, const FitResult& result, cons
   return text;
 }
 
+void add_file_options(CLI::App& app, FitArguments& arguments) {
+  app.add_option("TEMPLATE", arguments.mesh, "Mesh to deform and place so that it fits the scan")->required();
+  add_scan_options(app, arguments.scans);
+  app.add_option("--annotation", arguments.annotation,
+                 "The template's annotation; without it, the symmetries are detected")
+      ->type_name("FILE");
+  app.add_option("-o,--output", arguments.output, "Fitted mesh to write")->required()->type_name("FILE");
+  app.add_option("--report", arguments.report, "Report with all figures to write (.json)")->type_name("FILE");
+  app.add_option("--html", arguments.html, "Page with figures and pictures to write (.html)")->type_name("FILE");
+  app.add_option("--annotation-out", arguments.annotation_output, "Annotation of the fitted mesh to write (.json)")
+      ->type_name("FILE");
+  app.add_option("--landmarks", arguments.landmarks, "Vertices of the template and their positions in the scan (.json)")
+      ->type_name("FILE");
+  app.add_option("--handles", arguments.handles, "Handles and their motions (.json)")->type_name("FILE");
+}
+
+void add_fit_options(CLI::App& app, FitArguments& arguments) {
+  app.add_option("--scale", arguments.scale, "Size of the template in the scan: any, or that of its file (fixed)")
+      ->check(CLI::IsMember({"any", "fixed"}))
+      ->capture_default_str();
+  app.add_flag("--aligned", arguments.aligned,
+               "The scan is in the template's frame: the pose is neither sought nor refined");
+  app.add_option(
+         "--max-residual", arguments.max_residual,
+         "Write no mesh and exit with 1 if the symmetry residual of the fit exceeds this fraction of the diagonal")
+      ->type_name("R");
+  add_without_option(app, arguments.without);
+  app.add_flag("--drop-unsupported", arguments.options.drop_unsupported,
+               "Drop the groups that an unconstrained fit to the scan contradicts");
+  app.add_flag("--auto-relax", arguments.options.drop_unsupported)->group("");  // what --drop-unsupported was called
+  app.add_flag("--no-contacts", arguments.no_contacts, "Allow parts of the template that touch to come apart");
+  app.add_option("--stiffness", arguments.options.last_stiffness,
+                 "Stiffness in the last iterations; a smaller value follows the scan more closely")
+      ->capture_default_str();
+  app.add_option("--scan-points", arguments.options.scan_points, "Number of scan points used")->capture_default_str();
+  add_up_option(app, arguments.up, "Upward direction of the pictures");
+  add_subspace_options(app, arguments.subspace);
+}
+
+void choose_options(const CLI::App& app, FitArguments& arguments) {
+  if (app.count("--max-residual") > 0 && !(arguments.max_residual >= 0)) {
+    throw UsageError("--max-residual is " + short_number(arguments.max_residual) + ": must be at least 0");
+  }
+  FitOptions& chosen = arguments.options;
+  chosen.place = !arguments.aligned && arguments.handles.empty();
+  chosen.align = !arguments.aligned;
+  chosen.fixed_scale = arguments.scale == "fixed";
+  chosen.contacts = !arguments.no_contacts;
+  chosen.subspace = arguments.subspace.options;
+  chosen.validate();
+  if (!arguments.up.empty()) to_direction("--up", arguments.up);
+}
+
+SymmetryAnnotation template_annotation(const FitArguments& arguments, const Mesh& mesh, RunContext& run) {
+  SymmetryAnnotation annotation = arguments.annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, run)
+                                                               : read_annotation(arguments.annotation, mesh);
+  return arguments.without.empty() ? annotation : without(arguments.without, annotation);
+}
+
+// Builds the subspace; `annotation`, the input's, becomes what of it is consistent.
+StageTime build(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input, RunContext& run) {
+  const auto began = std::chrono::steady_clock::now();
+  input.subspace =
+      std::make_shared<Subspace>(build_consistent(input.mesh, annotation, arguments.options.subspace, run));
+  return {"subspace", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()};
+}
+
+FitResult build_and_fit(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input,
+                        RunContext& run) {
+  const StageTime building = build(arguments, annotation, input, run);
+  if (!arguments.landmarks.empty()) input.landmarks = read_landmarks(arguments.landmarks, input.mesh);
+  if (!arguments.handles.empty()) input.handles = read_handles(arguments.handles, input.mesh).handles;
+  FitResult result = orbifit::fit(input, arguments.options, run);
+  result.times.insert(result.times.begin(), building);
+  return result;
+}
+
+// \throw NoResultError  when the fit failed or misses --max-residual
+void require_fit(const CLI::App& app, const FitArguments& arguments, const FitResult& result) {
+  if (!result.converged) {
+    throw NoResultError("the fit of " + arguments.mesh + " to " + named(arguments.scans.files) +
+                        " failed: " + result.stopped_because);
+  }
+  if (app.count("--max-residual") > 0 && !(result.field_residual <= arguments.max_residual)) {
+    throw NoResultError("the fit is only " + exactness(result.field_residual) + ", above --max-residual " +
+                        short_number(arguments.max_residual) + "; no mesh was written");
+  }
+}
+
+int run_fit(const CLI::App& app, FitArguments& arguments, CommandContext& context) {
+  choose_options(app, arguments);
+  check_outputs(arguments);
+  FitOptions& chosen = arguments.options;
+  const Mesh mesh = read_mesh(arguments.mesh);
+  chosen.subspace = subspace_options(arguments.subspace, mesh, context.run);
+  const std::vector<PointCloud> scans = read_scans(arguments.scans, arguments.aligned, context);
+  tell_used(arguments.scans, scans, chosen.scan_points, context.run);
+  SymmetryAnnotation annotation = template_annotation(arguments, mesh, context.run);
+  chosen.judge_groups = !arguments.report.empty() || !arguments.html.empty() || context.json;
+  FitInput input{mesh, annotation, scans.front(), Similarity{}};
+  for (std::size_t i = 1; i < scans.size(); ++i) input.others.push_back(&scans[i]);
+  const FitResult result = build_and_fit(arguments, annotation, input, context.run);
+  const SymmetryReport symmetry =
+      symmetry_residual(mesh, result.rest_annotation, &result.fitted, CarriedMotions::moving, context.run);
+  context.run.check();
+  // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
+  if (!arguments.report.empty()) write_file(arguments.report, fit_to_json(result, symmetry).dump(2) + "\n");
+  if (!arguments.html.empty()) {
+    const Eigen::Vector3d up = picture_up(arguments.up, mesh, arguments.mesh, &annotation);
+    write_file(arguments.html, fit_to_html(mesh, joined_scans(scans, result), result, symmetry, up, context.run));
+  }
+  require_fit(app, arguments, result);
+  if (result.field_residual > kExactResidual) {
+    context.run.message("warning: the fit is only " + exactness(result.field_residual));
+  }
+  write_edited(arguments.output, arguments.mesh, result.fitted, context.run);
+  if (!arguments.annotation_output.empty()) write_annotation(arguments.annotation_output, result.annotation);
+  print(context, context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(arguments, result, symmetry));
+  return kDone;
+}
+
 }  // namespace
 
 CommandBody fit(CLI::App& app) {
   const auto arguments = std::make_shared<FitArguments>();
-  FitOptions& options = arguments->options;
-  app.add_option("TEMPLATE", arguments->mesh, "Mesh to deform and place so that it fits the scan")->required();
-  add_scan_options(app, arguments->scans);
-  app.add_option("--annotation", arguments->annotation,
-                 "The template's annotation; without it, the symmetries are detected")
-      ->type_name("FILE");
-  app.add_option("-o,--output", arguments->output, "Fitted mesh to write")->required()->type_name("FILE");
-  app.add_option("--report", arguments->report, "Report with all figures to write (.json)")->type_name("FILE");
-  app.add_option("--html", arguments->html, "Page with figures and pictures to write (.html)")->type_name("FILE");
-  app.add_option("--annotation-out", arguments->annotation_output, "Annotation of the fitted mesh to write (.json)")
-      ->type_name("FILE");
-  app.add_option("--landmarks", arguments->landmarks,
-                 "Vertices of the template and their positions in the scan (.json)")
-      ->type_name("FILE");
-  app.add_option("--handles", arguments->handles, "Handles and their motions (.json)")->type_name("FILE");
-  app.add_option("--scale", arguments->scale, "Size of the template in the scan: any, or that of its file (fixed)")
-      ->check(CLI::IsMember({"any", "fixed"}))
-      ->capture_default_str();
-  app.add_flag("--aligned", arguments->aligned,
-               "The scan is in the template's frame: the pose is neither sought nor refined");
-  app.add_option(
-         "--max-residual", arguments->max_residual,
-         "Write no mesh and exit with 1 if the symmetry residual of the fit exceeds this fraction of the diagonal")
-      ->type_name("R");
-  add_without_option(app, arguments->without);
-  app.add_flag("--drop-unsupported", options.drop_unsupported,
-               "Drop the groups that an unconstrained fit to the scan contradicts");
-  app.add_flag("--auto-relax", options.drop_unsupported)->group("");  // what --drop-unsupported was called
-  app.add_flag("--no-contacts", arguments->no_contacts, "Allow parts of the template that touch to come apart");
-  app.add_option("--stiffness", options.last_stiffness,
-                 "Stiffness in the last iterations; a smaller value follows the scan more closely")
-      ->capture_default_str();
-  app.add_option("--scan-points", options.scan_points, "Number of scan points used")->capture_default_str();
-  add_up_option(app, arguments->up, "Upward direction of the pictures");
-  add_subspace_options(app, arguments->subspace);
-  return [arguments, &app](CommandContext& context) {
-    FitOptions& chosen = arguments->options;
-    const bool limited = app.count("--max-residual") > 0;
-    if (limited && !(arguments->max_residual >= 0)) {
-      throw UsageError("--max-residual is " + short_number(arguments->max_residual) + ": must be at least 0");
-    }
-    chosen.place = !arguments->aligned && arguments->handles.empty();
-    chosen.align = !arguments->aligned;
-    chosen.fixed_scale = arguments->scale == "fixed";
-    chosen.contacts = !arguments->no_contacts;
-    chosen.subspace = arguments->subspace.options;
-    chosen.validate();
-    if (!arguments->up.empty()) to_direction("--up", arguments->up);
-    check_outputs(*arguments);
-    const Mesh mesh = read_mesh(arguments->mesh);
-    chosen.subspace = subspace_options(arguments->subspace, mesh, context.run);
-    const std::vector<PointCloud> scans = read_scans(arguments->scans, arguments->aligned, context);
-    tell_used(arguments->scans, scans, chosen.scan_points, context.run);
-    SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
-                                                                  : read_annotation(arguments->annotation, mesh);
-    if (!arguments->without.empty()) annotation = without(arguments->without, annotation);
-    using Clock = std::chrono::steady_clock;
-    const auto began = Clock::now();
-    const auto subspace = std::make_shared<Subspace>(build_consistent(mesh, annotation, chosen.subspace, context.run));
-    const StageTime building{"subspace", std::chrono::duration<double>(Clock::now() - began).count()};
-    chosen.judge_groups = !arguments->report.empty() || !arguments->html.empty() || context.json;
-    FitInput input{mesh, annotation, scans.front(), Similarity{}};
-    for (std::size_t i = 1; i < scans.size(); ++i) input.others.push_back(&scans[i]);
-    input.subspace = subspace;
-    if (!arguments->landmarks.empty()) input.landmarks = read_landmarks(arguments->landmarks, mesh);
-    if (!arguments->handles.empty()) input.handles = read_handles(arguments->handles, mesh).handles;
-
-    FitResult result = orbifit::fit(input, chosen, context.run);
-    result.times.insert(result.times.begin(), building);
-    const SymmetryReport symmetry =
-        symmetry_residual(mesh, result.rest_annotation, &result.fitted, CarriedMotions::moving, context.run);
-    context.run.check();
-    // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
-    if (!arguments->report.empty()) write_file(arguments->report, fit_to_json(result, symmetry).dump(2) + "\n");
-    if (!arguments->html.empty()) {
-      const Eigen::Vector3d up = picture_up(arguments->up, mesh, arguments->mesh, &annotation);
-      write_file(arguments->html, fit_to_html(mesh, joined_scans(scans, result), result, symmetry, up, context.run));
-    }
-    if (!result.converged) {
-      throw NoResultError("the fit of " + arguments->mesh + " to " + named(arguments->scans.files) +
-                          " failed: " + result.stopped_because);
-    }
-    if (limited && !(result.field_residual <= arguments->max_residual)) {
-      throw NoResultError("the fit is only " + exactness(result.field_residual) + ", above --max-residual " +
-                          short_number(arguments->max_residual) + "; no mesh was written");
-    }
-    if (result.field_residual > kExactResidual) {
-      context.run.message("warning: the fit is only " + exactness(result.field_residual));
-    }
-    write_edited(arguments->output, arguments->mesh, result.fitted, context.run);
-    if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, result.annotation);
-    print(context, context.json ? fit_to_json(result, symmetry).dump(2) + "\n" : to_text(*arguments, result, symmetry));
-    return kDone;
-  };
+  add_file_options(app, *arguments);
+  add_fit_options(app, *arguments);
+  return [arguments, &app](CommandContext& context) { return run_fit(app, *arguments, context); };
 }
 
 }  // namespace orbifit::commands

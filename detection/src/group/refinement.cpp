@@ -143,8 +143,8 @@ struct Pairs {
 
 GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, const RunContext& context,
                       const RefinementOptions& options) {
-  constexpr double kStays = 0.02;    // tolerances
-  constexpr double kSettled = 1e-4;  // tolerances
+  constexpr double kStays = 0.02;      // tolerances
+  constexpr double kConverged = 1e-4;  // tolerances
   GroupPlacement placement = start;
   const double scale = std::max(patch.moments.radius, 1e-9);
   const Eigen::Index count = std::min<Eigen::Index>(patch.samples.points.rows(), options.samples);
@@ -158,7 +158,7 @@ GroupPlacement refine(const SurfacePatch& patch, const GroupPlacement& start, co
     const NormalEquations equations = pairs.sum(fitted_motions(placement), context);
     if (equations.weight < 20) break;
     const double moved = apply(equations, scale, placement);
-    if (progress >= 1 && moved < kSettled * patch.tolerance) break;
+    if (progress >= 1 && moved < kConverged * patch.tolerance) break;
     stays = stays || moved < kStays * patch.tolerance;
   }
   return placement;

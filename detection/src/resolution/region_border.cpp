@@ -93,7 +93,7 @@ std::vector<RegionBorder::Piece> RegionBorder::pieces_of(const std::vector<int>&
   return pieces;
 }
 
-std::vector<int> RegionBorder::settled(const FoundRegion& region, const RunContext& context) const {
+std::vector<int> RegionBorder::refined(const FoundRegion& region, const RunContext& context) const {
   std::vector<char> in(faces_of_.size(), 0);
   const std::vector<int> border = along_border(region, in);
   if (border.empty()) return fine_faces(region.faces);

@@ -23,7 +23,7 @@ class RegionBorder {
 
   /// \param region of the coarse mesh, in its frame \return faces of the fine mesh, ascending
   /// Costs O(R + B M) for R faces, B pieces along the border and M motions that judge the group.
-  std::vector<int> settled(const FoundRegion& region, const RunContext& context) const;
+  std::vector<int> refined(const FoundRegion& region, const RunContext& context) const;
 
  private:
   struct Piece {

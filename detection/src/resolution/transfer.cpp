@@ -55,7 +55,7 @@ class CarryBack {
     context_.progress("transfer to the fine mesh", 0.5);
     std::vector<std::string> objections(refined.size(), kNoTime);
     for_each(refined.size(), [&](std::size_t i) {
-      if (i == 0 || !late(1)) objections[i] = settle(refined[i], goals[i]);
+      if (i == 0 || !late(1)) objections[i] = accept(refined[i], goals[i]);
     });
     Findings result;
     for (std::size_t i = 0; i < refined.size(); ++i) {
@@ -121,7 +121,7 @@ class CarryBack {
 
   FoundRegion refined_on_fine(const FoundRegion& found) const {
     FoundRegion region = found;
-    region.faces = border_.settled(found, context_);
+    region.faces = border_.refined(found, context_);
     region.area = area_of(fine_, region.faces);
     region.placement.centre = prepared_.input_of_normalised(found.placement.centre);
     const SurfacePatch patch = on_whole(region);
@@ -137,7 +137,7 @@ class CarryBack {
 
   // Samples of the region, and the whole surface to find their images on: one index serves all regions.
   SurfacePatch on_whole(const FoundRegion& region) const {
-    SurfacePatch patch = sample_patch(fine_, region.faces, kPartSamples, options_.tolerance, context_, "carried back");
+    SurfacePatch patch = sample_patch(fine_, region.faces, kPartSamples, options_.tolerance, context_, "transfer");
     patch.index = fine_.index;
     return patch;
   }
@@ -170,15 +170,16 @@ class CarryBack {
 
   // Moves the region to where it is consistent with others, unless it fits far less well there, and verifies it. What
   // is to be said against it; empty where it stands.
-  std::string settle(FoundRegion& region, const GroupPlacement& goal) const {
+  std::string accept(FoundRegion& region, const GroupPlacement& goal) const {
     constexpr double kAsWell = 1.5;
-    constexpr double kNothing = 1e-9;
+    constexpr double kNegligible = 1e-9;
     SurfacePatch patch = make_patch(fine_, region.faces, is_whole(region) ? options_.samples : kPartSamples,
-                                    options_.tolerance, context_, "carried back");
+                                    options_.tolerance, context_, "transfer");
     mark_creases(patch.samples, patch.tolerance, patch.at_crease);
     mark_creases(patch.part_samples, patch.tolerance, patch.part_at_crease);
     const GroupPlacement alone = region.placement;
-    if (largest_residual(patch, goal) <= kAsWell * largest_residual(patch, alone) + kNothing) region.placement = goal;
+    if (largest_residual(patch, goal) <= kAsWell * largest_residual(patch, alone) + kNegligible)
+      region.placement = goal;
     Verification verification = verify_group(patch, region.placement, context_);
     if (!passes(verification)) {
       region.placement = alone;

@@ -27,7 +27,7 @@ struct CarryBackOptions {
   std::function<bool(double share)> late = {};
 };
 
-/// What was found on a coarse mesh as it holds on the fine one: faces by their stand-ins, placements and motions
+/// What was found on a coarse mesh as it holds on the fine one: faces by their proxies, placements and motions
 /// refined and verified on the fine mesh, drops what fails there.
 /// Costs O(F log F) for each region and pattern, F of its faces.
 /// \param coarse of `fine` \param prepared its mesh, made ready

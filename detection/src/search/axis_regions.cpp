@@ -227,7 +227,7 @@ class AxisSearch {
     const auto halves = std::ranges::find(orders_, 2, &Order::n);
     // A row of n things has 2 n half-turns; the strongest will do.
     if (orders_.end() - halves > kMaxHalfTurns) orders_.erase(halves + kMaxHalfTurns, orders_.end());
-    search_.settle_all<Place>({}, [&](Place& place) { return next(place); });
+    search_.consider_all<Place>({}, [&](Place& place) { return next(place); });
     result.regions = search_.take();
     return result;
   }
@@ -294,7 +294,7 @@ class AxisSearch {
     const double share = std::max(kMin, kMinOfTurned * static_cast<double>(turns.turned().size()) / count);
     if (static_cast<double>(turns.turned().size()) < kMin * count) return;
     for (const GroupPlacement& placement : groups_with_middle(surface_, turns.axis(), turns.turned(), share)) {
-      search_.settle({"axes", placement, false});
+      search_.consider({"axes", placement, false});
     }
   }
 

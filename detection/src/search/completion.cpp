@@ -155,7 +155,7 @@ class Completion {
       if (itself) stabiliser.insert(stabiliser.end(), cosets[i].motions.begin(), cosets[i].motions.end());
       motions.push_back(cosets[i].motions.front());
     }
-    settle(q, stabiliser);
+    symmetrise_placement(q, stabiliser);
     std::vector<std::size_t> result;
     const auto take = [&](std::size_t known, const GroupPlacement& goal) {
       const bool fresh = known != q && std::ranges::find(result, known) == result.end();
@@ -313,7 +313,7 @@ class Completion {
   }
 
   // Moves the region's placement to the mean of its images under motions that keep the region.
-  void settle(std::size_t q, const std::vector<Motion>& stabiliser) {
+  void symmetrise_placement(std::size_t q, const std::vector<Motion>& stabiliser) {
     if (stabiliser.empty()) return;
     GroupPlacement placement = regions_[q].placement;
     for (int round = 0; round < 4; ++round) placement = mean_of_images(placement, stabiliser);
@@ -323,12 +323,12 @@ class Completion {
   // Moves a region's group, unless the region fits it far less well there: a group that is exact by itself is not bent
   // to one around it that is not.
   void place(std::size_t region, const GroupPlacement& goal) {
-    constexpr double kNothing = 1e-9;
+    constexpr double kNegligible = 1e-9;
     constexpr double kAsWell = 1.5;
     constexpr std::size_t kQueries = 1500;
     const FoundRegion& now = regions_[region];
     const SurfaceMoments& moments = moments_[region];
-    if (!contains_group(now.placement, goal, moments.centroid, moments.radius, kNothing)) {
+    if (!contains_group(now.placement, goal, moments.centroid, moments.radius, kNegligible)) {
       Surface& surface = surface_of(region);
       const auto fit = [&](const GroupPlacement& placement) {
         const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
@@ -336,7 +336,7 @@ class Completion {
       };
       if (!surface.fit) surface.fit = fit(now.placement);
       const double there = fit(goal);
-      if (there > kAsWell * *surface.fit + kNothing || !holds(goal, surface.patch)) return;
+      if (there > kAsWell * *surface.fit + kNegligible || !holds(goal, surface.patch)) return;
       surface.fit = there;
     }
     regions_[region].placement = goal;

@@ -36,15 +36,15 @@ class LineRegionSearch {
   };
 
   /// Refines the group on the surface it keeps, and adds the region if it holds and says something new.
-  void settle(const Candidate& candidate) { accept(judge(candidate, context_)); }
+  void consider(const Candidate& candidate) { accept(judge(candidate, context_)); }
 
-  /// Settles one candidate after the other. Several are judged at once; once one of them is added, those after it are
+  /// Considers one candidate after the other. Several are judged at once; once one of them is added, those after it are
   /// chosen anew, and those chosen again are only asked what that region says of them. So the outcome is that of one
   /// after the other, with any number of threads.
   /// \param at    where the candidates begin
   /// \param next  gives the candidate at `at` and moves on, as far as what was found tells which; nothing at the end
   template <typename State>
-  void settle_all(State at, const std::function<std::optional<Candidate>(State& at)>& next) {
+  void consider_all(State at, const std::function<std::optional<Candidate>(State& at)>& next) {
     const auto most = static_cast<std::size_t>(context_.threads);
     while (!(options_.late && options_.late())) {
       std::vector<Candidate> candidates;
@@ -119,7 +119,7 @@ class LineRegionSearch {
   const LineRegionOptions& options_;
   const RunContext& context_;
   std::vector<FoundRegion> found_;
-  std::vector<Judged> ahead_;      // judged before what comes before them was settled
+  std::vector<Judged> ahead_;      // judged before what comes before them was
   std::optional<CutDiscs> discs_;  // made once there is a turned region
   struct TurningAxis {
     Line line;

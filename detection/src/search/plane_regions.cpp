@@ -264,7 +264,7 @@ std::vector<FoundRegion> find_plane_regions(const ScreenedSurface& surface, cons
     return static_cast<double>(evidence) >= options.least_share * static_cast<double>(count) &&
            static_cast<double>(speaking) >= kMinSpeaking * static_cast<double>(kept);
   };
-  search.settle_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
+  search.consider_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
     for (; k < planes.size(); ++k) {
       context.progress("planes", static_cast<double>(k) / static_cast<double>(planes.size()));
       const Line& plane = planes[k].line;

@@ -87,7 +87,8 @@ void take_placement(const PreparedMesh& prepared, double tolerance, FoundRegion&
 }
 
 // Whether pieces of surface were added to components at the cost of how well they turn or mirror.
-bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
+bool less_exact_with_pieces(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer,
+                            const FoundRegion& inner) {
   constexpr double kFarLess = 3;
   constexpr double kLittle = 0.5;  // of a region of the same group: that is not about components that are less of it
   if (!outer.of_pieces || inner.of_pieces) return false;
@@ -97,10 +98,10 @@ bool looser(const PreparedMesh& prepared, double tolerance, const FoundRegion& o
 
 // Whether components that are exact were taken into others that are far from it.
 bool less_exact(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
-  constexpr double kNothing = 0.01;  // tolerances
+  constexpr double kNegligible = 0.01;  // tolerances
   constexpr double kFarOff = 0.2;
   return !outer.of_pieces && !inner.of_pieces && largest_residual(prepared, tolerance, outer) > kFarOff * tolerance &&
-         largest_residual(prepared, tolerance, inner) < kNothing * tolerance;
+         largest_residual(prepared, tolerance, inner) < kNegligible * tolerance;
 }
 
 bool same_faces(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {
@@ -174,10 +175,10 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const Found
 }
 
 bool by_coincidence(double area, double residual, double area_around, double residual_around, double tolerance) {
-  constexpr double kMax = 0.5;       // of what is around: the larger part of a shape is no coincidence
-  constexpr double kNothing = 0.01;  // tolerances
+  constexpr double kMax = 0.5;          // of what is around: the larger part of a shape is no coincidence
+  constexpr double kNegligible = 0.01;  // tolerances
   constexpr double kFarOff = 0.2;
-  return area < kMax * area_around && residual_around < kNothing * tolerance && residual > kFarOff * tolerance;
+  return area < kMax * area_around && residual_around < kNegligible * tolerance && residual > kFarOff * tolerance;
 }
 
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,
@@ -195,7 +196,7 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
       if (!covered && !more_by_chance(prepared, regions[j], mine)) continue;
       const bool mutual = regions[j].placement.group == mine.placement.group && covers(prepared, mine, regions[j]);
       if (mutual && j > i) continue;
-      repeats = !looser(prepared, tolerance, regions[j], mine) &&
+      repeats = !less_exact_with_pieces(prepared, tolerance, regions[j], mine) &&
                 !(covered && less_exact(prepared, tolerance, regions[j], mine));
       if (!repeats) continue;
       take_placement(prepared, tolerance, regions[j], mine);

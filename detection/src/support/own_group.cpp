@@ -25,7 +25,7 @@ constexpr double kSameDirection = 0.03;    // radians
 constexpr std::size_t kMaxRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
 constexpr int kMaxFailures = 40;           // to fit a rotation: so many look right on nearly a ball only
 constexpr double kClassifyTolerance = 0.02;
-constexpr double kNothing = 0.02;  // tolerances: residuals below are none
+constexpr double kNegligible = 0.02;  // tolerances: residuals below are none
 
 Matrix3d mirror(const Vector3d& normal) {
   return Matrix3d::Identity() - 2 * normal * normal.transpose();
@@ -122,7 +122,7 @@ class GroupSearch {
     constexpr double kFacets = 1.5;
     constexpr double kStrict = 0.3;
     const double any = largest_residual(patch_, best_->placement, context_);
-    if (any < kFacets * sagitta(patch_, best_->placement) + kNothing * patch_.tolerance) return best_;
+    if (any < kFacets * sagitta(patch_, best_->placement) + kNegligible * patch_.tolerance) return best_;
     SurfacePatch strict = patch_;
     const double share = std::min(1.0, kStrict * any / patch_.tolerance);
     strict.tolerance *= share;
@@ -341,7 +341,7 @@ class GroupSearch {
     const auto may_be = [&](int order) { return order < n && n % order != 0; };
     if (std::ranges::none_of(others, may_be, &RankedOrder::order)) return placement;
     const double off = largest_residual(patch_, placement, context_);
-    if (off < kNothing * patch_.tolerance) return placement;
+    if (off < kNegligible * patch_.tolerance) return placement;
     for (const RankedOrder& other : others) {
       if (!may_be(other.order)) continue;
       GroupPlacement lower = fitted({Family::Cn, other.order}, frame_about(placement.frame.col(2)));

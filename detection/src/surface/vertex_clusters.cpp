@@ -226,9 +226,9 @@ VertexClustering::Quadric VertexClustering::quadric_of(const std::vector<int>& s
   return quadric;
 }
 
-void VertexClustering::settle(std::vector<int> sites, int level, std::vector<VertexCluster>& settled) const {
+void VertexClustering::merge(std::vector<int> sites, int level, std::vector<VertexCluster>& merged) const {
   if (sites.size() == 1 || level >= kLevels) {
-    for (VertexCluster& each : singles(sites)) settled.push_back(std::move(each));
+    for (VertexCluster& each : singles(sites)) merged.push_back(std::move(each));
     return;
   }
   const double tolerance = tolerances_[static_cast<std::size_t>(sites_.component[static_cast<std::size_t>(sites[0])])];
@@ -238,16 +238,16 @@ void VertexClustering::settle(std::vector<int> sites, int level, std::vector<Ver
                              ? kOneSided
                              : kSmooth;
   if (quadric.normals.norm() >= aligned * quadric.area && quadric.distance(place) <= kFlat * tolerance + rough_) {
-    settled.push_back({std::move(sites), level, place});
+    merged.push_back({std::move(sites), level, place});
     return;
   }
-  for (std::vector<int>& part : joined(sites, level + 1)) settle(std::move(part), level + 1, settled);
+  for (std::vector<int>& part : joined(sites, level + 1)) merge(std::move(part), level + 1, merged);
 }
 
 std::vector<VertexCluster> VertexClustering::split(const VertexCluster& cluster) const {
   std::vector<VertexCluster> result;
   for (std::vector<int>& part : joined(cluster.sites, cluster.level + 1)) {
-    settle(std::move(part), cluster.level + 1, result);
+    merge(std::move(part), cluster.level + 1, result);
   }
   return result;
 }
@@ -284,15 +284,15 @@ std::vector<VertexCluster> VertexClustering::clusters(const RunContext& context)
     }
     first[static_cast<std::size_t>(set)].push_back(static_cast<int>(s));
   }
-  std::vector<std::vector<VertexCluster>> settled(first.size());
+  std::vector<std::vector<VertexCluster>> merged(first.size());
   parallel_for(context, first.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (i % 256 == 0) context.check();
-      settle(std::move(first[i]), 0, settled[i]);
+      merge(std::move(first[i]), 0, merged[i]);
     }
   });
   std::vector<VertexCluster> result;
-  for (std::vector<VertexCluster>& each : settled) {
+  for (std::vector<VertexCluster>& each : merged) {
     std::ranges::move(each, std::back_inserter(result));
   }
   return result;

@@ -59,7 +59,7 @@ class VertexClustering {
   // The sites sorted into sets joined by edges within a cell of the level.
   std::vector<std::vector<int>> joined(const std::vector<int>& sites, int level) const;
   Quadric quadric_of(const std::vector<int>& sites) const;
-  void settle(std::vector<int> sites, int level, std::vector<VertexCluster>& settled) const;
+  void merge(std::vector<int> sites, int level, std::vector<VertexCluster>& merged) const;
 
   const PreparedMesh& prepared_;
   const Sites& sites_;

@@ -11,8 +11,8 @@
 
 #include "assessment/fit_assessment.h"
 #include "basis/subspace_parts.h"
-#include "fit_starts.h"
 #include "registration/alignment.h"
+#include "start/fit_starts.h"
 
 namespace orbifit {
 

@@ -70,7 +70,7 @@ void KurzFit::run(GridBasis basis, int most) {
     if (i == 0) iterations_.back().seconds += begun.count();
     if (terms_.thin_plate == options_.thin_plate_weight && iterations_.back().change < options_.still / size_) {
       stopped_because_ =
-          "settled: no vertex moves by more than " + std::to_string(options_.still) + " of the longest side";
+          "converged: no vertex moves by more than " + std::to_string(options_.still) + " of the longest side";
       break;
     }
   }

@@ -84,7 +84,7 @@ void add(const KurzTerms& terms, std::size_t demand, const KurzState& state, Tur
 
 Eigen::Vector3d step_of(const Turn& turn) {
   constexpr double kOpen = 1e-6;  // of the scale: smaller eigenvalues are rounding
-  constexpr double kMost = 0.3;   // radians
+  constexpr double kMax = 0.3;    // radians
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(turn.matrix);
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -93,7 +93,7 @@ Eigen::Vector3d step_of(const Turn& turn) {
     const Eigen::Vector3d direction = eigen.eigenvectors().col(k);
     step -= direction.dot(turn.side) / value * direction;
   }
-  return step * std::min(1.0, kMost / std::max(step.norm(), 1e-300));
+  return step * std::min(1.0, kMax / std::max(step.norm(), 1e-300));
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ constexpr double kWeight = 1e3;  // of C^T C, relative to the mean of A's diagon
 // What no constraint holds, nor A (groups carried along their axes), still gives a positive pivot; refinement takes
 // this out again. Relative to w C^T C.
 constexpr double kShift = 1e-10;
-constexpr double kSettled = 1e-15;  // of the solution: refinement stops at smaller steps,
-constexpr int kMostSteps = 30;
+constexpr double kConverged = 1e-15;  // of the solution: refinement stops at smaller steps,
+constexpr int kMaxSteps = 30;
 constexpr double kSlowest = 0.5;  // or when they no longer shrink by this
 
 }  // namespace
@@ -106,7 +106,7 @@ SaddleSystem::Pair SaddleSystem::solve(const VectorXd& right, const VectorXd& of
   const Eigen::Index n = matrix_.cols();
   Pair result{VectorXd::Zero(right.size()), VectorXd::Zero(constraints_.rows())};
   double last = 0;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const VectorXd missed = of_constraints - constraints_ * result.x.head(n);
     VectorXd side = right - multiply(result.x);
     side.head(n) += constraints_.transpose() * (weight_ * missed - result.multipliers);
@@ -114,7 +114,7 @@ SaddleSystem::Pair SaddleSystem::solve(const VectorXd& right, const VectorXd& of
     result.x += change;
     result.multipliers += weight_ * (constraints_ * change.head(n) - missed);
     const double length = change.norm();
-    if (length <= kSettled * result.x.norm() || (step > 1 && length > kSlowest * last)) break;
+    if (length <= kConverged * result.x.norm() || (step > 1 && length > kSlowest * last)) break;
     last = length;
   }
   return result;

@@ -11,7 +11,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr int kFewest = 64;  // points of a part, however small
+constexpr int kMin = 64;  // points of a part, however small
 
 struct Quadrature {
   Points points;
@@ -22,7 +22,7 @@ Quadrature quadrature(const Mesh& mesh, const Eigen::VectorXd& shares, const std
                       Random& random) {
   double share = 0;
   for (const int face : faces) share += shares[face];
-  const int count = std::max(kFewest, static_cast<int>(std::ceil(points * share)));
+  const int count = std::max(kMin, static_cast<int>(std::ceil(points * share)));
   return {sample_surface(mesh, count, random, faces).points, share / count};
 }
 

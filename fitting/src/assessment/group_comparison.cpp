@@ -22,13 +22,13 @@ using Eigen::Vector3d;
 
 constexpr double kSeen = 0.01;        // of the diagonal: a scan point this near to the free fit
 constexpr double kNear = 0.01;        // of the diagonal: an image this near to the surface is on it
-constexpr double kMostApart = 0.1;    // of the diagonal: what differences and distances count as at most
+constexpr double kMaxApart = 0.1;     // of the diagonal: what differences and distances count as at most
 constexpr double kFirstScale = 0.2;   // of the diagonal, while the region's motion is estimated: at the start
 constexpr double kLastRobust = 0.01;  // and at the end
-constexpr double kLeast = 0.008;      // of the diagonal: a disagreement,
+constexpr double kMin = 0.008;        // of the diagonal: a disagreement,
 constexpr double kTimesFree = 1.5;    // where the group's fit is worse than the free one by this factor
-constexpr int kFewestPlaces = 40;     // that say anything
-constexpr int kMostPairs = 6000;
+constexpr int kMinPlaces = 40;        // that say anything
+constexpr int kMaxPairs = 6000;
 
 struct Place {
   Vector3d point, normal;  // of the surface of the fit with groups
@@ -89,8 +89,8 @@ class Comparison {
     double free = 0;
     double count = 0;
     for (std::size_t i = 0; i < held_.size(); ++i) {
-      if (own[static_cast<std::size_t>(face_of_point_[i])] == 0 || free_distance_[i] > kMostApart) continue;
-      const double there = std::min(held_[i], kMostApart);
+      if (own[static_cast<std::size_t>(face_of_point_[i])] == 0 || free_distance_[i] > kMaxApart) continue;
+      const double there = std::min(held_[i], kMaxApart);
       held += there * there;
       free += free_distance_[i] * free_distance_[i];
       count += 1;
@@ -153,7 +153,7 @@ std::vector<Pair> pairs_of(const Comparison& comparison, const Region& region, R
   const std::vector<Motion> motions = motions_of(region);
   std::vector<Pair> result;
   if (motions.empty()) return result;
-  const int count = std::max(kFewestPlaces, kMostPairs / static_cast<int>(motions.size()));
+  const int count = std::max(kMinPlaces, kMaxPairs / static_cast<int>(motions.size()));
   const Mesh& mesh = comparison.fitted();
   const SurfaceSamples samples = sample_surface(mesh, count, random, region.faces);
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
@@ -164,7 +164,7 @@ std::vector<Pair> pairs_of(const Comparison& comparison, const Region& region, R
     const Vector3d weights = nearest_on_triangle(samples.points.row(i), corner(0), corner(1), corner(2));
     if (!comparison.look(face, weights, pair.first)) continue;
     for (const Motion& motion : motions) {
-      if (static_cast<int>(result.size()) >= kMostPairs) return result;
+      if (static_cast<int>(result.size()) >= kMaxPairs) return result;
       if (!comparison.image(motion(pair.first.point), motion.linear * pair.first.normal, pair.second)) continue;
       // A point on a mirror's plane is its own image.
       if ((pair.first.point - pair.second.point).norm() > kNear * comparison.size()) result.push_back(pair);
@@ -219,12 +219,12 @@ std::vector<GroupAgreement> group_agreement(const Mesh& fitted, const Mesh& free
       take_out_motion(pairs, comparison.size());
       agreement.pairs = static_cast<int>(pairs.size());
       double squares = 0;
-      for (const Pair& pair : pairs) squares += std::pow(std::min(kMostApart, std::abs(pair.apart())), 2);
+      for (const Pair& pair : pairs) squares += std::pow(std::min(kMaxApart, std::abs(pair.apart())), 2);
       if (!pairs.empty()) agreement.disagreement = std::sqrt(squares / static_cast<double>(pairs.size()));
       for (const int face : region.faces) own[static_cast<std::size_t>(face)] = 1;
       comparison.distances(own, agreement);
       for (const int face : region.faces) own[static_cast<std::size_t>(face)] = 0;
-      agreement.disagrees = agreement.pairs >= kFewestPlaces && agreement.disagreement > kLeast &&
+      agreement.disagrees = agreement.pairs >= kMinPlaces && agreement.disagreement > kMin &&
                             agreement.held > kTimesFree * agreement.free;
     }
   });

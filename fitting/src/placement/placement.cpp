@@ -32,8 +32,8 @@ using Eigen::Vector3d;
 constexpr int kTemplateSamples = 450;
 constexpr int kCells = 56;
 constexpr double kNormalCosine = 0.7;
-constexpr std::size_t kMostKept = 600;  // proposals that wait for their refinement
-constexpr std::size_t kMostReturned = 10;
+constexpr std::size_t kMaxKept = 600;  // proposals that wait for their refinement
+constexpr std::size_t kMaxReturned = 10;
 
 /// A template and a scan, with what it takes to judge poses fast.
 class Search {
@@ -73,7 +73,7 @@ class Search {
     std::ranges::stable_sort(found, std::greater<>(), &Placement::score);
     std::vector<Similarity> best;
     for (const Placement& each : found) {
-      if (best.size() >= kMostReturned || !(each.score() > 0)) break;
+      if (best.size() >= kMaxReturned || !(each.score() > 0)) break;
       if (std::ranges::none_of(best, [&](const Similarity& s) { return one(s, each.pose); })) {
         best.push_back(each.pose);
       }
@@ -143,9 +143,9 @@ class Search {
 
     void add(const std::vector<Proposal>& more) {
       kept.insert(kept.end(), more.begin(), more.end());
-      if (kept.size() < 2 * kMostKept) return;
+      if (kept.size() < 2 * kMaxKept) return;
       std::ranges::stable_sort(kept, std::greater<>(), &Proposal::share);
-      kept.resize(kMostKept);
+      kept.resize(kMaxKept);
       bar = std::max(bar, kept.back().share);
     }
   };
@@ -202,7 +202,7 @@ class Search {
   void propose_by_symmetry(Pool& pool) const {
     constexpr std::size_t kPoints = 400;  // of the scan, for each of its planes and axes
     constexpr std::size_t kInTask = 50;
-    constexpr int kMost = 12;  // poses for each of them and of the template's planes or axes
+    constexpr int kMax = 12;  // poses for each of them and of the template's planes or axes
     const SymmetryHypotheses hypotheses(samples_, template_symmetries(mesh_, annotation_));
     if (hypotheses.empty()) return;
     const std::vector<SymmetryElement> elements = scan_symmetries(scan_, order_, seen_, extent_, context_);
@@ -211,7 +211,7 @@ class Search {
       const SymmetryElement& element = elements[task / kTasks];
       for (std::size_t k = 0; k < kInTask; ++k) {
         const auto p = static_cast<Eigen::Index>(random.below(order_.size()));
-        hypotheses.propose(element, scan_.points.row(p), scan_.normals.row(p), kMost, random, take);
+        hypotheses.propose(element, scan_.points.row(p), scan_.normals.row(p), kMax, random, take);
       }
     };
     gather("placement by symmetry ", kTasks * elements.size(), run, pool);

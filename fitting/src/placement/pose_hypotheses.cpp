@@ -13,16 +13,16 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kBins = 8;            // of |cosine|, of each angle
-constexpr double kLeastSine = 0.3;  // of the normal with the line, so that the two fix a rotation
-constexpr double kFlat = 0.1;       // cosines below: both points on one plane, which says little
+constexpr int kBins = 8;          // of |cosine|, of each angle
+constexpr double kMinSine = 0.3;  // of the normal with the line, so that the two fix a rotation
+constexpr double kFlat = 0.1;     // cosines below: both points on one plane, which says little
 
 // The bin of a pair by |n_p . d|, |n_q . d|, |n_p . n_q|; none for pairs that fix no pose.
 std::optional<std::size_t> bin_of(const Vector3d& direction, const Vector3d& p_normal, const Vector3d& q_normal) {
   const double along_p = std::abs(p_normal.dot(direction));
   const double along_q = std::abs(q_normal.dot(direction));
   const double across = std::abs(p_normal.dot(q_normal));
-  if (along_p * along_p > 1 - kLeastSine * kLeastSine) return std::nullopt;
+  if (along_p * along_p > 1 - kMinSine * kMinSine) return std::nullopt;
   if (along_p < kFlat && along_q < kFlat && across > 1 - kFlat) return std::nullopt;
   // Angles rather than cosines: bins of even width.
   const auto bin = [](double cosine) {

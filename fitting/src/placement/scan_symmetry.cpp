@@ -29,9 +29,9 @@ struct ScanSample {
 };
 
 ScanSample sample_of(const PreparedScan& scan, const std::vector<int>& order, double extent) {
-  constexpr std::size_t kMostPoints = 500;
+  constexpr std::size_t kMaxPoints = 500;
   const std::vector<int> some(order.begin(),
-                              order.begin() + static_cast<std::ptrdiff_t>(std::min(kMostPoints, order.size())));
+                              order.begin() + static_cast<std::ptrdiff_t>(std::min(kMaxPoints, order.size())));
   ScanSample result;
   result.extent = extent;
   result.oriented = scan.normals_oriented;
@@ -68,19 +68,19 @@ bool like_normals(const Vector3d& a, const Vector3d& b, bool oriented, double co
 
 std::vector<MirrorPlane> proposed_planes(const ScanSample& sample, Random& random) {
   constexpr int kPairs = 60000;
-  constexpr std::size_t kMostPlanes = 2500;
-  constexpr double kLeastApart = 0.1;   // of the extent
-  constexpr double kLeastAcross = 0.2;  // cosine of a normal with the plane's: others are mirrored in any such plane
+  constexpr std::size_t kMaxPlanes = 2500;
+  constexpr double kMinApart = 0.1;   // of the extent
+  constexpr double kMinAcross = 0.2;  // cosine of a normal with the plane's: others are mirrored in any such plane
   constexpr double kLike = 0.96;
   std::vector<MirrorPlane> result;
-  for (int k = 0; k < kPairs && result.size() < kMostPlanes; ++k) {
+  for (int k = 0; k < kPairs && result.size() < kMaxPlanes; ++k) {
     const auto p = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(sample.size())));
     const auto q = static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(sample.size())));
     const Vector3d line = sample.point(q) - sample.point(p);
     const double length = line.norm();
-    if (length < kLeastApart) continue;
+    if (length < kMinApart) continue;
     MirrorPlane plane{line / length};
-    if (std::abs(plane.direction.dot(sample.normal(p))) < kLeastAcross) continue;
+    if (std::abs(plane.direction.dot(sample.normal(p))) < kMinAcross) continue;
     if (!like_normals(plane.turned(sample.normal(p)), sample.normal(q), sample.oriented, kLike)) continue;
     plane.offset = plane.direction.dot(sample.point(p) + sample.point(q)) / 2;
     result.push_back(plane);
@@ -107,7 +107,7 @@ std::vector<MirrorPlane> distinct(const std::vector<MirrorPlane>& planes, std::s
 
 // Planes on which votes crowd, each the mean of its votes; most votes first.
 std::vector<MirrorPlane> crowded(const std::vector<MirrorPlane>& votes) {
-  constexpr std::size_t kMostCrowds = 48;
+  constexpr std::size_t kMaxCrowds = 48;
   constexpr double kNearCosine = 0.9925;  // 7 degrees
   constexpr double kNearOffset = 0.025;   // of the extent
   std::vector<MirrorPlane> crowds(votes.size());
@@ -123,7 +123,7 @@ std::vector<MirrorPlane> crowded(const std::vector<MirrorPlane>& votes) {
     crowds[i] = {sum.direction.normalized(), sum.offset / sum.worth, sum.worth};
   }
   std::ranges::stable_sort(crowds, std::greater<>(), &MirrorPlane::worth);
-  return distinct(crowds, kMostCrowds, kNearCosine, kNearOffset);
+  return distinct(crowds, kMaxCrowds, kNearCosine, kNearOffset);
 }
 
 // The share of what a plane mirrors across itself that has its image on the scan; what was seen through counts against.
@@ -154,8 +154,8 @@ double mirrored_share(const MirrorPlane& plane, const ScanSample& sample, const 
 
 void add_planes(const ScanSample& sample, const PreparedScan& all, const SeenSurface& seen, const RunContext& context,
                 std::vector<SymmetryElement>& result) {
-  constexpr std::size_t kMost = 6;
-  constexpr double kLeast = 0.1;        // share
+  constexpr std::size_t kMax = 6;
+  constexpr double kMin = 0.1;          // share
   constexpr double kSameCosine = 0.97;  // 14 degrees
   constexpr double kSameOffset = 0.06;  // of the extent
   Random random(context.seed, "mirrors of a scan");
@@ -165,8 +165,8 @@ void add_planes(const ScanSample& sample, const PreparedScan& all, const SeenSur
     for (std::size_t i = begin; i < end; ++i) planes[i].worth = mirrored_share(planes[i], sample, scan, all, seen);
   });
   std::ranges::stable_sort(planes, std::greater<>(), &MirrorPlane::worth);
-  for (const MirrorPlane& plane : distinct(planes, kMost, kSameCosine, kSameOffset)) {
-    if (plane.worth < kLeast) break;
+  for (const MirrorPlane& plane : distinct(planes, kMax, kSameCosine, kSameOffset)) {
+    if (plane.worth < kMin) break;
     const Vector3d foot = sample.centre + sample.extent * plane.offset * plane.direction;
     result.push_back({SymmetryElement::Kind::plane, foot, plane.direction, plane.worth});
   }
@@ -244,8 +244,8 @@ void add_axes(const ScanSample& sample, const RunContext& context, std::vector<S
   constexpr int kTries = 600;
   constexpr int kAtOnce = 10;  // points
   constexpr std::size_t kRefined = 20;
-  constexpr std::size_t kMost = 3;
-  constexpr double kLeast = 0.35;
+  constexpr std::size_t kMax = 3;
+  constexpr double kMin = 0.35;
   constexpr double kSameCosine = 0.97;
   constexpr double kSameOffset = 0.06;  // of the extent
   Random random(context.seed, "axes of a scan");
@@ -273,7 +273,7 @@ void add_axes(const ScanSample& sample, const RunContext& context, std::vector<S
   std::ranges::stable_sort(axes, std::greater<>(), &Axis::worth);
   std::vector<Axis> kept;
   for (const Axis& axis : axes) {
-    if (kept.size() == kMost || axis.worth < kLeast) break;
+    if (kept.size() == kMax || axis.worth < kMin) break;
     const bool known = std::ranges::any_of(kept, [&](const Axis& other) {
       return std::abs(other.direction.dot(axis.direction)) > kSameCosine &&
              other.direction.cross(axis.point - other.point).norm() < kSameOffset;

@@ -37,7 +37,7 @@ struct Sighting {
 // None where the normal or the distance says too little.
 std::optional<Sighting> sighting(const SymmetryElement& element, const Vector3d& point, const Vector3d& normal,
                                  double least) {
-  constexpr double kLeastTurn = 0.3;
+  constexpr double kMinTurn = 0.3;
   const Vector3d arm = point - element.point;
   const double along = element.direction.dot(arm);
   Sighting result;
@@ -45,7 +45,7 @@ std::optional<Sighting> sighting(const SymmetryElement& element, const Vector3d&
   if (element.kind == SymmetryElement::Kind::plane) {
     result.distance = along;
     across = normal - element.direction.dot(normal) * element.direction;
-    if (across.norm() < kLeastTurn) return std::nullopt;
+    if (across.norm() < kMinTurn) return std::nullopt;
   } else {
     across = arm - along * element.direction;
     result.distance = across.norm();
@@ -60,8 +60,8 @@ std::optional<Sighting> sighting(const SymmetryElement& element, const Vector3d&
 }  // namespace
 
 std::vector<SymmetryElement> template_symmetries(const Mesh& mesh, const SymmetryAnnotation& annotation) {
-  constexpr double kLeastMirrored = 0.4;  // of the area
-  constexpr double kLeastTurned = 0.15;
+  constexpr double kMinMirrored = 0.4;  // of the area
+  constexpr double kMinTurned = 0.15;
   const double size = diagonal(mesh.vertices);
   const Eigen::VectorXd areas = face_areas(mesh);
   std::vector<SymmetryElement> result;
@@ -75,10 +75,10 @@ std::vector<SymmetryElement> template_symmetries(const Mesh& mesh, const Symmetr
   };
   for (const Region& region : annotation.regions) {
     const double share = areas(region.faces).sum() / areas.sum();
-    if (region.group.continuous() && region.group.has_axis() && share >= kLeastTurned) {
+    if (region.group.continuous() && region.group.has_axis() && share >= kMinTurned) {
       result.push_back({SymmetryElement::Kind::axis, region.centre, region.axis, 1});
     }
-    if (share < kLeastMirrored) continue;
+    if (share < kMinMirrored) continue;
     for (const Motion& motion : region.elements) {
       const std::optional<SymmetryElement> plane = plane_of(motion);
       if (plane && !known(*plane, region.elements)) result.push_back(*plane);

@@ -13,10 +13,10 @@ namespace orbifit {
 namespace {
 
 constexpr int kIterations = 60;
-constexpr int kFewestPairs = 6;
+constexpr int kMinPairs = 6;
 constexpr double kFarthestPair = 0.25;  // of the diagonal: pairs farther apart are not the same place
 constexpr double kRobustDecay = 0.92;   // an iteration: what is far at first may be near later
-constexpr double kLeastRobust = 0.004;  // of the diagonal
+constexpr double kMinRobust = 0.004;    // of the diagonal
 constexpr double kSmallestStep = 1e-6;  // of the diagonal: ICP stops at smaller steps
 constexpr double kScaleDamping = 0.02;  // a scan of little else than a plane says nothing of the scale
 
@@ -115,7 +115,7 @@ Similarity align_rigidly(const MatchSurface& surface, const PreparedScan& scan, 
     const Points points = to_template(pose, scan.points);
     const auto pairs =
         find_correspondences(surface, points, normals_to_template(pose, scan.normals), options, context, &likely);
-    if (static_cast<int>(pairs.size()) < kFewestPairs) return start;
+    if (static_cast<int>(pairs.size()) < kMinPairs) return start;
     PoseSystem system(size, pivot);
     for (const Correspondence& pair : pairs) {
       const Eigen::Vector3d s = points.row(pair.scan_point);
@@ -124,8 +124,8 @@ Similarity align_rigidly(const MatchSurface& surface, const PreparedScan& scan, 
     }
     const PoseSystem::Step step = system.rigid();
     pose = pose * inverse(step.scan);
-    robust = std::max(kLeastRobust * size, kRobustDecay * robust);
-    if (step.length < kSmallestStep * size && robust <= kLeastRobust * size) break;
+    robust = std::max(kMinRobust * size, kRobustDecay * robust);
+    if (step.length < kSmallestStep * size && robust <= kMinRobust * size) break;
   }
   return pose;
 }

@@ -55,9 +55,9 @@ PointCloud points_near(const SurfaceIndex& surface, double template_diagonal, co
 
 PreparedScan without_planes(const SurfaceIndex& surface, double template_diagonal, const PreparedScan& scan,
                             const Similarity& pose, double explained, const RunContext& context) {
-  constexpr int kMostPlanes = 6;
+  constexpr int kMaxPlanes = 6;
   constexpr int kTries = 150;
-  constexpr double kLeast = 0.03;       // of the points, unexplained ones in the plane
+  constexpr double kMin = 0.03;         // of the points, unexplained ones in the plane
   constexpr double kOfOthers = 0.65;    // of the plane's points, that the template must not explain
   constexpr double kThickness = 0.008;  // of the template's diagonal
   const double reach = explained * template_diagonal;
@@ -74,10 +74,10 @@ PreparedScan without_planes(const SurfaceIndex& surface, double template_diagona
     return result;
   };
   Random random(context.seed, "planes beside a template");
-  for (int round = 0; round < kMostPlanes; ++round) {
+  for (int round = 0; round < kMaxPlanes; ++round) {
     std::vector<int> others;
     std::ranges::copy_if(left, std::back_inserter(others), open);
-    const auto least = static_cast<std::ptrdiff_t>(kLeast * static_cast<double>(distances.size()));
+    const auto least = static_cast<std::ptrdiff_t>(kMin * static_cast<double>(distances.size()));
     std::vector<int> best;
     std::ptrdiff_t most = least;
     for (int k = 0; k<kTries&& static_cast<std::ptrdiff_t>(others.size())> least; ++k) {

@@ -22,7 +22,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr int kFewestPoints = 10;
+constexpr int kMinPoints = 10;
 
 std::vector<int> one_a_cell(const Points& points, double width) {
   const Eigen::RowVector3d corner = points.colwise().minCoeff();
@@ -104,16 +104,16 @@ double median_spacing(const Points& points) {
 }
 
 PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context) {
-  if (scan.points.rows() < kFewestPoints) {
+  if (scan.points.rows() < kMinPoints) {
     throw InputError("", "scan",
                      "has " + std::to_string(scan.points.rows()) + " usable points; a fit needs at least " +
-                         std::to_string(kFewestPoints));
+                         std::to_string(kMinPoints));
   }
   if (!(diagonal(scan.points) > 0)) throw InputError("", "scan", "all its points are at one place");
   context.progress("scan", 0);
-  constexpr int kMostPoints = 200000;  // of which neighbours are sought
+  constexpr int kMaxPoints = 200000;  // of which neighbours are sought
   constexpr int kPlanes = 400;
-  const Points some = scan.points(some_of(scan.points.rows(), kMostPoints, context.seed), Eigen::all);
+  const Points some = scan.points(some_of(scan.points.rows(), kMaxPoints, context.seed), Eigen::all);
   const PointIndex index(some);
   const std::vector<int> typical = some_of(some.rows(), kPlanes, context.seed);
   std::vector<int> kept = options.evenly ? spread_evenly(scan.points, options.most_points)

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostViews = 64;
+constexpr std::size_t kMaxViews = 64;
 
 // The points of each viewpoint; viewpoints of moving scanners, one a point, are not told apart.
 std::vector<std::pair<Vector3d, std::vector<int>>> points_by_viewpoint(const Points& points, const Points& viewpoints) {
@@ -25,7 +25,7 @@ std::vector<std::pair<Vector3d, std::vector<int>>> points_by_viewpoint(const Poi
     const Vector3d eye = viewpoints.row(viewpoints.rows() == 1 ? 0 : i);
     const auto [at, fresh] = known.try_emplace({eye.x(), eye.y(), eye.z()}, result.size());
     if (fresh) {
-      if (result.size() == kMostViews) return {};
+      if (result.size() == kMaxViews) return {};
       result.push_back({eye, {}});
     }
     result[at->second].second.push_back(static_cast<int>(i));

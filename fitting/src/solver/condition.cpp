@@ -7,15 +7,15 @@
 namespace orbifit {
 
 double norm_estimate(Eigen::VectorXd start, const LinearMap& map) {
-  constexpr int kMostSteps = 200;
-  constexpr int kFewestSteps = 8;
-  constexpr double kSettled = 1e-4;
+  constexpr int kMaxSteps = 200;
+  constexpr int kMinSteps = 8;
+  constexpr double kConverged = 1e-4;
   double norm = 0;
-  for (int step = 0; step < kMostSteps && start.norm() > 0; ++step) {
+  for (int step = 0; step < kMaxSteps && start.norm() > 0; ++step) {
     start = map(start.normalized());
     const double before = norm;
     norm = start.norm();
-    if (step >= kFewestSteps && std::abs(norm - before) < kSettled * norm) break;
+    if (step >= kMinSteps && std::abs(norm - before) < kConverged * norm) break;
   }
   return norm;
 }

@@ -16,7 +16,7 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kMostGrowth = 1.1;  // in one iteration
+constexpr double kMaxGrowth = 1.1;  // in one iteration
 
 }  // namespace
 
@@ -78,8 +78,7 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   }
   Solution solution;
   if (step_.grows) {
-    solution.growth =
-        std::clamp(1 + solved[solved.size() - step_.common()] / step_.length, 1 / kMostGrowth, kMostGrowth);
+    solution.growth = std::clamp(1 + solved[solved.size() - step_.common()] / step_.length, 1 / kMaxGrowth, kMaxGrowth);
   }
   solution.q = solved.head(dof) / solution.growth;
   solution.scan_step = step_.motion(solved.tail<6>());

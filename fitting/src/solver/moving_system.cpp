@@ -21,7 +21,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMostTurn = 0.2;    // radians in one iteration
+constexpr double kMaxTurn = 0.2;     // radians in one iteration
 constexpr double kHoldTurns = 1e-4;  // of a turn, relative to moving the samples as far one by one
 constexpr double kConflict = 1e-9;   // of the diagonal
 constexpr Index kEntries = 9;        // of a turn
@@ -189,7 +189,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   VectorXd change = solved.head(dof + ways);
   VectorXd angles = change.tail(ways);
   const double largest = ways > 0 ? angles.cwiseAbs().maxCoeff() : 0;
-  if (largest > kMostTurn) angles *= kMostTurn / largest;
+  if (largest > kMaxTurn) angles *= kMaxTurn / largest;
   change.tail(ways) = angles;
   const VectorXd there = stacked(moved) + columns * change.head(dof) + turn_columns * change.tail(ways);
   Solution solution;

@@ -6,7 +6,7 @@
 namespace orbifit {
 
 Eigen::MatrixXd rigid_modes(const Points& points) {
-  constexpr double kNothing = 1e-9;  // relative: a turn that moves the points no farther is none
+  constexpr double kNegligible = 1e-9;  // relative: a turn that moves the points no farther is none
   const Eigen::RowVector3d middle = points.colwise().mean();
   const Points arms = points.rowwise() - middle;
   const double size = arms.rowwise().norm().maxCoeff();
@@ -20,7 +20,7 @@ Eigen::MatrixXd rigid_modes(const Points& points) {
     }
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(motions);
-  factor.setThreshold(kNothing);
+  factor.setThreshold(kNegligible);
   return factor.householderQ() * Eigen::MatrixXd::Identity(motions.rows(), factor.rank());
 }
 

@@ -10,10 +10,10 @@ namespace orbifit {
 namespace {
 
 constexpr int kSilhouetteSamples = 1500;
-constexpr double kSeenReach = 0.012;       // of the diagonal: nearer to a point of the scan a sample is seen
-constexpr double kFarthest = 0.15;         // of the diagonal: what is pulled
-constexpr double kLeastSeenRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
-constexpr double kWeight = 2;              // there are fewer samples than points of the scan
+constexpr double kSeenReach = 0.012;     // of the diagonal: nearer to a point of the scan a sample is seen
+constexpr double kFarthest = 0.15;       // of the diagonal: what is pulled
+constexpr double kMinSeenRobust = 0.03;  // of the diagonal: what was seen through may be far from anything
+constexpr double kWeight = 2;            // there are fewer samples than points of the scan
 
 }  // namespace
 
@@ -61,7 +61,7 @@ double SilhouettePulls::add(const Mesh& deformed, const MovingSurface& surface, 
                             const Similarity& pose, double robust, std::vector<Correspondence>& pairs,
                             const RunContext& context) const {
   const SurfaceSamples samples = samples_on(deformed, surface);
-  const double scale = std::max(robust, kLeastSeenRobust * size_);
+  const double scale = std::max(robust, kMinSeenRobust * size_);
   double error = 0;
   for (const SeenSurface::Missed& each : look(samples, surface, pose, context).missed) {
     const auto s = static_cast<std::size_t>(each.sample);

@@ -22,7 +22,7 @@ constexpr double kCullMargin = 1e-6;
 constexpr double kFarAway = 1e6;
 constexpr double kSliver = 1e-8;  // squared sine of a corner below which a face's plane is uncertain
 constexpr double kPlane = 1e-10;  // above it, what distances to the plane may be off by, of the box and of themselves
-constexpr float kNothing = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
 Four lanes(const std::array<float, 4>& values) {
   return Eigen::Map<const Four>(values.data());
@@ -79,7 +79,7 @@ struct MovingSurface::Query {
   double min_cosine = 0;
   bool unsigned_normal = false;
 
-  float limit = kNothing;  // boxes farther than this, squared, hold nothing nearer, nor do planes
+  float limit = kUnbounded;  // boxes farther than this, squared, hold nothing nearer, nor do planes
   double plane_limit = std::numeric_limits<double>::infinity();
   double squared_distance = std::numeric_limits<double>::infinity();
   int face = -1;
@@ -171,7 +171,7 @@ void MovingSurface::fit_faces(const float* vertices, std::size_t begin, std::siz
     Group& group = levels_.front()[g];
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const std::size_t place = 4 * g + lane;
-      Four low = Four::Constant(kNothing);
+      Four low = Four::Constant(kUnbounded);
       Four high = -low;
       if (place < corners_.size()) {
         const auto at = [&](std::size_t k) {
@@ -195,8 +195,8 @@ void MovingSurface::fit_nodes(std::size_t level, std::size_t begin, std::size_t 
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const std::size_t child = 4 * g + lane;
       for (std::size_t k = 0; k < 3; ++k) {
-        group.low[k][lane] = child < below.size() ? lanes(below[child].low[k]).minCoeff() : kNothing;
-        group.high[k][lane] = child < below.size() ? lanes(below[child].high[k]).maxCoeff() : -kNothing;
+        group.low[k][lane] = child < below.size() ? lanes(below[child].low[k]).minCoeff() : kUnbounded;
+        group.high[k][lane] = child < below.size() ? lanes(below[child].high[k]).maxCoeff() : -kUnbounded;
       }
     }
   }
@@ -245,7 +245,7 @@ void MovingSurface::search(std::size_t level, std::size_t group, Query& query) c
   std::size_t count = 0;
   for (std::size_t lane = 0; lane < 4; ++lane) {
     const float here = squared[static_cast<Eigen::Index>(lane)];
-    if (!(here <= query.limit) || here == kNothing) continue;
+    if (!(here <= query.limit) || here == kUnbounded) continue;
     std::size_t at = count++;
     for (; at > 0 && order[at - 1].first > here; --at) order[at] = order[at - 1];
     order[at] = {here, 4 * group + lane};

@@ -97,7 +97,7 @@ class Closure {
       const Continuum& continuum = *regions_.continuum(place);
       orbit_.turn = continuum.turn_to(seed);
       orbit_.turned_by = place;
-      first.position = settled(inverse(orbit_.turn)(seed), continuum);
+      first.position = foot_where_near(inverse(orbit_.turn)(seed), continuum);
     }
     add(first, 0);
     for (std::size_t head = 0; head < queue_.size(); ++head) {
@@ -123,9 +123,9 @@ class Closure {
       if (continuum->spherical && other.spherical) {
         if ((continuum->centre - other.centre).norm() > scale) refuse(place, chosen);
       } else if (continuum->spherical || other.spherical) {
-        const Continuum& ball = continuum->spherical ? *continuum : other;
+        const Continuum& sphere = continuum->spherical ? *continuum : other;
         const Continuum& line = continuum->spherical ? other : *continuum;
-        if (line.distance(ball.centre) > scale) refuse(place, chosen);
+        if (line.distance(sphere.centre) > scale) refuse(place, chosen);
         if (continuum->spherical) chosen = place;
       } else if (continuum->axis.cross(other.axis).norm() > 1e-6 || continuum->distance(other.centre) > scale) {
         refuse(place, chosen);
@@ -141,7 +141,7 @@ class Closure {
   }
 
   // On the axis exactly, where it is nearly.
-  Eigen::Vector3d settled(const Eigen::Vector3d& position, const Continuum& continuum) const {
+  Eigen::Vector3d foot_where_near(const Eigen::Vector3d& position, const Continuum& continuum) const {
     return continuum.distance(position) < options_.doublet ? continuum.foot(position) : position;
   }
 
@@ -158,7 +158,7 @@ class Closure {
   void restrict_to_continuum(int index, int place) {
     const Continuum& continuum = *regions_.continuum(place);
     const OrbitPoint point = orbit_.points[static_cast<std::size_t>(index)];
-    const bool centred = continuum.distance(point.position) < options_.doublet;  // settled there, but for rounding
+    const bool centred = continuum.distance(point.position) < options_.doublet;  // on the axis, but for rounding
     const auto demand = [&](const Eigen::Vector3d& axis) {
       const Motion turn = Motion::rotation(axis, kTurnOfOneRadian, continuum.centre);
       orbit_.constraints.push_back({index, words_.extended(point.word, place, -1, turn)});
@@ -205,7 +205,7 @@ class Closure {
       if (turning < 0) return;
       const Continuum& continuum = *regions_.continuum(turning);
       const Motion back = inverse(continuum.turn_to(image));
-      position = settled(back(image), continuum);
+      position = foot_where_near(back(image), continuum);
       word = words_.extended(image_word, turning, -1, back);
     };
     int set = carried;

@@ -174,7 +174,7 @@ TEST_F(KurzOfScan, ExplainsItAndEndsAtRest) {
   const FitResult result = fitted(options);
   EXPECT_TRUE(result.converged);
   EXPECT_GT(result.inlier_ratio, 0.95);
-  EXPECT_EQ(result.stopped_because.substr(0, 7), "settled") << result.stopped_because;
+  EXPECT_EQ(result.stopped_because.substr(0, 9), "converged") << result.stopped_because;
   EXPECT_EQ(result.iterations_in_all, static_cast<int>(result.iterations.size()));
   EXPECT_EQ(result.annotation.regions.size(), template_.truth.regions.size());
 }

@@ -12,7 +12,7 @@ struct DetectOptions {
   double tolerance = 0.005;  // 1e-6 <= tolerance <= 0.1
   /// Surface samples on which a whole mesh is verified; parts get a share by area.
   int samples = 4000;  // >= 100
-  /// Meshes of at least as many faces are looked at by a coarser stand-in, where the tolerance allows one of at most
+  /// Meshes of at least as many faces are looked at by a coarser proxy mesh, where the tolerance allows one of at most
   /// half the faces, and what is found there is carried back, refined and verified on the mesh itself; 0: none are.
   int simplify_above_faces = 60000;  // >= 0
   /// Stop after this many seconds and return what is verified by then.

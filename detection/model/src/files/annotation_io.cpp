@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 constexpr double kOrthogonal = 1e-6;
 constexpr double kClosed = 1e-5;      // of linear parts, and of translations as a fraction of the diagonal
 constexpr double kUnitLength = 1e-5;  // of an axis
-constexpr std::size_t kMostElements = 4096;
+constexpr std::size_t kMaxElements = 4096;
 
 std::string number_text(double number) {
   std::string text;
@@ -285,7 +285,7 @@ class AnnotationReader {
       if (!region.elements.empty()) refuse(inner, "must be [] for the continuous group " + symbol);
       return;
     }
-    if (region.elements.size() > kMostElements) refuse(inner, "more than 4096 elements are not read");
+    if (region.elements.size() > kMaxElements) refuse(inner, "more than 4096 elements are not read");
     if (static_cast<int>(region.elements.size()) != region.group.order()) {
       refuse(inner, "has " + std::to_string(region.elements.size()) + " motions, but " + symbol + " has " +
                         std::to_string(region.group.order()) + " elements");

@@ -27,7 +27,7 @@ namespace {
 using Json = nlohmann::json;
 using namespace gltf;
 
-constexpr std::int64_t kMostVertices = 200'000'000;
+constexpr std::int64_t kMaxVertices = 200'000'000;
 
 class GltfReader {
  public:
@@ -228,7 +228,7 @@ class GltfReader {
     if (position < 0) refuse(where, "has no POSITION");
     const std::int64_t first = builder_.vertices();
     const Accessor points = accessor(position, 3);
-    if (first + points.count > kMostVertices) refuse(where, "too many vertices");
+    if (first + points.count > kMaxVertices) refuse(where, "too many vertices");
     const bool moved = !world.isIdentity(0);
     for (std::int64_t v = 0; v < points.count; ++v) {
       const Eigen::Vector3d local(points.value(v, 0), points.value(v, 1), points.value(v, 2));

@@ -1,4 +1,4 @@
-#include "truth/carried_faces.h"
+#include "truth/transferred_faces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "joined_scans.h"
+#include "start/joined_scans.h"
 
 #include <algorithm>
 #include <cstddef>

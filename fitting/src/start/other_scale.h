@@ -7,7 +7,7 @@
 #include "orbifit/subspace/subspace.h"
 
 #include "fit_loop.h"
-#include "placed_scan.h"
+#include "start/placed_scan.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "truth/carried_truth.h"
+#include "truth/transferred_truth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "base/random.h"
 #include "detection_score/face_set.h"
 #include "detection_score/region_validity.h"
-#include "truth/carried_faces.h"
+#include "truth/transferred_faces.h"
 
 namespace orbifit {
 
@@ -38,7 +38,7 @@ constexpr double kMinInstance = 0.5;
 void check_share(const char* name, double value, double most) {
   if (value >= 0 && value <= most) return;
   std::ostringstream text;
-  text << "carried: " << name << " is " << value << "; it must be in [0, " << most << "]";
+  text << "transferred truth: " << name << " is " << value << "; it must be in [0, " << most << "]";
   throw UsageError(text.str());
 }
 
@@ -95,17 +95,17 @@ class Carrier {
     double done = 0;
     for (const Region& region : old.expected.regions) {
       context_.progress("truth", done++ / count);
-      carry(region, true);
+      transfer(region, true);
     }
     for (const Region& region : old.optional_regions) {
       context_.progress("truth", done++ / count);
-      carry(region, false);
+      transfer(region, false);
     }
     demote_contained();
     nest();
     set_parents(truth_.expected.regions);
-    for (const Pattern& pattern : old.expected.patterns) carry(pattern, true);
-    for (const Pattern& pattern : old.optional_patterns) carry(pattern, false);
+    for (const Pattern& pattern : old.expected.patterns) transfer(pattern, true);
+    for (const Pattern& pattern : old.optional_patterns) transfer(pattern, false);
     return std::move(truth_);
   }
 
@@ -120,7 +120,7 @@ class Carrier {
     return std::min(options_.tolerance * measured_.diagonal, kRegionTolerance * measured_.diagonal_of(faces));
   }
 
-  void carry(const Region& old, bool expected) {
+  void transfer(const Region& old, bool expected) {
     const std::vector<int> visible = new_faces_(old.faces);
     Random random(context_.seed, "carried truth " + std::to_string(old.id));
     const std::vector<Motion> motions = tested_motions(old, random);
@@ -195,7 +195,7 @@ class Carrier {
   }
 
   // What all instances show: other parts hide more of some than of others.
-  void carry(const Pattern& old, bool expected) {
+  void transfer(const Pattern& old, bool expected) {
     Pattern pattern = old;
     std::vector<PatternInstance>& instances = pattern.instances;
     if (instances.empty()) return;
@@ -246,7 +246,7 @@ class Carrier {
 void CarryOptions::validate() const {
   if (!(tolerance > 0)) {
     std::ostringstream text;
-    text << "carried: tolerance is " << tolerance << ": must be positive";
+    text << "transferred truth: tolerance is " << tolerance << ": must be positive";
     throw UsageError(text.str());
   }
   check_share("least_kept", least_kept, 1);
@@ -254,8 +254,8 @@ void CarryOptions::validate() const {
   check_share("least_area", least_area, least_expected);
 }
 
-DetectionTruth carried(const TruthModel& model, const Mesh& mesh, const std::vector<int>& source_face,
-                       const CarryOptions& options, RunContext& context) {
+DetectionTruth transferred_truth(const TruthModel& model, const Mesh& mesh, const std::vector<int>& source_face,
+                                 const CarryOptions& options, RunContext& context) {
   options.validate();
   if (static_cast<Eigen::Index>(source_face.size()) != mesh.faces.rows()) {
     throw InputError("", "source_face",

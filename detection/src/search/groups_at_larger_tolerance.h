@@ -12,7 +12,7 @@
 namespace orbifit {
 
 /// A group that the whole mesh has at a larger tolerance only, as a fraction of its diagonal.
-struct LooserGroup {
+struct LargerToleranceGroup {
   PointGroup group;
   double tolerance;
 };
@@ -21,7 +21,8 @@ struct LooserGroup {
 /// groups that are larger than the one before.
 /// \param has     the whole's group at the tolerance; nothing where it has none
 /// \param screen  as for find_own_group()
-std::vector<LooserGroup> looser_groups(const PreparedMesh& prepared, const std::optional<PointGroup>& has,
-                                       double tolerance, const DirectionSet& screen, const RunContext& context);
+std::vector<LargerToleranceGroup> groups_at_larger_tolerance(const PreparedMesh& prepared,
+                                                             const std::optional<PointGroup>& has, double tolerance,
+                                                             const DirectionSet& screen, const RunContext& context);
 
 }  // namespace orbifit

@@ -6,8 +6,8 @@
 #include "orbifit/fitting/placement.h"
 #include "orbifit/model/run_context.h"
 
-#include "placed_scan.h"
 #include "stage_clock.h"
+#include "start/placed_scan.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "fit_starts.h"
+#include "start/fit_starts.h"
 
 #include <algorithm>
 #include <cmath>

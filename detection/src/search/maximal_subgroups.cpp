@@ -1,4 +1,4 @@
-#include "search/wider_subgroups.h"
+#include "search/maximal_subgroups.h"
 
 #include <algorithm>
 #include <functional>
@@ -48,7 +48,7 @@ std::vector<std::vector<char>> frequent_masks(const KeptSamples& samples) {
 }
 
 // Subgroups that keep materially more than any larger one, the largest first.
-std::vector<GroupPlacement> wider_subgroups(const GroupPlacement& placement, const KeptSamples& samples) {
+std::vector<GroupPlacement> maximal_subgroups(const GroupPlacement& placement, const KeptSamples& samples) {
   const std::vector<Eigen::Matrix3d>& linear = samples.linear();
   std::vector<GroupPlacement> result;
   std::vector<std::pair<Elements, std::vector<char>>> found{{samples.all(), samples.kept_by(samples.all())}};
@@ -93,11 +93,11 @@ std::vector<FoundRegion> find_wider_subgroups(const ScreenedSurface& surface, co
       continue;
     }
     const KeptSamples samples(surface, regions[r].placement, context);
-    for (GroupPlacement& placement : wider_subgroups(regions[r].placement, samples)) {
+    for (GroupPlacement& placement : maximal_subgroups(regions[r].placement, samples)) {
       wider.push_back(std::move(placement));
     }
   }
-  search.settle_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
+  search.consider_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
     if (k == wider.size()) return std::nullopt;
     return LineRegionSearch::Candidate{"subgroups", wider[k++], false};
   });

@@ -1,4 +1,4 @@
-#include "placed_scan.h"
+#include "start/placed_scan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,12 +22,12 @@ struct Shares {
 // \param reach  of the template's points, scan units: farther ones were left out for that
 Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const SurfaceIndex& surface, const Similarity& pose,
                  double reach, const RunContext& context) {
-  constexpr Eigen::Index kMostLooks = 4000;
+  constexpr Eigen::Index kMaxLooks = 4000;
   constexpr double kJoined = 3;  // spacings
   Random random(context.seed, "share of a scan");
-  const auto count = static_cast<std::size_t>(std::min(kMostLooks, cloud.points.rows()));
+  const auto count = static_cast<std::size_t>(std::min(kMaxLooks, cloud.points.rows()));
   Points looks = cloud.points.topRows(static_cast<Eigen::Index>(count));
-  if (cloud.points.rows() > kMostLooks) {
+  if (cloud.points.rows() > kMaxLooks) {
     for (auto look : looks.rowwise()) {
       const auto row = random.below(static_cast<std::uint64_t>(cloud.points.rows()));
       look = cloud.points.row(static_cast<Eigen::Index>(row));
@@ -96,11 +96,11 @@ std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCl
                                       double slack, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context) {
   constexpr int kMore = 2;  // points, where planes among them go
-  constexpr Eigen::Index kFewestNear = 10;
+  constexpr Eigen::Index kMinNear = 10;
   const double size = diagonal(surface.mesh().vertices);
   const double reach = kNearTemplate + slack;
   const PointCloud near = points_near(surface.index, size, cloud, pose, reach, context);
-  if (near.points.rows() < kFewestNear || !(diagonal(near.points) > 0)) return std::nullopt;
+  if (near.points.rows() < kMinNear || !(diagonal(near.points) > 0)) return std::nullopt;
   const auto rid_of_planes = [&](const PreparedScan& scan) {
     return without_planes(surface.index, size, scan, pose, options.reach, context);
   };
@@ -112,7 +112,7 @@ std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCl
     more.most_points *= kMore;
     result.scan = rid_of_planes(prepare_scan(near, more, context));
   }
-  if (result.scan.points.rows() < kFewestNear) return std::nullopt;
+  if (result.scan.points.rows() < kMinNear) return std::nullopt;
   const Shares shares = shares_of(cloud, result.scan, surface.index, pose, reach * size * pose.scale, context);
   result.overlap = shares.used;
   result.torn_off = shares.torn_off;

@@ -3,7 +3,7 @@
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/run_context.h"
 
-#include "placed_scan.h"
+#include "start/placed_scan.h"
 
 namespace orbifit {
 

@@ -1,4 +1,4 @@
-#include "truth/carried_truth.h"
+#include "truth/transferred_truth.h"
 
 #include <algorithm>
 #include <numeric>
@@ -59,7 +59,7 @@ TEST(CarriedTruth, StaysOnASubdividedMesh) {
     const TruthModel model = as_truth(generate(name));
     const Derived fine = subdivided(model.mesh, 0.02);
     RunContext context;
-    const DetectionTruth truth = carried(model, fine.mesh, fine.source_face, {}, context);
+    const DetectionTruth truth = transferred_truth(model, fine.mesh, fine.source_face, {}, context);
     EXPECT_EQ(truth.expected.mesh_faces, fine.mesh.faces.rows());
     EXPECT_EQ(truth.expected.mesh_vertices, fine.mesh.vertices.rows());
     EXPECT_EQ(truth.expected.mesh_diagonal, diagonal(fine.mesh.vertices));
@@ -84,7 +84,7 @@ TEST_P(CarriedOrbit, CoversTheRemeshedOrbit) {
   const TruthModel model = as_truth(generate_orbit(PointGroup::parse(GetParam()).value()));
   RunContext context;
   const Remeshed remeshed = remesh(model.mesh, {.cell = 1.0 / 90}, context);
-  const DetectionTruth truth = carried(model, remeshed.mesh, remeshed.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model, remeshed.mesh, remeshed.source_face, {}, context);
   ASSERT_EQ(truth.expected.regions.size(), 1U);
   const Region& region = truth.expected.regions.front();
   EXPECT_EQ(region.group.symbol(), GetParam());
@@ -100,7 +100,7 @@ TEST(CarriedTruth, NestsTheRegionsOfARemeshedChair) {
   const TruthModel model = as_truth(generate("chair"));
   RunContext context;
   const Remeshed remeshed = remesh(model.mesh, {}, context);
-  const DetectionTruth truth = carried(model, remeshed.mesh, remeshed.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model, remeshed.mesh, remeshed.source_face, {}, context);
   const std::vector<Region>& regions = truth.expected.regions;
   const Region* whole = find_region(regions, "chair");
   const Region* lower = find_region(regions, "seat and legs");
@@ -162,7 +162,7 @@ class RoundBar : public testing::Test {
     std::vector<int> sources;
     for (const int face : rest.source_face) sources.push_back(fine_.source_face[static_cast<std::size_t>(face)]);
     RunContext context;
-    return carried(model_, rest.mesh, sources, {}, context);
+    return transferred_truth(model_, rest.mesh, sources, {}, context);
   }
 
   TruthModel model_;
@@ -171,7 +171,7 @@ class RoundBar : public testing::Test {
 
 TEST_F(RoundBar, KeepsItsGroupWhole) {
   RunContext context;
-  const DetectionTruth truth = carried(model_, fine_.mesh, fine_.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model_, fine_.mesh, fine_.source_face, {}, context);
   ASSERT_EQ(truth.expected.regions.size(), 1U);
   EXPECT_EQ(static_cast<Eigen::Index>(truth.expected.regions.front().faces.size()), fine_.mesh.faces.rows());
 }
@@ -234,7 +234,7 @@ TEST_F(RoundBar, IsNotKeptByAWrongGroup) {
   model_.truth.expected.regions.front() =
       make_region({Family::Dinfh, 1}, Vector3d::Zero(), tilted, model_.truth.expected.regions.front().faces, "bar");
   RunContext context;
-  const DetectionTruth truth = carried(model_, fine_.mesh, fine_.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model_, fine_.mesh, fine_.source_face, {}, context);
   EXPECT_TRUE(truth.expected.regions.empty());
 }
 
@@ -261,7 +261,7 @@ TEST(CarriedTruth, DropsSmallRegionsAndSpoiltPatterns) {
 
   const Derived fine = subdivided(model.mesh, 0.02);
   RunContext context;
-  const DetectionTruth whole = carried(model, fine.mesh, fine.source_face, {}, context);
+  const DetectionTruth whole = transferred_truth(model, fine.mesh, fine.source_face, {}, context);
   ASSERT_EQ(whole.expected.patterns.size(), 1U);
   EXPECT_LT(whole.expected.patterns.front().residual.max, 1e-9);
   EXPECT_NE(find_region(whole.expected.regions, "plate"), nullptr);
@@ -269,12 +269,12 @@ TEST(CarriedTruth, DropsSmallRegionsAndSpoiltPatterns) {
   EXPECT_EQ(find_region(whole.expected.regions, "knob"), nullptr);
   EXPECT_EQ(find_region(whole.optional_regions, "knob"), nullptr);
   const DetectionTruth large =
-      carried(model, fine.mesh, fine.source_face, {.least_expected = 0, .least_area = 0}, context);
+      transferred_truth(model, fine.mesh, fine.source_face, {.least_expected = 0, .least_area = 0}, context);
   EXPECT_NE(find_region(large.expected.regions, "knob"), nullptr);
 
   Derived rest = cut(fine.mesh, Ball{{4, 0, 1.2}, 1.0});
   for (int& face : rest.source_face) face = fine.source_face[static_cast<std::size_t>(face)];
-  const DetectionTruth spoilt = carried(model, rest.mesh, rest.source_face, {}, context);
+  const DetectionTruth spoilt = transferred_truth(model, rest.mesh, rest.source_face, {}, context);
   EXPECT_TRUE(spoilt.expected.patterns.empty());
   EXPECT_TRUE(spoilt.optional_patterns.empty());
 }
@@ -295,7 +295,7 @@ TEST(CarriedTruth, KeepsOfAPatternWhatAllInstancesShow) {
   model.truth.expected.patterns.push_back(row);
   RunContext context;
   const Remeshed remeshed = remesh(model.mesh, {}, context);
-  const DetectionTruth truth = carried(model, remeshed.mesh, remeshed.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model, remeshed.mesh, remeshed.source_face, {}, context);
   ASSERT_EQ(truth.expected.patterns.size(), 1U);
   for (const PatternInstance& instance : truth.expected.patterns.front().instances) {
     // Four sides above the slab and the top; twice the tolerance and a face more.
@@ -306,7 +306,8 @@ TEST(CarriedTruth, KeepsOfAPatternWhatAllInstancesShow) {
     }
     EXPECT_GT(lowest, 0.55);
   }
-  const DetectionTruth strict = carried(model, remeshed.mesh, remeshed.source_face, {.least_kept = 0.9}, context);
+  const DetectionTruth strict =
+      transferred_truth(model, remeshed.mesh, remeshed.source_face, {.least_kept = 0.9}, context);
   EXPECT_TRUE(strict.expected.patterns.empty());
   EXPECT_EQ(strict.optional_patterns.size(), 1U);
 }
@@ -320,7 +321,7 @@ TEST(CarriedTruth, LeavesTheLesserOfTwoGroupsOnTheSameFacesOptional) {
   model.truth.expected.regions.back().id = 1;
   const Derived fine = subdivided(box, 0.05);
   RunContext context;
-  const DetectionTruth truth = carried(model, fine.mesh, fine.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model, fine.mesh, fine.source_face, {}, context);
   ASSERT_EQ(truth.expected.regions.size(), 1U);
   EXPECT_EQ(truth.expected.regions.front().name, "greater");
   ASSERT_EQ(truth.optional_regions.size(), 1U);
@@ -337,7 +338,7 @@ TEST(CarriedTruth, CarriesWhatIsOptionalAndAcceptedBesides) {
   model.truth.also_accepted[0] = {range(0, 8)};
   const Derived fine = subdivided(box, 0.1);
   RunContext context;
-  const DetectionTruth truth = carried(model, fine.mesh, fine.source_face, {}, context);
+  const DetectionTruth truth = transferred_truth(model, fine.mesh, fine.source_face, {}, context);
   ASSERT_EQ(truth.expected.regions.size(), 1U);
   ASSERT_EQ(truth.optional_regions.size(), 1U);
   EXPECT_EQ(truth.optional_regions.front().id, 4);
@@ -353,9 +354,9 @@ TEST(CarriedTruth, DoesNotDependOnThreads) {
   const TruthModel model = as_truth(generate("wheel"));
   RunContext context;
   const Remeshed remeshed = remesh(model.mesh, {.cell = 1.0 / 60}, context);
-  const DetectionTruth one = carried(model, remeshed.mesh, remeshed.source_face, {}, context);
+  const DetectionTruth one = transferred_truth(model, remeshed.mesh, remeshed.source_face, {}, context);
   context.threads = 2;
-  const DetectionTruth two = carried(model, remeshed.mesh, remeshed.source_face, {}, context);
+  const DetectionTruth two = transferred_truth(model, remeshed.mesh, remeshed.source_face, {}, context);
   ASSERT_EQ(one.expected.regions.size(), two.expected.regions.size());
   ASSERT_FALSE(one.expected.regions.empty());
   for (std::size_t r = 0; r < one.expected.regions.size(); ++r) {
@@ -370,12 +371,12 @@ TEST(CarriedTruth, RefusesSourcesThatDoNotFit) {
   const TruthModel model =
       with_region(box, make_region({Family::Dnh, 4}, Vector3d::Zero(), GroupFrame::Identity(), range(0, 12), "box"));
   RunContext context;
-  EXPECT_THROW(carried(model, box, range(0, 11), {}, context), InputError);
-  EXPECT_THROW(carried(model, box, range(1, 12), {}, context), InputError);
-  EXPECT_THROW(carried(model, box, range(-1, 12), {}, context), InputError);
-  EXPECT_THROW(carried(model, box, range(0, 12), {.tolerance = 0}, context), UsageError);
-  EXPECT_THROW(carried(model, box, range(0, 12), {.least_kept = 2}, context), UsageError);
-  EXPECT_THROW(carried(model, box, range(0, 12), {.least_expected = 0.001}, context), UsageError);
+  EXPECT_THROW(transferred_truth(model, box, range(0, 11), {}, context), InputError);
+  EXPECT_THROW(transferred_truth(model, box, range(1, 12), {}, context), InputError);
+  EXPECT_THROW(transferred_truth(model, box, range(-1, 12), {}, context), InputError);
+  EXPECT_THROW(transferred_truth(model, box, range(0, 12), {.tolerance = 0}, context), UsageError);
+  EXPECT_THROW(transferred_truth(model, box, range(0, 12), {.least_kept = 2}, context), UsageError);
+  EXPECT_THROW(transferred_truth(model, box, range(0, 12), {.least_expected = 0.001}, context), UsageError);
 }
 
 }  // namespace

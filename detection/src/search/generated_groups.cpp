@@ -1,4 +1,4 @@
-#include "search/joined_groups.h"
+#include "search/generated_groups.h"
 
 #include <algorithm>
 #include <array>
@@ -161,7 +161,7 @@ std::vector<FoundRegion> find_joined_groups(const ScreenedSurface& surface, cons
     }
   }
   std::ranges::stable_sort(joined, std::greater<>(), [](const GroupPlacement& each) { return each.group.order(); });
-  search.settle_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
+  search.consider_all<std::size_t>(0, [&](std::size_t& k) -> std::optional<LineRegionSearch::Candidate> {
     if (k == joined.size()) return std::nullopt;
     return LineRegionSearch::Candidate{"joined", joined[k++], false};
   });

@@ -1,6 +1,6 @@
 // What two groups generate together.
 
-#include "search/joined_groups.h"
+#include "search/generated_groups.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "other_scale.h"
+#include "start/other_scale.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "search/looser_groups.h"
+#include "search/groups_at_larger_tolerance.h"
 
 #include <numeric>
 #include <vector>
@@ -7,15 +7,16 @@
 
 namespace orbifit {
 
-std::vector<LooserGroup> looser_groups(const PreparedMesh& prepared, const std::optional<PointGroup>& has,
-                                       double tolerance, const DirectionSet& screen, const RunContext& context) {
+std::vector<LargerToleranceGroup> groups_at_larger_tolerance(const PreparedMesh& prepared,
+                                                             const std::optional<PointGroup>& has, double tolerance,
+                                                             const DirectionSet& screen, const RunContext& context) {
   constexpr int kSamples = 1500;
   constexpr double kMax = 0.02;  // of the diagonal: beyond, any shape has something
   std::vector<int> all(static_cast<std::size_t>(prepared.mesh.faces.rows()));
   std::iota(all.begin(), all.end(), 0);
-  const auto group_at = [&](double looser) -> std::optional<PointGroup> {
-    if (looser > kMax) return std::nullopt;
-    const SurfacePatch patch = make_patch(prepared, all, kSamples, looser, context, "looser");
+  const auto group_at = [&](double at) -> std::optional<PointGroup> {
+    if (at > kMax) return std::nullopt;
+    const SurfacePatch patch = make_patch(prepared, all, kSamples, at, context, "larger tolerance");
     const std::optional<OwnGroup> own = find_own_group(patch, &screen, {}, context);
     return own ? std::optional(own->placement.group) : std::nullopt;
   };
@@ -28,7 +29,7 @@ std::vector<LooserGroup> looser_groups(const PreparedMesh& prepared, const std::
   const std::optional<PointGroup> at_four = group_at(4 * tolerance);
   if (!more(at_four, has) && 4 * tolerance <= kMax) return {};
   const std::optional<PointGroup> at_two = group_at(2 * tolerance);
-  std::vector<LooserGroup> result;
+  std::vector<LargerToleranceGroup> result;
   if (more(at_two, has)) result.push_back({*at_two, 2 * tolerance});
   if (more(at_four, result.empty() ? has : at_two)) result.push_back({*at_four, 4 * tolerance});
   return result;

@@ -34,7 +34,7 @@ struct CarryOptions {
 /// \param mesh the new one
 /// \param source_face the model's face from which each face of `mesh` came, #F
 /// \throw InputError when there is not one source for each face, or one is outside the model
-DetectionTruth carried(const TruthModel& model, const Mesh& mesh, const std::vector<int>& source_face,
-                       const CarryOptions& options, RunContext& context);
+DetectionTruth transferred_truth(const TruthModel& model, const Mesh& mesh, const std::vector<int>& source_face,
+                                 const CarryOptions& options, RunContext& context);
 
 }  // namespace orbifit
