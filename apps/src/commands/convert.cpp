@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "orbifit/model/appearance.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
@@ -55,8 +56,9 @@ CommandBody convert(CLI::App& app) {
       if (scan.dropped > 0) text += " (" + std::to_string(scan.dropped) + " left out: not finite)";
     } else {
       const Mesh mesh = read_mesh(arguments->input);
+      const Appearance look = read_appearance(arguments->input, mesh);
       context.run.check();
-      write_mesh(arguments->output, mesh);
+      write_with_look(arguments->output, mesh, look, context.run);
       summary["vertices"] = mesh.vertices.rows();
       summary["faces"] = mesh.faces.rows();
       text += count_of(mesh.vertices.rows(), "vertex", "vertices") + ", " + count_of(mesh.faces.rows(), "triangle");

@@ -8,6 +8,7 @@
 
 #include "orbifit/datasets_tools/symmetry_residual.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/appearance.h"
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
@@ -146,7 +147,9 @@ Outcome make_new_triangles(const SymmetrizeArguments& arguments, const Mesh& mes
   const SymmetryReport after =
       symmetry_residual(result.mesh, result.annotation, nullptr, CarriedMotions::fixed, context.run);
   context.run.check();
-  write_mesh(arguments.output, result.mesh);
+  const Appearance look = transferred(read_appearance(arguments.mesh, mesh), mesh, result.mesh, result.source_face,
+                                      result.motions, result.motion_of_face);
+  write_with_look(arguments.output, result.mesh, look, context.run);
   set_residuals(result.annotation, after);
   return {result.annotation, to_json(result, after), to_text(arguments.output, result, after)};
 }

@@ -81,6 +81,7 @@ class DemandSearch {
   }
 
   void add_region(const Region& region) {
+    result_.finite.push_back(region);
     SymmetricRemeshItem item{false, region.id, region.name, region.group.symbol(), "", 0, ""};
     Demand demand;
     const auto whole = whole_components(region.faces);
@@ -93,6 +94,7 @@ class DemandSearch {
       item.score = score(faces_of(*whole), finite->elements);
       if (item.score < min_score_) refuse(item);
       item.kept_as = finite->group.symbol();
+      result_.finite.back() = *finite;
       known_.insert(known_.end(), finite->elements.begin(), finite->elements.end());
       for (const Motion& generator : generating_set(*finite)) demand.motions.push_back({generator, *whole, *whole});
     }
@@ -132,11 +134,12 @@ class DemandSearch {
     return alone(region, whole) ? chosen_group(region, places) : std::nullopt;
   }
 
-  // Whether no other region or pattern holds any of the components.
+  // Whether no other region or pattern of whole components holds any of these.
   bool alone(const Region& region, const std::vector<int>& whole) const {
     const std::vector<int> faces = faces_of(whole);
     const auto apart = [&](const std::vector<int>& others) {
-      return std::ranges::none_of(others, [&](int f) { return std::ranges::binary_search(faces, f); });
+      return !whole_components(others) ||
+             std::ranges::none_of(others, [&](int f) { return std::ranges::binary_search(faces, f); });
     };
     for (const Region& other : annotation_.regions) {
       if (&other != &region && !apart(other.faces)) return false;

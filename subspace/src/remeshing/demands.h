@@ -15,8 +15,9 @@ namespace orbifit {
 
 /// The demands of an annotation, regions first.
 struct AnnotationDemands {
-  std::vector<SymmetricRemeshItem> items;                 ///< of each region, then of each pattern
-  std::vector<Demand> demands;                            ///< of each item; without motions where it is left out
+  std::vector<SymmetricRemeshItem> items;  ///< of each region, then of each pattern
+  std::vector<Region> finite;              ///< of each region: with the finite group that stands for a continuous one
+  std::vector<Demand> demands;             ///< of each item; without motions where it is left out
   std::vector<std::vector<std::vector<int>>> components;  ///< of each item: those of a region, or of each instance
 };
 

@@ -53,7 +53,7 @@ class Remeshing {
     for (std::size_t c = 0; c < cells.cells.size(); ++c) add_cells_of(cells, static_cast<int>(c), reach);
     finish();
     result_.items = std::move(asked.items);
-    annotate(asked.components);
+    annotate(asked);
     measure();
     return std::move(result_);
   }
@@ -144,13 +144,16 @@ class Remeshing {
     return faces;
   }
 
-  void annotate(const std::vector<std::vector<std::vector<int>>>& components) {
+  void annotate(const AnnotationDemands& asked) {
+    const auto& components = asked.components;
     result_.annotation = empty_annotation(result_.mesh, annotation_.tolerance);
     result_.annotation.up = annotation_.up;
     for (std::size_t i = 0; i < result_.items.size(); ++i) {
       if (result_.items[i].kept_as.empty()) continue;
       if (i < annotation_.regions.size()) {
-        Region region = annotation_.regions[i];
+        Region region = asked.finite[i];
+        region.id = annotation_.regions[i].id;
+        region.name = annotation_.regions[i].name;
         region.faces = new_faces(components[i].front());
         result_.annotation.regions.push_back(std::move(region));
       } else {

@@ -32,9 +32,10 @@ struct SymmetricRemeshItem {
 
 struct SymmetricRemesh {
   Mesh mesh;
-  SymmetryAnnotation annotation;  ///< of `mesh`: what was kept
-  std::vector<int> source_face;   ///< #F of `mesh`: the face that it was cut from
-  std::vector<Motion> motions;    ///< the identity first
+  SymmetryAnnotation
+      annotation;  ///< of `mesh`: what was kept; of continuous groups the finite one that the triangles have
+  std::vector<int> source_face;     ///< #F of `mesh`: the face that it was cut from
+  std::vector<Motion> motions;      ///< the identity first
   std::vector<int> motion_of_face;  ///< #F: which of the motions took the cut face to where it is
   std::vector<SymmetricRemeshItem> items;
   double largest_distance = 0;  ///< between the old and the new surface
