@@ -28,6 +28,7 @@ constexpr double kAll = 0.9;
 constexpr int kScored = 2000;  // points of a region, each under every element
 constexpr int kMaxOrder = 64;  // of rotations that stand for a continuous group
 constexpr int kMinOrder = 8;
+constexpr double kVertex = 0.1;  // of a typical edge: an image as near as this to a vertex is that vertex
 
 class DemandSearch {
  public:
@@ -130,8 +131,26 @@ class DemandSearch {
     if (!region.group.continuous()) return region;
     const std::vector<int> vertices = vertices_of_faces(mesh_, region.faces);
     const Points places = mesh_.vertices(vertices, Eigen::all);
-    if (auto turning = turning_region(region, places, 2 * annotation_.tolerance * scale_, known_)) return turning;
-    return alone(region, whole) ? chosen_group(region, places) : std::nullopt;
+    const double edge = typical_edge(region.faces);
+    // Vertices that a rotation takes to vertices, not only near to some: what is thinner than the tolerance is
+    // invariant under any.
+    const double reach = std::min(2 * annotation_.tolerance * scale_, kVertex * edge);
+    if (auto turning = turning_region(region, places, reach, known_)) return turning;
+    return alone(region, whole) ? chosen_group(region, places, edge) : std::nullopt;
+  }
+
+  // Mean of the triangles' shortest sides.
+  double typical_edge(const std::vector<int>& faces) const {
+    double sum = 0;
+    for (const int f : faces) {
+      double shortest = scale_;
+      for (int k = 0; k < 3; ++k) {
+        const auto side = mesh_.vertices.row(mesh_.faces(f, k)) - mesh_.vertices.row(mesh_.faces(f, (k + 1) % 3));
+        shortest = std::min(shortest, side.norm());
+      }
+      sum += shortest;
+    }
+    return sum / static_cast<double>(faces.size());
   }
 
   // Whether no other region or pattern of whole components holds any of these.
@@ -153,15 +172,12 @@ class DemandSearch {
   }
 
   // Of the same kind, with rotations about as fine as the edges at the largest circumference.
-  std::optional<Region> chosen_group(const Region& region, const Points& places) const {
+  std::optional<Region> chosen_group(const Region& region, const Points& places, double edge) const {
     using Family = PointGroup::Family;
     double radius = 0;
     for (Eigen::Index i = 0; i < places.rows(); ++i) {
       radius = std::max(radius, (places.row(i).transpose() - region.centre).cross(region.axis).norm());
     }
-    double area = 0;
-    for (const int f : region.faces) area += areas_[f];
-    const double edge = std::sqrt(area / static_cast<double>(region.faces.size()) * 4 / std::sqrt(3.0));
     const double turns = 2 * std::numbers::pi * radius / std::max(edge, 1e-12 * scale_);
     // Powers of two have one another's rotations, and an even order has half turns in its mirrors.
     int order = kMinOrder;

@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "orbifit/model/errors.h"
-
 #include "files/binary.h"
 #include "files/gltf.h"
 #include "files/mesh_formats.h"
@@ -37,7 +35,7 @@ class GlbWriter {
     root_["accessors"] = accessors_;
     root_["bufferViews"] = views_;
     root_["buffers"] = {{{"byteLength", data_.size()}}};
-    return container();
+    return gltf::glb_container(file_, root_.dump(-1, ' ', false, Json::error_handler_t::replace), std::move(data_));
   }
 
  private:
@@ -165,25 +163,6 @@ class GlbWriter {
     root_["images"].push_back(image);
     root_["textures"].push_back({{"source", known->second}});
     return known->second;
-  }
-
-  std::string container() {
-    std::string text = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::size_t total = 12 + 8 + text.size() + 8 + data_.size();
-    if (total > 0xFFFFFFFFU) throw InputError(file_.string(), "", "cannot hold a mesh of more than 4 GB");
-    std::string bytes;
-    bytes.reserve(total);
-    store(bytes, gltf::kMagic);
-    store(bytes, std::uint32_t{2});
-    store(bytes, static_cast<std::uint32_t>(total));
-    store(bytes, static_cast<std::uint32_t>(text.size()));
-    store(bytes, gltf::kJsonChunk);
-    bytes += text;
-    store(bytes, static_cast<std::uint32_t>(data_.size()));
-    store(bytes, gltf::kBinChunk);
-    bytes += data_;
-    return bytes;
   }
 
   const std::filesystem::path& file_;
