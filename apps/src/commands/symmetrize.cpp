@@ -191,8 +191,9 @@ CommandBody symmetrize(CLI::App& app) {
   return [arguments, &app](CommandContext& context) {
     check_arguments(*arguments, app.count("--min-score") > 0);
     const Mesh mesh = read_mesh(arguments->mesh);
-    const SymmetryAnnotation annotation =
-        made_consistent(mesh, without(arguments->without, read_annotation(arguments->annotation, mesh)), context.run);
+    const SymmetryAnnotation given = without(arguments->without, read_annotation(arguments->annotation, mesh));
+    if (arguments->remesh) require_scores(mesh, given, arguments->options, context.run);
+    const SymmetryAnnotation annotation = made_consistent(mesh, given, context.run);
     const Outcome outcome = arguments->remesh ? make_new_triangles(*arguments, mesh, annotation, context)
                                               : move_vertices(*arguments, mesh, annotation, context);
     if (!arguments->annotation_output.empty()) write_annotation(arguments->annotation_output, outcome.annotation);

@@ -135,7 +135,9 @@ class DemandSearch {
     // Vertices that a rotation takes to vertices, not only near to some: what is thinner than the tolerance is
     // invariant under any.
     const double reach = std::min(2 * annotation_.tolerance * scale_, kVertex * edge);
-    if (auto turning = turning_region(region, places, reach, known_)) return turning;
+    const auto turning = turning_region(region, places, reach, known_);
+    // Off the axis an orbit has as many places as there are rotations: on thin parts finer ones may seem to fit.
+    if (turning && turning->group.n <= static_cast<int>(places.rows())) return turning;
     return alone(region, whole) ? chosen_group(region, places, edge) : std::nullopt;
   }
 

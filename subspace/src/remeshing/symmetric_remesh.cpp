@@ -215,6 +215,13 @@ void SymmetricRemeshOptions::validate() const {
   require(snap >= 0 && snap <= 0.4, "snap", snap, "in [0, 0.4]");
 }
 
+void require_scores(const Mesh& mesh, const SymmetryAnnotation& annotation, const SymmetricRemeshOptions& options,
+                    const RunContext& context) {
+  options.validate();
+  const Weld weld = weld_vertices(mesh.vertices, kOnePlace * diagonal(mesh.vertices));
+  annotation_demands(mesh, touching_parts(mesh, weld, DoubledParts::apart), annotation, options.min_score, context);
+}
+
 SymmetricRemesh symmetric_remesh(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                  const SymmetricRemeshOptions& options, const RunContext& context) {
   options.validate();
