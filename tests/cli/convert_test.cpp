@@ -139,6 +139,29 @@ TEST_F(OrbifitConvert, KeepsTheLookBetweenObjAndGlb) {
   EXPECT_NE(program_.run("convert a.obj a.off").errors.find("does not take"), std::string::npos);
 }
 
+TEST_F(OrbifitConvert, InfoAndCheckTellWhatAFileHolds) {
+  program_.folder().write("a.mtl", "newmtl red\nKd 1 0.5 0\nmap_Kd none.png\n");
+  program_.folder().write(
+      "a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
+  const json content = json::parse(program_.run("info a.obj --json").output)["content"];
+  EXPECT_EQ(content["format"], "obj");
+  EXPECT_EQ(content["uv_sets"], 1);
+  EXPECT_EQ(content["normals"], false);
+  EXPECT_EQ(content["materials"][0]["name"], "red");
+  EXPECT_EQ(content["materials"][0]["texture_found"], false);
+  EXPECT_EQ(content["warnings"].size(), 1U);
+  ASSERT_EQ(program_.run("convert a.obj a.glb").code, 0);
+  const json glb = json::parse(program_.run("info a.glb --json").output)["content"];
+  EXPECT_EQ(glb["nodes"], 1);
+  EXPECT_EQ(glb["unit"], "metre");
+  EXPECT_EQ(glb["uv_sets"], 1);
+  program_.folder().write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/4 2/4 3/4\n");
+  EXPECT_TRUE(json::parse(program_.run("info bad.obj --json").output)["content"].contains("problem"));
+  EXPECT_EQ(program_.run("convert bad.obj x.glb").code, 3);
+  const json checked = json::parse(program_.run("check obj_000007.ply cube.json --json").output);
+  EXPECT_EQ(checked["content"]["format"], "ply");
+}
+
 TEST_F(OrbifitConvert, RefusesWhatItCannotUse) {
   EXPECT_EQ(convert("cube.json x.csv --element 48").code, 2);
   EXPECT_EQ(convert("cube.json x.csv --region 9").code, 2);
