@@ -54,19 +54,9 @@ export class Background {
   /** \param each  every answer but the last, and errors \return the last answer of this kind */
   run<Kind extends Task["kind"]>(task: Task & { kind: Kind },
                                  each: (answer: Answer) => void = () => {}): Promise<Answer & { kind: Kind }> {
-    const number = ++this.number;
-    const request: Request = { number, task };
-    if (!this.worker) {
-      this.worker = new Worker(URL.createObjectURL(new Blob([workerCode], { type: "text/javascript" })));
-      this.worker.addEventListener("message", (event: MessageEvent<Answer>) =>
-        this.waiting.get(event.data.number)?.(event.data));
-      request.wasm = this.wasm;
-      this.meshSent = false;
-    }
-    if (!this.meshSent && this.mesh) {
-      request.mesh = this.mesh;
-      this.meshSent = true;
-    }
+    const request = this.request();
+    const { number } = request;
+    request.task = task;
     return new Promise((resolve, reject) => {
       this.waiting.set(number, answer => {
         if (answer.kind !== task.kind && answer.kind !== "error") {
@@ -79,6 +69,35 @@ export class Background {
       });
       this.worker!.postMessage(request);
     });
+  }
+
+  private preparing = 0; // a timer's
+  /** Starts the worker and gives it the mesh once the page is at rest: the first task then need not wait for that. */
+  prepareSoon(): void {
+    const atRest = 500; // ms
+    clearTimeout(this.preparing);
+    this.preparing = window.setTimeout(() => {
+      if (this.worker && this.meshSent) return;
+      const request = this.request();
+      this.worker!.postMessage(request);
+    }, atRest);
+  }
+
+  /** The next request, with what the worker lacks; there is a worker then. */
+  private request(): Request {
+    const request: Request = { number: ++this.number };
+    if (!this.worker) {
+      this.worker = new Worker(URL.createObjectURL(new Blob([workerCode], { type: "text/javascript" })));
+      this.worker.addEventListener("message", (event: MessageEvent<Answer>) =>
+        this.waiting.get(event.data.number)?.(event.data));
+      request.wasm = this.wasm;
+      this.meshSent = false;
+    }
+    if (!this.meshSent && this.mesh) {
+      request.mesh = this.mesh;
+      this.meshSent = true;
+    }
+    return request;
   }
 
   /** Gives up whatever runs. */

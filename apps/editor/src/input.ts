@@ -74,7 +74,7 @@ export class Input {
       const handle = editor.state.handles[drag.number]!;
       handle.translation = add(drag.start, times(editor.info.diagonal, way));
       if (handle.pin) handle.pin = false;
-      editor.motionsChanged();
+      editor.motionsChanged(true);
       return;
     }
     if (event.buttons === 0 && event.pointerType !== "touch") {
@@ -88,7 +88,10 @@ export class Input {
     this.drag = null;
     this.pressed = null;
     if (drag) {
-      if (drag.moved) editor.remember(drag.before);
+      if (drag.moved) {
+        editor.remember(drag.before);
+        editor.motionsChanged();
+      }
       editor.onChange();
       return;
     }
@@ -267,7 +270,10 @@ export class Input {
         this.gizmoStart = { translation: [...handle.translation], rotation: new ThreeQuaternion(...handle.rotation),
                             scale: handle.scale, position: editor.target(editor.selected) };
       } else {
-        if (this.gizmoBefore) editor.remember(this.gizmoBefore);
+        if (this.gizmoBefore) {
+          editor.remember(this.gizmoBefore);
+          editor.motionsChanged();
+        }
         this.gizmoBefore = this.gizmoStart = null;
         this.attachGizmo();
         editor.onChange();
@@ -289,7 +295,7 @@ export class Input {
           Math.abs(Math.log(Math.max(0.05, entry))) > Math.abs(Math.log(most)) ? Math.max(0.05, entry) : most, 1);
         handle.scale = Math.min(20, start.scale * factor);
       }
-      editor.motionsChanged();
+      editor.motionsChanged(true);
     });
     window.addEventListener("keydown", event => { if (event.key === "Shift") this.snap(true); });
     window.addEventListener("keyup", event => { if (event.key === "Shift") this.snap(false); });

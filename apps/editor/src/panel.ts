@@ -19,9 +19,9 @@ export function showMessage(text: string): void {
 }
 
 /** The options of `orbifit deform` that sample as the page does. */
-function samplingWords({ sampling: { lift, radius, samples, sharp } }: Editor): string {
+function samplingWords({ sampling: { lift, radius, samples, sharp, radius_field } }: Editor): string {
   return (lift ? " --lift paper" : "") + (radius ? ` --radius ${radius}` : "") + (samples ? ` --samples ${samples}` : "") +
-    (sharp ? " --sharp-features" : "");
+    (sharp ? " --sharp-features" : "") + (radius_field ? ` --radius-field ${radius_field.name}` : "");
 }
 
 /** Regions in order of importance (as listed, where it is not given), children under their parents. */
@@ -75,7 +75,10 @@ export class Panel {
       if (handle) changing(() => { handle.radius = editor.radius * editor.info.diagonal; })(value);
       this.update();
     }, changed);
-    slider("blend", value => void editor.setBlend(value));
+    slider("blend", value => {
+      remembered ??= before();
+      void editor.setBlend(value);
+    }, changed);
     element<HTMLSelectElement>("mode").addEventListener("change", event =>
       void editor.change(state => { state.mode = Number((event.target as HTMLSelectElement).value); }));
   }
@@ -97,8 +100,8 @@ export class Panel {
     element("radius-value").textContent = `${(100 * radius).toPrecision(2)} %`;
     element<HTMLInputElement>("radius").value = String(100 * radius);
     element<HTMLSelectElement>("mode").value = String(state.mode);
-    element<HTMLInputElement>("blend").value = String(editor.blend);
-    element("blend-value").textContent = `${Math.round(100 * editor.blend)} %`;
+    element<HTMLInputElement>("blend").value = String(state.blend);
+    element("blend-value").textContent = `${Math.round(100 * state.blend)} %`;
     element("command").textContent =
       `orbifit deform ${editor.sourceName} annotation.json --handles handles.json --mode ${modes[state.mode]}${samplingWords(editor)} -o edited.ply`;
     const button = (name: string): HTMLButtonElement => document.querySelector(`[data-do=${name}]`)!;
@@ -109,7 +112,7 @@ export class Panel {
     button("fit").disabled = !editor.scan || editor.busy !== "";
     button("stop-fit").disabled = editor.busy !== "fitting";
     button("clear-scan").disabled = !editor.scan;
-    button("keep-blend").disabled = editor.blend === 0;
+    button("keep-blend").disabled = state.blend === 0;
     this.readout();
     this.regionList();
     this.blendTable();
@@ -259,7 +262,7 @@ export class Panel {
       table.textContent = "";
       return;
     }
-    const now = editor.blend > 0 || !editor.state.handles.length ? editor.shapeResiduals() : new Map();
+    const now = editor.state.blend > 0 || !editor.state.handles.length ? editor.shapeResiduals() : new Map();
     const rows = editor.symmetryReport.map(entry => {
       const region = editor.regions.find(other => other.id === entry.id);
       if (!region) return "";
