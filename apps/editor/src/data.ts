@@ -1,6 +1,4 @@
 // What the page carries in itself, and files in and out.
-import { gunzipSync } from "fflate";
-
 import workerCode from "worker-code";
 import type { Answer, Request, Task } from "./worker";
 
@@ -21,10 +19,11 @@ export function embedded(id: string): { name: string; source: string; data: Uint
   return { name, source: element.dataset.source || name, data };
 }
 
-export function coreBytes(): Uint8Array {
+export async function coreBytes(): Promise<Uint8Array> {
   const found = embedded("core");
   if (!found) throw new Error("the page has no core: it was not built whole");
-  return gunzipSync(found.data);
+  const stream = new Blob([found.data as BlobPart]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
 export function download(name: string, data: Uint8Array | string, type = "application/octet-stream"): void {

@@ -255,8 +255,16 @@ export class Editor {
     this.kept = (JSON.parse(this.core.annotation()) as Annotation).regions.map(region => region.id);
     this.info = this.core.info();
     this.iterationTook = 0;
-    if (this.comparing) await this.takeFreeBasis();
-    this.setBusy("");
+    if (this.comparing) {
+      try {
+        await this.takeFreeBasis();
+      } catch (error) {
+        this.failed(error);
+        this.comparing = false;
+        this.view.setSplit(false);
+      }
+    }
+    if (turn === this.rebuilding) this.setBusy("");
     return true;
   }
 

@@ -161,7 +161,7 @@ async function start(): Promise<void> {
     return;
   }
   darkWanted.addEventListener("change", event => setTheme(view, event.matches));
-  const wasm = coreBytes();
+  const wasm = await coreBytes();
   const core = await Core.create(wasm);
   const editor = new Editor(core, view, new Background(wasm));
   const input = new Input(editor, element<HTMLCanvasElement>("canvas"));
