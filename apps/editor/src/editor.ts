@@ -356,8 +356,9 @@ export class Editor {
 
   showHandles(): void {
     const { handles } = this.state;
-    this.view.showHandles(handles.length);
-    for (let number = 0; number < handles.length; ++number) {
+    const shown = this.state.blend > 0 ? 0 : handles.length; // they do not act on what the slider shows
+    this.view.showHandles(shown);
+    for (let number = 0; number < shown; ++number) {
       this.view.showHandle(number, this.target(number), handles[number]!.pin, number === this.selected);
     }
     if (this.selected >= 0) this.view.gizmoTarget.position.set(...this.target(this.selected));
@@ -479,6 +480,7 @@ export class Editor {
     this.state.blend = share;
     if (share > 0 && !(await this.takeSymmetric())) return;
     this.stale = true;
+    this.showHandles();
     this.solveNow(); // the table of residuals is that of what is shown
     this.view.draw();
     this.onChange();

@@ -36,7 +36,8 @@ export class Input {
 
   private nearestHandle(x: number, y: number, within = reach): number {
     let best = -1, least = within;
-    this.editor.state?.handles.forEach((_, number) => {
+    if (!this.editor.state || this.editor.state.blend > 0) return best; // they are not shown
+    this.editor.state.handles.forEach((_, number) => {
       const [sx, sy] = this.editor.view.screen(this.editor.target(number));
       const distance = Math.hypot(sx - x, sy - y);
       if (distance < least) [best, least] = [number, distance];

@@ -87,7 +87,7 @@ export class Panel {
     const { editor } = this;
     const { info, state } = editor;
     if (!info) return;
-    element("mesh-name").textContent = editor.sourceName;
+    element("mesh-name").textContent = element("mesh-name").title = editor.sourceName;
     element("mesh-facts").textContent =
       `${info.vertices.toLocaleString("en")} vertices, ${info.faces.toLocaleString("en")} faces` +
       (info.samples ? `; ${info.samples} samples, ${info.degrees_of_freedom} degrees of freedom` : "");
@@ -153,6 +153,8 @@ export class Panel {
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
       const frames = this.framesOfLastSecond();
       if (frames > 1) parts.push(`<b>${frames}</b> frames/s`);
+      // Where nothing else is held a drag is a motion of all: what one tries first must not look like a failure.
+      if (editor.state.handles.length === 1) parts.push(`one handle moves the whole: hold another place by <kbd>P</kbd> or a click`);
     } else {
       parts.push("no handles yet");
     }
@@ -195,7 +197,7 @@ export class Panel {
     const name = document.createElement("button");
     name.className = "name";
     name.textContent = region.name || `region ${region.id}`;
-    name.title = "Click: on or off. Double click: rename";
+    name.title = `${name.textContent}\nClick: on or off. Double click: rename`;
     let click = 0;
     name.addEventListener("click", event => { // not at once: it may be the first of two
       if (event.detail < 2) click = window.setTimeout(() => box.click(), event.detail === 1 ? 250 : 0);
