@@ -148,17 +148,20 @@ export class Panel {
     const { editor } = this;
     const parts: string[] = [];
     const { solve, lift } = editor.record;
-    if (editor.state.handles.length) {
+    const { handles, blend } = editor.state;
+    if (blend > 0) {
+      parts.push(`<b>${Math.round(100 * blend)} %</b> of the way to the symmetric mesh; handles act on the mesh as it is`);
+    } else if (handles.length) {
       parts.push(`residual <b>${share(editor.residual)}</b>`);
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
       const frames = this.framesOfLastSecond();
       if (frames > 1) parts.push(`<b>${frames}</b> frames/s`);
-      // Where nothing else is held a drag is a motion of all: what one tries first must not look like a failure.
-      if (editor.state.handles.length === 1) parts.push(`one handle moves the whole: hold another place by <kbd>P</kbd> or a click`);
     } else {
       parts.push("no handles yet");
     }
-    element("readout").innerHTML = parts.join(" &nbsp;·&nbsp; ");
+    // Where nothing else is held a drag moves all of it: what one tries first must not look like a failure.
+    const hint = handles.length === 1 && blend === 0 ? "<br>One handle alone moves all of it; pin another place (<kbd>P</kbd>)." : "";
+    element("readout").innerHTML = parts.join(" &nbsp;·&nbsp; ") + hint;
     for (const id of ["divider", "label-left", "label-right"]) element(id).hidden = !editor.comparing;
     element("label-left-residual").textContent = share(editor.residual);
     element("label-right-residual").textContent = share(editor.freeResidual);
