@@ -4,7 +4,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -133,12 +135,36 @@ void append_products(std::vector<Matrix3d>& matrices, const Matrix3d& right) {
   for (std::size_t i = 0; i < count; ++i) matrices.push_back(matrices[i] * right);
 }
 
+std::vector<Matrix3d> turns(int n) {
+  std::vector<Matrix3d> result;
+  for (int k = 0; k < n; ++k) result.push_back(turn(k, n));
+  return result;
+}
+
+std::vector<Matrix3d> rotoreflections(int n) {
+  std::vector<Matrix3d> result;
+  for (int k = 0; k < n; ++k) result.push_back(k % 2 == 0 ? turn(k, n) : Matrix3d(turn(k, n) * kMirrorZ));
+  return result;
+}
+
+std::vector<Matrix3d> icosahedral_rotations() {
+  const std::vector<Matrix3d> tetrahedral = tetrahedral_rotations();
+  std::vector<Matrix3d> result;
+  Matrix3d power = Matrix3d::Identity();
+  for (int k = 0; k < 5; ++k) {
+    for (const Matrix3d& element : tetrahedral) result.push_back(power * element);
+    power = fifth_turn() * power;
+  }
+  return result;
+}
+
+// A subgroup of rotations, and its products with what generates the rest.
 std::vector<Matrix3d> canonical_elements(const PointGroup& group) {
   const int n = group.n;
   const Matrix3d inversion = -Matrix3d::Identity();
-  std::vector<Matrix3d> result;
-  const auto turns = [&] {
-    for (int k = 0; k < n; ++k) result.push_back(turn(k, n));
+  const auto extended = [](std::vector<Matrix3d> subgroup, std::initializer_list<Matrix3d> generators) {
+    for (const Matrix3d& generator : generators) append_products(subgroup, generator);
+    return subgroup;
   };
   switch (group.family) {
     case Family::Cs:
@@ -146,64 +172,36 @@ std::vector<Matrix3d> canonical_elements(const PointGroup& group) {
     case Family::Ci:
       return {Matrix3d::Identity(), inversion};
     case Family::Cn:
-      turns();
-      break;
+      return turns(n);
     case Family::Cnv:
-      turns();
-      append_products(result, kMirrorX);
-      break;
+      return extended(turns(n), {kMirrorX});
     case Family::Cnh:
-      turns();
-      append_products(result, kMirrorZ);
-      break;
+      return extended(turns(n), {kMirrorZ});
     case Family::Dn:
-      turns();
-      append_products(result, kHalfTurnX);
-      break;
+      return extended(turns(n), {kHalfTurnX});
     case Family::Dnh:
-      turns();
-      append_products(result, kHalfTurnX);
-      append_products(result, kMirrorZ);
-      break;
+      return extended(turns(n), {kHalfTurnX, kMirrorZ});
     case Family::Dnd:
-      turns();
-      append_products(result, kHalfTurnX);
-      append_products(result, turn(1, 2 * n) * kMirrorZ);
-      break;
+      return extended(turns(n), {kHalfTurnX, turn(1, 2 * n) * kMirrorZ});
     case Family::Sn:
-      for (int k = 0; k < n; ++k) result.push_back(k % 2 == 0 ? turn(k, n) : Matrix3d(turn(k, n) * kMirrorZ));
-      break;
+      return rotoreflections(n);
     case Family::T:
       return tetrahedral_rotations();
     case Family::Td:
-      result = tetrahedral_rotations();
-      append_products(result, turn(1, 4) * kMirrorZ);
-      break;
+      return extended(tetrahedral_rotations(), {turn(1, 4) * kMirrorZ});
     case Family::Th:
-      result = tetrahedral_rotations();
-      append_products(result, inversion);
-      break;
+      return extended(tetrahedral_rotations(), {inversion});
     case Family::O:
+      return extended(tetrahedral_rotations(), {turn(1, 4)});
     case Family::Oh:
-      result = tetrahedral_rotations();
-      append_products(result, turn(1, 4));
-      if (group.family == Family::Oh) append_products(result, inversion);
-      break;
+      return extended(tetrahedral_rotations(), {turn(1, 4), inversion});
     case Family::I:
-    case Family::Ih: {
-      const std::vector<Matrix3d> tetrahedral = tetrahedral_rotations();
-      Matrix3d power = Matrix3d::Identity();
-      for (int k = 0; k < 5; ++k) {
-        for (const Matrix3d& element : tetrahedral) result.push_back(power * element);
-        power = fifth_turn() * power;
-      }
-      if (group.family == Family::Ih) append_products(result, inversion);
-      break;
-    }
+      return icosahedral_rotations();
+    case Family::Ih:
+      return extended(icosahedral_rotations(), {inversion});
     default:
       return {Matrix3d::Identity()};
   }
-  return result;
 }
 
 std::vector<Matrix3d> canonical_generators(const PointGroup& group) {
