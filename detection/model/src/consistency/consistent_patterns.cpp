@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "consistency/consistency_search.h"
 
@@ -97,17 +98,15 @@ Motion ConsistencySearch::with_told_directions(const KnownPattern& known, const 
 
 // Copies that the groups around take to one another stand where those take them; between others the motion takes what
 // keeps the one to what keeps the other.
-std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
-                                                         const std::vector<int>& roots,
-                                                         const std::vector<std::vector<Motion>>& stabilisers) const {
+std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, const InstanceOrbits& orbits) const {
   const Extent& extent = shapes_.extent(known.shapes[0]);
   const double near = length(policy_.same_group);
-  const std::vector<Motion> own = closure(stabilisers[0], extent, near);
+  const std::vector<Motion> own = closure(orbits.stabilisers[0], extent, near);
   for (std::size_t t = 1; t < known.shapes.size(); ++t) {
     Motion& motion = known.pattern.instances[t].motion;
-    const auto root = static_cast<std::size_t>(roots[t]);
+    const auto root = static_cast<std::size_t>(orbits.roots[t]);
     if (root != t) {
-      const Motion due = ways[t] * known.pattern.instances[root].motion;
+      const Motion due = orbits.ways[t] * known.pattern.instances[root].motion;
       if (!symmetry_of_instance(known, inverse(due) * motion)) motion = due;
       continue;
     }
@@ -116,7 +115,7 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
       Motion there, here;
     };
     std::vector<Pair> pairs;
-    const std::vector<Motion> others = closure(stabilisers[t], shapes_.extent(known.shapes[t]), near);
+    const std::vector<Motion> others = closure(orbits.stabilisers[t], shapes_.extent(known.shapes[t]), near);
     const auto pair_up = [&](const std::vector<Motion>& from, const std::vector<Motion>& to, bool forth) {
       return std::ranges::all_of(from, [&](const Motion& stabiliser) {
         const Motion seen = conjugate(forth ? motion : inverse(motion), stabiliser);
@@ -250,72 +249,84 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
   return std::nullopt;
 }
 
-ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
-  std::vector<Claim> asking;
-  const std::size_t count = known.shapes.size();
-  std::vector<Motion> ways(count);
-  std::vector<int> roots(count, -1);
-  std::vector<std::vector<Motion>> stabilisers(count);  // of the roots
-  std::vector<Motion> normalisers;
-  struct Edge {
-    std::size_t from, to;
-    Motion motion;
-  };
-  std::vector<Edge> edges;
-  for (std::size_t root = 0; root < count; ++root) {
-    if (roots[root] >= 0) continue;
-    roots[root] = static_cast<int>(root);
-    std::vector<std::size_t> queue{root};
-    for (std::size_t head = 0; head < queue.size(); ++head) {
-      const std::size_t t = queue[head];
-      for (const Move& move : moves_) {
-        const bool meets = shapes_.meet(known.shapes[t], move.domain);
-        // What merely touches it need not come along, but where it does the two agree.
-        if (!meets && (move.turning || !shapes_.touch(known.shapes[t], move.domain))) continue;
-        if (move.turning && shapes_.same(known.shapes[t], move.domain)) continue;
-        if (shapes_.within(move.domain, known.shapes[t]) && !shapes_.within(known.shapes[t], move.domain)) continue;
-        std::size_t to = count;
-        double best = std::numeric_limits<double>::infinity();
-        for (std::size_t s = 0; s < count; ++s) {
-          if (!(meets ? shapes_.meet(known.shapes[s], move.arrival) : shapes_.touch(known.shapes[s], move.arrival)))
-            continue;
-          const int domain = meets ? move.domain : known.shapes[t];
-          const int arrival = meets ? move.arrival : known.shapes[s];
-          const auto match = shapes_.match(known.shapes[t], domain, move.motion, known.shapes[s], arrival);
-          if (match.share < policy_.arrived || match.distance >= best) continue;
-          best = match.distance;
-          to = s;
-        }
-        if (to == count && !meets) continue;
-        if (to == count) {
-          return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
-        }
-        if (std::ranges::find(asking, mover_of(move)) == asking.end()) asking.push_back(mover_of(move));
-        if (move.region >= 0) normalisers.push_back(move.motion);
-        edges.push_back({t, to, move.motion});
-        if (roots[to] < 0) {
-          roots[to] = static_cast<int>(root);
-          ways[to] = move.motion * ways[t];
-          queue.push_back(to);
-        } else {
-          const Motion stabiliser = inverse(ways[to]) * move.motion * ways[t];
-          const Extent& extent = shapes_.extent(known.shapes[root]);
-          if (distance(stabiliser, Motion{}, extent) > rounding_) stabilisers[root].push_back(stabiliser);
-        }
+// The instance to which the move takes one: the nearest of those that what arrives meets, or touches if not `meets`.
+std::optional<std::size_t> ConsistencySearch::arrival_of(const KnownPattern& known, std::size_t from, const Move& move,
+                                                         bool meets) const {
+  std::optional<std::size_t> result;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t to = 0; to < known.shapes.size(); ++to) {
+    if (!(meets ? shapes_.meet(known.shapes[to], move.arrival) : shapes_.touch(known.shapes[to], move.arrival)))
+      continue;
+    const int domain = meets ? move.domain : known.shapes[from];
+    const int arrival = meets ? move.arrival : known.shapes[to];
+    const auto match = shapes_.match(known.shapes[from], domain, move.motion, known.shapes[to], arrival);
+    if (match.share < policy_.arrived || match.distance >= best) continue;
+    best = match.distance;
+    result = to;
+  }
+  return result;
+}
+
+// The instances that moves take the root to, one after the other, each by the way that is found first.
+ConsistencySearch::Verdict ConsistencySearch::follow_from(std::size_t root, const KnownPattern& known,
+                                                          InstanceOrbits& orbits) const {
+  orbits.roots[root] = static_cast<int>(root);
+  std::vector<std::size_t> queue{root};
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const std::size_t from = queue[head];
+    const int shape = known.shapes[from];
+    for (const Move& move : moves_) {
+      const bool meets = shapes_.meet(shape, move.domain);
+      // What merely touches it need not come along, but where it does the two agree.
+      if (!meets && (move.turning || !shapes_.touch(shape, move.domain))) continue;
+      if (move.turning && shapes_.same(shape, move.domain)) continue;
+      if (shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) continue;
+      const std::optional<std::size_t> to = arrival_of(known, from, move, meets);
+      if (!to && !meets) continue;
+      if (!to) {
+        return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
       }
+      if (std::ranges::find(orbits.asking, mover_of(move)) == orbits.asking.end()) {
+        orbits.asking.push_back(mover_of(move));
+      }
+      if (move.region >= 0) orbits.normalisers.push_back(move.motion);
+      orbits.steps.push_back({from, *to, move.motion});
+      if (orbits.roots[*to] < 0) {
+        orbits.roots[*to] = static_cast<int>(root);
+        orbits.ways[*to] = move.motion * orbits.ways[from];
+        queue.push_back(*to);
+        continue;
+      }
+      const Motion stabiliser = inverse(orbits.ways[*to]) * move.motion * orbits.ways[from];
+      const Extent& extent = shapes_.extent(known.shapes[root]);
+      if (distance(stabiliser, Motion{}, extent) > rounding_) orbits.stabilisers[root].push_back(stabiliser);
     }
   }
-  const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
-  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers)) {
-    return Refusal{*reason, asking};
-  }
-  // To go by the groups around and come back by the steps keeps the first instance: in finitely many ways.
+  return std::nullopt;
+}
+
+// Whether to go by the groups around and come back by the pattern's steps keeps the first instance in finitely many
+// ways.
+bool ConsistencySearch::closes(const KnownPattern& known, const std::vector<InstanceStep>& steps) const {
   std::vector<Motion> returns;
   const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };
-  for (const Edge& edge : edges) returns.push_back(inverse(place(edge.to)) * edge.motion * place(edge.from));
+  for (const InstanceStep& step : steps) returns.push_back(inverse(place(step.to)) * step.motion * place(step.from));
   const Extent& first = shapes_.extent(known.shapes[0]);
-  if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMaxStabilisers) {
-    return Refusal{"its steps and the groups around it do not close", asking};
+  return closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() < kMaxStabilisers;
+}
+
+ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
+  InstanceOrbits orbits(known.shapes.size());
+  for (std::size_t root = 0; root < known.shapes.size(); ++root) {
+    if (orbits.roots[root] >= 0) continue;
+    if (Verdict refusal = follow_from(root, known, orbits)) return refusal;
+  }
+  const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
+  if (auto reason = copies ? fit_copies(known, orbits) : fit_lattice(known, orbits.normalisers)) {
+    return Refusal{*reason, orbits.asking};
+  }
+  if (!closes(known, orbits.steps)) {
+    return Refusal{"its steps and the groups around it do not close", orbits.asking};
   }
   return std::nullopt;
 }
