@@ -46,12 +46,12 @@ EditedModel edited_centre_piece() {
 
 EditedModel edited_plane() {
   const Vector3d wing_tip(0.3, 4.7, 0.1);
-  return {
-      .generator = "plane",
-      .parameters = {{"detail", 13}},
-      .handles = {{"cockpit", {0.2, 0, 0.7}, 0.6, {}},
-                  {"wing tip", wing_tip, 0.6, turned_and_moved(wing_tip, Vector3d::UnitX(), 55, {-0.3, -0.6, 1.75})},
-                  {"tail", {-4.6, 0, 0.3}, 0.6, moved_by(-1.2, 0, 0.4)}}};
+  const Motion folded = turned_and_moved(wing_tip, Vector3d::UnitX(), 55, {-0.3, -0.6, 1.75});
+  return {.generator = "plane",
+          .parameters = {{"detail", 13}},
+          .handles = {{"cockpit", {0.2, 0, 0.7}, 0.6, {}},
+                      {"wing tip", wing_tip, 0.6, folded},
+                      {"tail", {-4.6, 0, 0.3}, 0.6, moved_by(-1.2, 0, 0.4)}}};
 }
 
 EditedModel edited_yard_tool() {
