@@ -140,11 +140,8 @@ TEST(Contacts, OneOfEachOrbitIsAsGoodAsAll) {
     const ContactEnergy some(find_contacts(subspace, model.mesh, {}, RunContext{}), subspace, 3);
     const ContactEnergy all(find_contacts(subspace, model.mesh, all_images(), RunContext{}), subspace, 3);
     EXPECT_LT(some.contacts().size(), all.contacts().size()) << name;
-    const Eigen::Index freedom = subspace.degrees_of_freedom();
-    Eigen::MatrixXd gram_of_some = Eigen::MatrixXd::Zero(freedom, freedom);
-    Eigen::MatrixXd gram_of_all = gram_of_some;
-    some.add_gram(gram_of_some);
-    all.add_gram(gram_of_all);
+    const Eigen::MatrixXd gram_of_some = some.gram();
+    const Eigen::MatrixXd gram_of_all = all.gram();
     EXPECT_GT(gram_of_all.norm(), 0) << name;
     EXPECT_LT((gram_of_some - gram_of_all).norm(), 1e-9 * gram_of_all.norm()) << name;
   }
@@ -197,8 +194,7 @@ TEST(Contacts, GapsTurnWithTheParts) {
   Random random(8);
   for (double& coordinate : q) coordinate = 0.01 * random.normal();
   const auto turned = [&](int) { return turn; };
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(q.size(), q.size());
-  energy.add_gram(gram);
+  const Eigen::MatrixXd gram = energy.gram();
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(q.size());
   energy.add_pull(turned, pull);
   const double at_rest = energy.value(Eigen::VectorXd::Zero(q.size()), turned);

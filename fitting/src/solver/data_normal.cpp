@@ -8,6 +8,7 @@
 
 #include "basis/gram.h"
 #include "registration/alignment.h"
+#include "solver/gram_sum.h"
 
 namespace orbifit {
 
@@ -92,26 +93,8 @@ class Batch {
     right_[row] *= root;
   }
 
-  // On the columns used, ascending: the lower half on them is one of the whole matrix's.
-  struct Product {
-    std::vector<int> columns;
-    Eigen::MatrixXd gram;  // filled up with zeros, the side too
-    Eigen::VectorXd side;
-
-    void add_to(DataNormal& normal) const {
-      const auto count = static_cast<Eigen::Index>(columns.size());
-      for (Eigen::Index b = 0; b < count; ++b) {
-        const int column = columns[static_cast<std::size_t>(b)];
-        normal.side[column] += side[b];
-        double* to = normal.matrix.col(column).data();
-        const double* from = gram.col(b).data();
-        for (Eigen::Index a = b; a < count; ++a) to[columns[static_cast<std::size_t>(a)]] += from[a];
-      }
-    }
-  };
-
   // Leaves the batch empty.
-  void multiply_out(Product& product) {
+  void multiply_out(GramPart& product) {
     for (const int column : columns_) local_of_[static_cast<std::size_t>(column)] = -1;
     for (const int representative : representatives_) place_of_[static_cast<std::size_t>(representative)] = -1;
     representatives_.clear();
@@ -184,13 +167,12 @@ std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspond
   return vertices;
 }
 
-DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh& mesh, const ScanStep& step,
-                       const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
-                       const std::vector<Pull>& pulls, const RunContext& context) {
-  constexpr std::size_t kRows = 48;     // of a batch
-  constexpr std::size_t kBatches = 64;  // at a time: summed in turn, so that rounding does not depend on the threads
-  const Eigen::Index all = columns + step.unknowns();
-  DataNormal total{Eigen::MatrixXd::Zero(all, all), Eigen::VectorXd::Zero(all)};
+void add_data(const VertexRows& rows, const Mesh& mesh, const ScanStep& step, const std::vector<Correspondence>& pairs,
+              double share, const Points& scan_points, const std::vector<Pull>& pulls, const RunContext& context,
+              NormalEquations& normal) {
+  constexpr std::size_t kRows = 48;      // of a batch
+  constexpr std::size_t kBatches = 256;  // at a time: summed in turn, so that rounding does not depend on the threads
+  const Eigen::Index all = normal.side.size();
   const auto of_pose = [&](const Eigen::Vector3d& rest, const Eigen::Vector3d& goal, const Eigen::Vector3d& direction) {
     Eigen::Matrix<double, 7, 1> result;
     result << (rest - step.pivot).dot(direction) / step.length, -(goal - step.pivot).cross(direction) / step.length,
@@ -198,7 +180,7 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
     return result;
   };
   const std::vector<std::size_t> order = by_representatives(rows, mesh, pairs);
-  const auto multiply_out = [&](std::size_t first, Batch& batch, Batch::Product& product) {
+  const auto multiply_out = [&](std::size_t first, Batch& batch, GramPart& product) {
     const std::size_t count = std::min(kRows, pairs.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       const Correspondence& pair = pairs[order[first + i]];
@@ -223,17 +205,17 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
     batch.multiply_out(product);
   };
   const std::size_t batches = (pairs.size() + kRows - 1) / kRows;
-  std::vector<Batch::Product> products(std::min(batches, kBatches));
+  std::vector<GramPart> products(std::min(batches, kBatches));
   for (std::size_t first = 0; first < batches; first += kBatches) {
     const std::size_t count = std::min(kBatches, batches - first);
     parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
       Batch batch(rows, all, step);
       for (std::size_t b = begin; b < end; ++b) multiply_out((first + b) * kRows, batch, products[b]);
     });
-    for (std::size_t b = 0; b < count; ++b) products[b].add_to(total);
+    add_parts({products.data(), count}, context, normal.matrix, normal.side);
   }
   Batch batch(rows, all, step);
-  Batch::Product product;
+  GramPart product;
   for (const Pull& pull : pulls) {
     const Eigen::Vector3d rest = mesh.vertices.row(pull.vertex);
     batch.use(pull.vertex);
@@ -244,9 +226,8 @@ DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh&
       batch.finish(c, of_pose(rest, pull.target, direction), 0, pull.target[c] - rest[c], pull.weight);
     }
     batch.multiply_out(product);
-    product.add_to(total);
+    add_parts({&product, 1}, context, normal.matrix, normal.side);
   }
-  return total;
 }
 
 }  // namespace orbifit

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
@@ -15,8 +16,8 @@
 namespace orbifit {
 
 /// The sum of w (row x - right)^2 as x^T matrix x - 2 side^T x and a constant.
-struct DataNormal {
-  Eigen::MatrixXd matrix;  ///< lower half
+struct NormalEquations {
+  Eigen::SparseMatrix<double> matrix;  ///< lower half; a pair touches the coordinates near it, and the pose
   Eigen::VectorXd side;
 };
 
@@ -42,13 +43,13 @@ struct ScanStep {
 std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspondence>& pairs,
                                   const std::vector<Pull>& pulls);
 
-/// What a fit's data ask for: share w <n, x + gamma (x - pivot) + u - (s + omega x (s - pivot) + tau)>^2 for each pair,
-/// omega and tau being the sum of the common ones and those of the pair's scan,
-/// and each pull's vertex at its target. The last unknowns are those of the pose. Summed in an order that does not
-/// depend on the number of threads. \param rows  u of the vertices in the other unknowns, prepared for those that are
-/// touched \param columns  number of the other unknowns \param mesh  where u = 0
-DataNormal data_normal(const VertexRows& rows, Eigen::Index columns, const Mesh& mesh, const ScanStep& step,
-                       const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
-                       const std::vector<Pull>& pulls, const RunContext& context);
+/// Adds what a fit's data ask for: share w <n, x + gamma (x - pivot) + u - (s + omega x (s - pivot) + tau)>^2 for each
+/// pair, omega and tau being the sum of the common ones and those of the pair's scan, and each pull's vertex at its
+/// target. The last unknowns are those of the pose. Summed in an order that does not depend on the number of threads.
+/// \param rows  u of the vertices in the other unknowns, prepared for those that are touched \param mesh  where u = 0
+/// \param normal  of all unknowns, with what else there is
+void add_data(const VertexRows& rows, const Mesh& mesh, const ScanStep& step, const std::vector<Correspondence>& pairs,
+              double share, const Points& scan_points, const std::vector<Pull>& pulls, const RunContext& context,
+              NormalEquations& normal);
 
 }  // namespace orbifit

@@ -1,6 +1,7 @@
 #include "solver/fit_system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "orbifit/model/errors.h"
@@ -16,7 +17,14 @@ namespace orbifit {
 
 namespace {
 
+using Eigen::VectorXd;
+using Sparse = Eigen::SparseMatrix<double>;
+
 constexpr double kMaxGrowth = 1.1;  // in one iteration
+
+Sparse diagonal_matrix(const VectorXd& entries) {
+  return Sparse(entries.asDiagonal());
+}
 
 }  // namespace
 
@@ -27,22 +35,21 @@ FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch,
       mesh_(mesh),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)},
       contacts_(std::move(contacts), subspace, kContactWeight),
-      stiffness_matrix_(restricted(subspace->basis.columns, energy_.matrix())) {
-  const Eigen::MatrixXd rigid = subspace->basis.columns.transpose() * rigid_modes(subspace->sampling.points);
-  hold_matrix_ = kPreferPose * rigid * rigid.transpose();
-  hold_matrix_.diagonal().array() += kHoldStill * static_cast<double>(samples());
-  contacts_.add_gram(hold_matrix_);
+      stiffness_matrix_(restricted(subspace->basis.columns, energy_.matrix()).triangularView<Eigen::Lower>()),
+      hold_matrix_(diagonal_matrix(VectorXd::Constant(unknowns(), kHoldStill * static_cast<double>(samples())))),
+      rigid_(std::sqrt(kPreferPose) * (subspace->basis.columns.transpose() * rigid_modes(subspace->sampling.points))) {
+  hold_matrix_ += Sparse(contacts_.gram().triangularView<Eigen::Lower>());
 }
 
-double FitSystem::contact_energy(const Eigen::VectorXd& q) const {
+double FitSystem::contact_energy(const VectorXd& q) const {
   return contacts_.value(q, [&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; });
 }
 
-Points FitSystem::samples_at(const Eigen::VectorXd& q) const {
+Points FitSystem::samples_at(const VectorXd& q) const {
   return sample_displacements(subspace_, q);
 }
 
-Points FitSystem::vertices_at(const Eigen::VectorXd& q, const RunContext& context) const {
+Points FitSystem::vertices_at(const VectorXd& q, const RunContext& context) const {
   return vertex_displacements(subspace_, {q, nullptr}, context);
 }
 
@@ -53,27 +60,31 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   rows_.prepare(touched_vertices(mesh_, pairs, pulls), context);
   step_.grows = hold.scale_open;
   step_.others = hold.other_scans;
-  DataNormal normal = data_normal(rows_, dof, mesh_, step_, pairs, share, scan_points, pulls, context);
-  normal.matrix.topLeftCorner(dof, dof).triangularView<Eigen::Lower>() +=
-      hold.stiffness * stiffness_matrix_ + hold_matrix_;
-  normal.matrix.diagonal().head(dof).array() += hold.damping;
-  normal.matrix.diagonal().tail(step_.unknowns()).array() += kHoldPose * all_samples + hold.damping;
+  const Eigen::Index all = dof + step_.unknowns();
+  VectorXd diagonal(all);
+  diagonal << VectorXd::Constant(dof, hold.damping),
+      VectorXd::Constant(all - dof, kHoldPose * all_samples + hold.damping);
+  NormalEquations normal{hold.stiffness * stiffness_matrix_ + hold_matrix_, VectorXd::Zero(all)};
   if (step_.grows) {
     const double cost = hold.stiffness * growth_cost(1) / (step_.length * step_.length);
-    const Eigen::Index growth = normal.side.size() - step_.common();
-    normal.matrix(growth, growth) += cost;
+    const Eigen::Index growth = all - step_.common();
+    diagonal[growth] += cost;
     normal.side[growth] -= cost * step_.length * hold.grown;
   }
+  normal.matrix.conservativeResize(all, all);
+  normal.matrix += diagonal_matrix(diagonal);
+  add_data(rows_, mesh_, step_, pairs, share, scan_points, pulls, context, normal);
   normal.side.head(dof) += hold.stiffness * (subspace_->basis.columns.transpose() * stacked(energy_.pull()));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
-  Eigen::VectorXd contact_pull = Eigen::VectorXd::Zero(dof);
+  VectorXd contact_pull = VectorXd::Zero(dof);
   contacts_.add_pull([&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; }, contact_pull);
   normal.side.head(dof) += contact_pull;
 
-  matrix_ = std::move(normal.matrix);
-  factor_.compute(matrix_);
-  const Eigen::VectorXd solved = factor_.solve(normal.side);
-  if (factor_.info() != Eigen::Success || !solved.allFinite()) {
+  Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(all, rigid_.cols());
+  rigid.topRows(dof) = rigid_;
+  VectorXd solved;
+  if (solver_.compute(normal.matrix, rigid)) solved = solver_.solve(normal.side);
+  if (solved.size() == 0 || !solved.allFinite()) {
     throw NoResultError("the fit's linear system has no finite solution");
   }
   Solution solution;
@@ -88,9 +99,8 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
 
 double FitSystem::condition() const {
   return condition_estimate(
-      matrix_.cols(),
-      [&](const Eigen::VectorXd& x) -> Eigen::VectorXd { return matrix_.selfadjointView<Eigen::Lower>() * x; },
-      [&](const Eigen::VectorXd& b) -> Eigen::VectorXd { return factor_.solve(b); });
+      solver_.size(), [&](const VectorXd& x) { return solver_.multiply(x); },
+      [&](const VectorXd& b) { return solver_.solve(b); });
 }
 
 }  // namespace orbifit

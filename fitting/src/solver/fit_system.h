@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "orbifit/model/run_context.h"
 #include "orbifit/subspace/subspace.h"
@@ -12,6 +12,7 @@
 #include "registration/correspondences.h"
 #include "solver/data_normal.h"
 #include "solver/deformation_system.h"
+#include "solver/normal_solver.h"
 #include "solver/vertex_rows.h"
 
 namespace orbifit {
@@ -41,10 +42,10 @@ class FitSystem final : public DeformationSystem {
   const Mesh& mesh_;
   ScanStep step_;
   ContactEnergy contacts_;
-  Eigen::MatrixXd stiffness_matrix_;
-  Eigen::MatrixXd hold_matrix_;  // what prefers the pose, and the contacts'
-  Eigen::MatrixXd matrix_;       // of the last system, lower half
-  Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
+  Eigen::SparseMatrix<double> stiffness_matrix_;  // lower half
+  Eigen::SparseMatrix<double> hold_matrix_;       // the contacts', and what holds coordinates that move nothing
+  Eigen::MatrixXd rigid_;                         // what prefers the pose: its square is added
+  NormalSolver solver_;                           // of the last system
 };
 
 }  // namespace orbifit

@@ -153,7 +153,13 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   }
 
   step_.others = hold.other_scans;
-  DataNormal normal = data_normal(rows, dof + ways, deformed, step_, pairs, share, scan_points, pulls, context);
+  const Index all = dof + ways + step_.unknowns();
+  NormalEquations data{Eigen::SparseMatrix<double>(all, all), VectorXd::Zero(all)};
+  add_data(rows, deformed, step_, pairs, share, scan_points, pulls, context, data);
+  struct {
+    MatrixXd matrix;
+    VectorXd side;
+  } normal{MatrixXd(data.matrix), data.side};
   const Points pull = energy_.pull() - Points(stiffness_ * moved);
   const MatrixXd bent = hold.stiffness * applied(LiftWeights(stiffness_), turn_columns);
   normal.matrix.topLeftCorner(dof, dof) += hold.stiffness * restricted(columns, stiffness_);

@@ -39,28 +39,26 @@ MatrixXd turning_of(const std::vector<Contact>& contacts, std::size_t side, cons
 }  // namespace
 
 ContactEnergy::ContactEnergy(std::vector<Contact> contacts, const Subspace& subspace, double weight)
-    : contacts_(std::move(contacts)), weight_(weight), rows_(contact_rows(contacts_, subspace, subspace->basis)) {
+    : contacts_(std::move(contacts)), weight_(weight) {
+  MatrixXd rows = contact_rows(contacts_, subspace, subspace->basis);
+  MatrixXd pull(rows.cols(), rows.rows());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    rows_.middleRows<3>(3 * static_cast<Index>(i)) *= scale(i);
-    if (contacts_[i].gap.norm() > kClosed * subspace->diagonal) gapped_.push_back(i);
+    auto own = rows.middleRows<3>(3 * static_cast<Index>(i));
+    own *= scale(i);
+    if (contacts_[i].gap.norm() <= kClosed * subspace->diagonal) continue;
+    pull.middleCols<3>(3 * static_cast<Index>(gapped_.size())) = scale(i) * own.transpose();
+    gapped_.push_back(i);
   }
-  pull_.resize(rows_.cols(), 3 * static_cast<Index>(gapped_.size()));
-  for (std::size_t g = 0; g < gapped_.size(); ++g) {
-    pull_.middleCols<3>(3 * static_cast<Index>(g)) =
-        scale(gapped_[g]) * rows_.middleRows<3>(3 * static_cast<Index>(gapped_[g])).transpose();
-  }
+  rows_ = rows.sparseView();
+  pull_ = pull.leftCols(3 * static_cast<Index>(gapped_.size())).sparseView();
 }
 
 double ContactEnergy::scale(std::size_t contact) const {
   return std::sqrt(weight_ * contacts_[contact].count);
 }
 
-void ContactEnergy::add_gram(MatrixXd& system) const {
-  if (contacts_.empty()) return;
-  MatrixXd gram = MatrixXd::Zero(rows_.cols(), rows_.cols());
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(rows_.transpose());
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-  system += gram;
+Eigen::SparseMatrix<double> ContactEnergy::gram() const {
+  return rows_.transpose() * rows_;
 }
 
 ContactRows contact_rows_at(const std::vector<Contact>& contacts, double weight, const Subspace& subspace,

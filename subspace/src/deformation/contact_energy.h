@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/subspace/subspace.h"
@@ -22,8 +23,8 @@ class ContactEnergy {
 
   const std::vector<Contact>& contacts() const { return contacts_; }
 
-  /// Adds its quadratic part, weight C^T C, DoF by DoF, both halves.
-  void add_gram(Eigen::MatrixXd& system) const;
+  /// Its quadratic part, weight C^T C, DoF by DoF, both halves. A contact touches the few coordinates that move it.
+  Eigen::SparseMatrix<double> gram() const;
 
   /// Adds half its linear part to a right-hand side, DoF. \param turned  of a sample's number: its rotation. Asked for
   /// contacts that have a gap at rest alone
@@ -62,9 +63,9 @@ class ContactEnergy {
 
   std::vector<Contact> contacts_;
   double weight_ = 0;
-  Eigen::MatrixXd rows_;             // 3 #contacts by DoF, each times its scale()
-  std::vector<std::size_t> gapped_;  // contacts with a gap at rest
-  Eigen::MatrixXd pull_;             // DoF by 3 #gapped_
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows_;  // 3 #contacts by DoF, each times its scale()
+  std::vector<std::size_t> gapped_;                    // contacts with a gap at rest
+  Eigen::SparseMatrix<double> pull_;                   // DoF by 3 #gapped_
 };
 
 /// The contacts' energy about a state of any mode is |rows x - right|^2, x being the coordinates themselves, followed

@@ -117,7 +117,8 @@ double laplace_energy(const Corotation& corotation, const std::vector<Eigen::Mat
   return difference.squaredNorm();
 }
 
-Eigen::MatrixXd restricted(const Eigen::SparseMatrix<double>& columns, const Eigen::SparseMatrix<double>& scalar) {
+Eigen::SparseMatrix<double> restricted(const Eigen::SparseMatrix<double>& columns,
+                                       const Eigen::SparseMatrix<double>& scalar) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(3 * static_cast<std::size_t>(scalar.nonZeros()));
   for (Eigen::Index k = 0; k < scalar.outerSize(); ++k) {
@@ -128,8 +129,9 @@ Eigen::MatrixXd restricted(const Eigen::SparseMatrix<double>& columns, const Eig
   Eigen::SparseMatrix<double> block(3 * scalar.rows(), 3 * scalar.cols());
   block.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SparseMatrix<double> half = block * columns;
-  const Eigen::MatrixXd full = Eigen::MatrixXd(columns.transpose() * half);
-  return 0.5 * (full + full.transpose());
+  const Eigen::SparseMatrix<double> full = columns.transpose() * half;
+  const Eigen::SparseMatrix<double> other = full.transpose();
+  return 0.5 * (full + other);
 }
 
 Eigen::VectorXd stacked(const Points& rows) {

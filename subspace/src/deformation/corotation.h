@@ -42,8 +42,9 @@ Points corotated_pull(const Corotation& corotation, const std::vector<Eigen::Mat
 double laplace_energy(const Corotation& corotation, const std::vector<Eigen::Matrix3d>& rotations,
                       const Points& displacements);
 
-/// U^T (K (x) I_3) U for a symmetric K on the samples (#S by #S), dense, DoF by DoF.
-Eigen::MatrixXd restricted(const Eigen::SparseMatrix<double>& columns, const Eigen::SparseMatrix<double>& scalar);
+/// U^T (K (x) I_3) U for a symmetric K on the samples (#S by #S): DoF by DoF, both halves.
+Eigen::SparseMatrix<double> restricted(const Eigen::SparseMatrix<double>& columns,
+                                       const Eigen::SparseMatrix<double>& scalar);
 
 /// Each of #S by 3 rows as three entries of a vector, x0 y0 z0 x1 ...
 Eigen::VectorXd stacked(const Points& rows);

@@ -63,7 +63,7 @@ struct Deformer::Implementation {
     if (subspace->mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight, context);
     contacts = ContactEnergy(std::move(found), subspace, weight);
     if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
-    contacts.add_gram(stiffness);
+    if (!contacts.contacts().empty()) stiffness += contacts.gram();
     if (stiffness.size() > 0) of_contacts += stiffness.diagonal().mean();
   }
 
