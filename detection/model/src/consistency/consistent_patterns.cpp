@@ -63,6 +63,109 @@ Motion power(const Motion& generator, int count) {
   return result;
 }
 
+// The steps taken so often each, one after the other.
+Motion product(const std::vector<Motion>& steps, const std::vector<int>& counts) {
+  Motion result;
+  for (std::size_t g = 0; g < steps.size(); ++g) result = result * power(steps[g], counts[g]);
+  return result;
+}
+
+// A pattern's steps, and how they may change: translations each by itself, others by one small motion of all of them.
+class Steps {
+ public:
+  /// \param extent  of the first instance, kept by reference
+  Steps(const std::vector<Motion>& steps, const Extent& extent) : steps_(steps), extent_(extent) {
+    translations_ = std::ranges::all_of(
+        steps, [](const Motion& g) { return (g.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9; });
+  }
+
+  Index unknowns() const { return translations_ ? 3 * count() : 6; }
+
+  std::vector<Motion> at(const VectorXd& x) const {
+    std::vector<Motion> result = steps_;
+    for (Index g = 0; g < count(); ++g) {
+      Motion& step = result[static_cast<std::size_t>(g)];
+      if (translations_) {
+        step.linear.setIdentity();
+        step.translation += x.segment<3>(3 * g);
+      } else {
+        step = conjugate(small_motion(x.segment<6>(0), extent_), step);
+      }
+    }
+    return result;
+  }
+
+  // How often each is taken, `most` times at most, to come nearest to the motion.
+  std::vector<int> counts_of(const Motion& motion, int most) const {
+    std::vector<int> result(steps_.size(), 0);
+    if (translations_) {
+      Eigen::MatrixXd columns(3, count());
+      for (Index g = 0; g < count(); ++g) columns.col(g) = steps_[static_cast<std::size_t>(g)].translation;
+      const VectorXd counts = columns.colPivHouseholderQr().solve(motion.translation);
+      for (Index g = 0; g < count(); ++g) {
+        result[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
+      }
+      return result;
+    }
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = -most; k <= most; ++k) {
+      const double d = distance(power(steps_[0], k), motion, extent_);
+      if (d < nearest) {
+        nearest = d;
+        result[0] = k;
+      }
+    }
+    return result;
+  }
+
+ private:
+  Index count() const { return static_cast<Index>(steps_.size()); }
+
+  std::vector<Motion> steps_;
+  const Extent& extent_;
+  bool translations_;
+};
+
+// A step's image under a normaliser: a product of the steps.
+struct StepImage {
+  std::size_t normaliser, step;
+  std::vector<int> counts;  // of each step
+};
+
+// Each step not at all, forwards or back, in all combinations; of up to three steps.
+std::vector<std::vector<int>> single_steps(std::size_t count) {
+  std::vector<std::vector<int>> result;
+  for (int a = -1; a <= 1; ++a) {
+    for (int b = count > 1 ? -1 : 0; b <= (count > 1 ? 1 : 0); ++b) {
+      for (int c = count > 2 ? -1 : 0; c <= (count > 2 ? 1 : 0); ++c) {
+        std::vector<int> counts{a, b, c};
+        counts.resize(count);
+        result.push_back(counts);
+      }
+    }
+  }
+  return result;
+}
+
+// Nothing where an image is farther than `near` from all products of single steps.
+std::optional<std::vector<StepImage>> images_of_steps(const std::vector<Motion>& steps,
+                                                      const std::vector<Motion>& normalisers, const Extent& extent,
+                                                      double near) {
+  const std::vector<std::vector<int>> candidates = single_steps(steps.size());
+  std::vector<StepImage> result;
+  for (std::size_t n = 0; n < normalisers.size(); ++n) {
+    for (std::size_t g = 0; g < steps.size(); ++g) {
+      const Motion image = conjugate(normalisers[n], steps[g]);
+      const auto best = std::ranges::min_element(candidates, {}, [&](const std::vector<int>& counts) {
+        return distance(product(steps, counts), image, extent);
+      });
+      if (distance(product(steps, *best), image, extent) > near) return std::nullopt;
+      result.push_back({n, g, *best});
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 // Whether it is, to rounding, an element of a region that holds the first instance.
@@ -154,92 +257,27 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
                                                           const std::vector<Motion>& normalisers) const {
   Pattern& pattern = known.pattern;
   const Extent& extent = shapes_.extent(known.shapes[0]);
-  const double near = length(policy_.same_group);
-  const auto count = static_cast<Index>(pattern.generators.size());
-  const bool translations = std::ranges::all_of(
-      pattern.generators, [](const Motion& g) { return (g.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9; });
-  const auto at = [&](const VectorXd& x) {
-    std::vector<Motion> result = pattern.generators;
-    for (Index g = 0; g < count; ++g) {
-      Motion& step = result[static_cast<std::size_t>(g)];
-      if (translations) {
-        step.linear.setIdentity();
-        step.translation += x.segment<3>(3 * g);
-      } else {
-        step = conjugate(small_motion(x.segment<6>(0), extent), step);
-      }
-    }
-    return result;
-  };
-  struct Asked {
-    std::size_t normaliser, from;
-    std::vector<int> counts;  // of each generator
-  };
-  std::vector<Asked> asked;
-  const auto product = [&](const std::vector<Motion>& steps, const std::vector<int>& counts) {
-    Motion result;
-    for (std::size_t g = 0; g < steps.size(); ++g) result = result * power(steps[g], counts[g]);
-    return result;
-  };
-  std::vector<std::vector<int>> candidates;
-  for (int a = -1; a <= 1; ++a) {
-    for (int b = count > 1 ? -1 : 0; b <= (count > 1 ? 1 : 0); ++b) {
-      for (int c = count > 2 ? -1 : 0; c <= (count > 2 ? 1 : 0); ++c) {
-        std::vector<int> counts{a, b, c};
-        counts.resize(static_cast<std::size_t>(count));
-        candidates.push_back(counts);
-      }
-    }
-  }
-  for (std::size_t n = 0; n < normalisers.size(); ++n) {
-    for (std::size_t g = 0; g < pattern.generators.size(); ++g) {
-      const Motion image = conjugate(normalisers[n], pattern.generators[g]);
-      const auto best = std::ranges::min_element(candidates, {}, [&](const std::vector<int>& counts) {
-        return distance(product(pattern.generators, counts), image, extent);
-      });
-      if (distance(product(pattern.generators, *best), image, extent) > near) {
-        return "the groups around it do not keep its steps";
-      }
-      asked.push_back({n, g, *best});
-    }
-  }
+  const Steps given(pattern.generators, extent);
+  const auto images = images_of_steps(pattern.generators, normalisers, extent, length(policy_.same_group));
+  if (!images) return "the groups around it do not keep its steps";
   const auto hard = [&](const VectorXd& x) {
     std::vector<double> rows;
-    const std::vector<Motion> steps = at(x);
-    for (const Asked& each : asked) {
-      add_rows(conjugate(normalisers[each.normaliser], steps[each.from]), product(steps, each.counts), extent, rows);
+    const std::vector<Motion> steps = given.at(x);
+    for (const StepImage& each : *images) {
+      add_rows(conjugate(normalisers[each.normaliser], steps[each.step]), product(steps, each.counts), extent, rows);
     }
     return as_vector(rows);
   };
-  const Index unknowns = translations ? 3 * count : 6;
-  const VectorXd missed = hard(VectorXd::Zero(unknowns));
+  const VectorXd missed = hard(VectorXd::Zero(given.unknowns()));
   if (missed.size() == 0 || missed.cwiseAbs().maxCoeff() <= rounding_) return std::nullopt;
   const auto soft = [](const VectorXd& x) { return x; };
-  const VectorXd x = nearest_solution(unknowns, hard, soft, extent.reach);
+  const VectorXd x = nearest_solution(given.unknowns(), hard, soft, extent.reach);
   if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its steps cannot agree with the groups around it";
-  const std::vector<Motion> before = pattern.generators;
-  const std::vector<Motion> steps = at(x);
+  const std::vector<Motion> steps = given.at(x);
   // Instances are products of steps: counted with the steps as they were, put together of the new ones.
   for (PatternInstance& instance : pattern.instances) {
     const int most = static_cast<int>(pattern.instances.size());
-    std::vector<int> best_counts(before.size(), 0);
-    if (translations) {
-      Eigen::MatrixXd columns(3, count);
-      for (Index g = 0; g < count; ++g) columns.col(g) = before[static_cast<std::size_t>(g)].translation;
-      const VectorXd counts = columns.colPivHouseholderQr().solve(instance.motion.translation);
-      for (Index g = 0; g < count; ++g)
-        best_counts[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
-    } else {
-      double nearest = std::numeric_limits<double>::infinity();
-      for (int k = -most; k <= most; ++k) {
-        const double d = distance(power(before[0], k), instance.motion, extent);
-        if (d < nearest) {
-          nearest = d;
-          best_counts[0] = k;
-        }
-      }
-    }
-    const Motion moved = product(steps, best_counts);
+    const Motion moved = product(steps, given.counts_of(instance.motion, most));
     if (distance(moved, instance.motion, extent) > length(policy_.movement)) {
       return "to agree with the groups around it its steps would have to change by more than the tolerance";
     }
