@@ -268,6 +268,7 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   if (options.subspace.radius == 0 && options.subspace.samples == 0 && result.converged) {
     const SymmetryAnnotation annotation = result.rest_annotation;
     refine(trial.input.with(annotation), trial.best.start, options, context, result);
+    conclude(options, result);
     clock.finished("refinement");
   }
   tell_landmarks(input, context, result);
