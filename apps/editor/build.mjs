@@ -5,7 +5,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { build } from "esbuild";
-import { gzipSync } from "fflate";
+import { gzip } from "pako";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [folder, out] = process.argv.slice(2).map(argument => resolve(argument));
@@ -29,7 +29,7 @@ const workerCode = {
     setup.onLoad({ filter: /.*/, namespace: "worker-code" }, () => ({ contents: worker, loader: "text" }));
   }
 };
-const packed = bytes => Buffer.from(gzipSync(bytes, { level: 9, mtime: 0 })).toString("base64");
+const packed = bytes => Buffer.from(gzip(bytes, { level: 9, memLevel: 9 })).toString("base64");
 const script = packed(Buffer.from(await bundled("main.ts", { format: "iife", plugins: [workerCode] })));
 const style = (await bundled("style.css", {})).trim();
 const core = packed(readFileSync(join(folder, "editor_core.wasm")));

@@ -59,6 +59,15 @@ ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry)
   return table;
 }
 
+ReportTable level_table(const FitResult& result) {
+  ReportTable table{{"degrees of freedom", "samples", "rms distance of points held out, of the diagonal", ""}, {}};
+  for (const ResolutionLevel& level : result.levels) {
+    table.rows.push_back({std::to_string(level.degrees_of_freedom), std::to_string(level.samples),
+                          percent(level.held_out), level.kept ? "kept" : "no nearer: dropped"});
+  }
+  return table;
+}
+
 ReportTable placement_table(const FitResult& result) {
   ReportTable table{{"placement", "scale", "inlier ratio", "visible coverage", "score, from 0 to 1"}, {}};
   for (std::size_t i = 0; i < result.placements.size(); ++i) {
@@ -142,6 +151,17 @@ nlohmann::ordered_json groups_json(const FitResult& result) {
   return groups;
 }
 
+nlohmann::ordered_json levels_json(const FitResult& result) {
+  nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+  for (const ResolutionLevel& level : result.levels) {
+    levels.push_back({{"samples", level.samples},
+                      {"degrees_of_freedom", level.degrees_of_freedom},
+                      {"held_out_rms", level.held_out},
+                      {"kept", level.kept}});
+  }
+  return levels;
+}
+
 }  // namespace
 
 nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
@@ -152,6 +172,7 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"placements", placements_json(result)},
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
+          {"resolutions", levels_json(result)},
           {"used_fraction", result.overlap},
           {"torn_off", result.torn_off},
           {"inlier_fraction", result.inlier_ratio},
@@ -184,6 +205,13 @@ std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResul
                                "that the scan contradicts are dropped. Distances are in percent of the diagonal.",
                                {},
                                {group_table(result, symmetry)},
+                               {}});
+  }
+  if (result.levels.size() > 1) {
+    report.sections.push_back({"Resolution",
+                               "Finer subspaces are tried as long as points that were held out come nearer.",
+                               {},
+                               {level_table(result)},
                                {}});
   }
   if (!result.placements.empty()) {

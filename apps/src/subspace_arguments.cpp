@@ -23,7 +23,6 @@ const std::map<std::string, GroupMode> kModes{
     {"fixed", GroupMode::fixed}, {"floating", GroupMode::floating}, {"moving", GroupMode::moving}};
 const std::map<std::string, LiftKind> kLifts{{"orbit", LiftKind::orbit}, {"paper", LiftKind::paper}};
 constexpr std::array kNames{"--mode", "--lift", "--radius", "--samples", "--radius-field", "--sharp-features"};
-constexpr double kUsualSamples = 600;
 
 }  // namespace
 
@@ -37,7 +36,8 @@ void add_mode_option(CLI::App& app, GroupMode& mode) {
       ->default_str("floating");
 }
 
-void add_sampling_options(CLI::App& app, SubspaceOptions& options) {
+void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
+  SubspaceOptions& options = arguments.options;
   add_mode_option(app, options.mode);
   app.add_option(
          "--lift", options.lift,
@@ -49,10 +49,6 @@ void add_sampling_options(CLI::App& app, SubspaceOptions& options) {
                                 "Sampling radius, mesh units; a smaller one allows finer edits with more unknowns");
   app.add_option("--samples", options.samples, "Approximate number of samples, instead of a radius")->excludes(radius);
   app.add_flag("--sharp-features", options.sharp_features_first, "Place samples on sharp edges and corners first");
-}
-
-void add_subspace_options(CLI::App& app, SubspaceArguments& arguments) {
-  add_sampling_options(app, arguments.options);
   app.add_option("--radius-field", arguments.radius_field, "Radius field (.json): where sampling is finer or coarser")
       ->type_name("FILE");
 }
@@ -75,11 +71,7 @@ SubspaceOptions subspace_options(const SubspaceArguments& arguments, const Mesh&
   SubspaceOptions options = arguments.options;
   options.validate();
   if (arguments.radius_field.empty()) return options;
-  const double area = face_areas(mesh).sum();
-  if (!(area > 0)) throw InputError("", "mesh", "its faces have no area");
-  const double samples = options.samples > 0 ? options.samples : kUsualSamples;
-  const double base = options.radius > 0 ? options.radius : std::sqrt(area / (0.7 * samples));
-  options.relative_radii = radius_field(mesh, read_radius_field(arguments.radius_field, base), context) / base;
+  options.relative_radii = relative_radii(mesh, arguments.radius_field, options, context);
   return options;
 }
 

@@ -15,7 +15,7 @@ class Option;
 
 namespace orbifit {
 
-/// What subspace, deform and fit are told about the subspace to build.
+/// What subspace, deform, fit and edit are told about the subspace to build.
 struct SubspaceArguments {
   SubspaceOptions options;
   std::string radius_field;  ///< file, or empty
@@ -24,10 +24,7 @@ struct SubspaceArguments {
 /// Adds --mode alone.
 void add_mode_option(CLI::App& app, GroupMode& mode);
 
-/// Adds --mode, --lift, --radius, --samples and --sharp-features.
-void add_sampling_options(CLI::App& app, SubspaceOptions& options);
-
-/// Adds those and --radius-field.
+/// Adds --mode, --lift, --radius, --samples, --sharp-features and --radius-field.
 void add_subspace_options(CLI::App& app, SubspaceArguments& arguments);
 
 /// Makes an option useless together with any of those.

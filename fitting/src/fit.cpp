@@ -14,6 +14,7 @@
 #include "fit_systems.h"
 #include "fit_trial.h"
 #include "relaxation.h"
+#include "resolution/refinement.h"
 #include "solver/fit_system.h"
 #include "stage_clock.h"
 #include "start/fit_starts.h"
@@ -50,6 +51,7 @@ void FitOptions::validate() const {
   require(max_tried >= max_tied, "max_tried", max_tried, "at least max_tied");
   require(trim > 0 && trim <= 1, "trim", trim, "in (0, 1]");
   require(scan_points >= 10, "scan_points", scan_points, "at least 10");
+  require(refinements >= 0, "refinements", refinements, "0 or more");
   require(landmark_weight > 0, "landmark_weight", landmark_weight, "positive");
   require(inlier_distance > 0, "inlier_distance", inlier_distance, "positive");
   require(min_inlier_ratio >= 0 && min_inlier_ratio <= 1, "min_inlier_ratio", min_inlier_ratio, "in [0, 1]");
@@ -257,16 +259,23 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   Trial first = trial_of(input, options, false, context, clock);
   Trial trial = better_in_doubt(input, options, context, clock, std::move(first));
   FitResult result = std::move(trial.best.result);
-  tell_landmarks(input, context, result);
-  result.field_residual =
-      worst_field_residual(*trial.input.subspace, input.mesh, input.annotation, {result.q, result.basis}, context);
-  clock.finished("assessment");
   if ((options.judge_groups || options.drop_unsupported) && !input.annotation.regions.empty()) {
     judge_groups(trial.input, trial.best.start, options, context, result);
     clock.finished("groups");
   }
-  result.times = std::move(times);
   conclude(options, result);
+  // A subspace that is fine enough explains any scan: whether this one is the template's, a coarse one tells.
+  if (options.subspace.radius == 0 && options.subspace.samples == 0 && result.converged) {
+    const SymmetryAnnotation annotation = result.rest_annotation;
+    refine(trial.input.with(annotation), trial.best.start, options, context, result);
+    conclude(options, result);
+    clock.finished("refinement");
+  }
+  tell_landmarks(input, context, result);
+  result.field_residual =
+      worst_field_residual(result.subspace, input.mesh, result.rest_annotation, {result.q, result.basis}, context);
+  clock.finished("assessment");
+  result.times = std::move(times);
   return result;
 }
 

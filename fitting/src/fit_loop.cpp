@@ -83,6 +83,11 @@ FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {
   result.points = to_template(state.pose, several ? put.points : scan_.points);
   const Points normals = normals_to_template(state.pose, several ? put.normals : scan_.normals);
   result.pairs = find_correspondences(surface_, result.points, normals, options, context_, &likely_);
+  if (!start_.held_out.empty()) {
+    std::erase_if(result.pairs, [&](const Correspondence& pair) {
+      return start_.held_out[static_cast<std::size_t>(pair.scan_point)] != 0;
+    });
+  }
   result.of_scan = static_cast<int>(result.pairs.size());
   result.rms = weighted_rms(result.pairs) / size_;
   result.spread = typical_distance(result.pairs) / size_;
@@ -227,8 +232,9 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   first_scale_ = state.pose.scale;
   state.others.resize(start_.others.size());
   move_to(state);
-  last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
-  Stage now = stage(0);
+  const double scan_noise = scan_.noise / (state.pose.scale * size_);
+  last_stiffness_ = stiffness_for(scan_noise);
+  Stage now = stage(first_level * options_.iterations);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.max_iterations);
     const Stopwatch clock;
@@ -247,10 +253,15 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   now.every = 1;
   now.scale_open = scale_open;
   now.others_open = true;
+  // A fit that goes on from one that has converged has only to settle on what is left.
+  const bool goes_on = first_level >= options_.levels;
+  if (goes_on) now.stiffness = stiffness_for(std::max(scan_noise, match(state, now).spread));
   for (const double robust : kConverging) {
-    now.robust = robust * size_;
+    if (goes_on && robust == kConverging.front()) continue;
+    now.robust = (goes_on ? kConverging.back() : robust) * size_;
     // Converged once, the fit has reached what it had left unexplained for being on its way.
-    if (robust == kConverging[1]) now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
+    if (robust == (goes_on ? kConverging.back() : kConverging[1]))
+      now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
     reason = minimise(state, now, robust == kConverging.back() ? kLastGain : kGain, iterations);
   }
   return reason;

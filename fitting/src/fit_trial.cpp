@@ -48,6 +48,7 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   if (subspace->mode == GroupMode::moving) let_groups_turn(input, start, system, options, context, result);
   result.samples = static_cast<int>(subspace->sampling.points.rows());
   result.degrees_of_freedom = subspace.degrees_of_freedom();
+  result.subspace = subspace;
   result.overlap = start.overlap;
   result.torn_off = start.torn_off;
 

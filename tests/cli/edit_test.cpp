@@ -157,6 +157,14 @@ TEST_F(OrbifitDeform, APageToEditInIsMadeWithTheSameBasis) {
   ASSERT_EQ(basis.code, 0) << basis.errors;
   EXPECT_EQ(coarse["samples"], json::parse(basis.output)["samples"]);
   EXPECT_EQ(coarse["degrees_of_freedom"], json::parse(basis.output)["degrees_of_freedom"]);
+  program_.folder().write("field.json", R"({"areas": [{"centre": [0.5, 0.5, 0.5], "radius": 0.3, "factor": 0.5}]})");
+  const ProgramResult field =
+      program_.run("subspace cube.ply cube.json --radius-field field.json --samples 500 --json --quiet");
+  ASSERT_EQ(field.code, 0) << field.errors;
+  EXPECT_EQ(page("--radius-field field.json --samples 500")["samples"], json::parse(field.output)["samples"]);
+  EXPECT_NE(json::parse(field.output)["samples"], page("--samples 500")["samples"]);
+  EXPECT_EQ(program_.run("edit cube.ply cube.json -o page.html --radius-field page.html").code, 2);
+  EXPECT_EQ(program_.run("edit cube.ply cube.json -o page.html --radius-field cube.ply").code, 3);
   EXPECT_EQ(program_.run("edit cube.ply cube.json -o page.html --without 3").code, 2);
   EXPECT_EQ(program_.run("edit cube.ply cube.json -o page.html --radius -1").code, 2);
 }

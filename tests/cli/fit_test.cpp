@@ -48,6 +48,23 @@ TEST_F(OrbifitFit, SaysOfEachGroupWhatTheScanSaysOfIt) {
   EXPECT_EQ(page.find("://"), std::string::npos);
 }
 
+TEST_F(OrbifitFit, SaysWhichResolutionsWereTried) {
+  run(fit_ + "-o fitted.ply --report report.json");
+  const json report = json::parse(read_file(file("report.json")));
+  ASSERT_GE(report["resolutions"].size(), 1U);
+  EXPECT_EQ(report["resolutions"][0]["kept"], true);
+  const json* last = nullptr;
+  for (const json& each : report["resolutions"]) {
+    EXPECT_GT(each["held_out_rms"], 0);
+    if (each["kept"]) last = &each;
+  }
+  EXPECT_EQ((*last)["degrees_of_freedom"], report["degrees_of_freedom"]);
+  run(fit_ + "-o fitted.ply --report report.json --refinements 0");
+  EXPECT_EQ(json::parse(read_file(file("report.json")))["resolutions"].size(), 1U);
+  run(fit_ + "-o fitted.ply --report report.json --samples 200");
+  EXPECT_EQ(json::parse(read_file(file("report.json")))["resolutions"].size(), 0U);
+}
+
 TEST_F(OrbifitFit, LeavesOutTheGroupsThatAreNamed) {
   const SymmetryAnnotation before = read_annotation(file("table.annotation.json"), read_mesh(file("table.ply")));
   const int whole = before.regions.front().id;

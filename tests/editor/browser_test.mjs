@@ -159,11 +159,12 @@ const replayed = largestDifference(plyFile("replayed.ply"), dragged) / size;
 check(replayed < 1e-6, `orbifit deform replays handles.json to ${replayed.toExponential(1)} of the diagonal`);
 const exported = plyVertices(await download("save-ply"));
 check(largestDifference(exported, dragged) === 0, "the mesh that is exported is the one that is shown");
-for (const ending of ["obj", "glb"]) check((await download(`save-${ending}`)).length > 1000, `exports ${ending}`);
-
-writeFileSync(join(folder, "out.obj"), await download("save-obj"));
-orbifit("convert", "out.obj", "obj.ply", "--quiet");
-check(largestDifference(plyFile("obj.ply"), dragged) / size < 1e-9, "as OBJ too");
+for (const [ending, near] of [["obj", 1e-9], ["glb", 1e-6]]) { // GLB holds single precision
+  writeFileSync(join(folder, `out.${ending}`), await download(`save-${ending}`));
+  orbifit("convert", `out.${ending}`, `${ending}.ply`, "--quiet");
+  const off = largestDifference(plyFile(`${ending}.ply`), dragged) / size;
+  check(off < near, `as ${ending.toUpperCase()} too, to ${off.toExponential(1)} of the diagonal`);
+}
 
 // Keys. What they do is taken back, bit for bit.
 const same = async what => check(largestDifference(await shown(), dragged) === 0, what);
@@ -307,6 +308,44 @@ await page.selectOption("#mode", "0");
 await settled();
 check(await ask(() => globalThis.orbifit.editor.info.mode) === "fixed", "groups are fixed");
 await undo();
+
+// Moving groups: a drag may take fewer iterations a frame, what is released not.
+await page.selectOption("#mode", "2");
+await settled();
+await drag([], []);
+await page.mouse.up();
+await settled();
+writeFileSync(join(folder, "moving.json"), await download("save-handles"));
+orbifit("deform", "chair.ply", "chair.json", "--handles", "moving.json", "--mode", "moving", "-o", "moving.ply", "--quiet");
+const moving = largestDifference(plyFile("moving.ply"), await shown()) / size;
+check(moving < 1e-6, `a drag with moving groups ends as orbifit deform does, to ${moving.toExponential(1)} of the diagonal`);
+await undo();
+await undo();
+await same("undo takes the drag and the mode back");
+
+// The symmetrise slider: one entry for undo a drag.
+await page.click("summary:has-text('Symmetrise')");
+const slide = value => ask(value => {
+  const slider = document.getElementById("blend");
+  slider.value = String(value);
+  slider.dispatchEvent(new Event("input"));
+}, value);
+const blend = () => ask(() => globalThis.orbifit.editor.state.blend);
+for (const value of [0.2, 0.6, 1]) await slide(value);
+await settled();
+await ask(() => document.getElementById("blend").dispatchEvent(new Event("change")));
+check(await blend() === 1 && await page.isVisible("#blend-table table"), "the slider shows the symmetric mesh, and residuals");
+check(largestDifference(await shown(), dragged) > 0.01 * size, "in the place of the edit");
+await picture("symmetrise");
+await undo();
+check(await blend() === 0, "undo takes a drag of the slider back at once");
+await same("and shows the edit again");
+await page.keyboard.press("Control+Shift+z");
+await settled();
+check(await blend() === 1, "redo");
+await undo();
+await page.click("summary:has-text('Symmetrise')");
+
 await page.click("[data-do=reset]");
 await settled();
 check(largestDifference(await shown(), rest) === 0, "reset shows the mesh as it is");
@@ -333,10 +372,55 @@ const refusal = async (name, text, pattern) => {
   await page.click("[data-do=message]");
 };
 await refusal("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nend_header\n", /broken\.ply/);
+await refusal("empty.obj", "", /empty\.obj/);
+await refusal("noise.stl", "\u0001\u0002\u0003".repeat(99), /noise\.stl/);
 await refusal("notes.txt", "hello", /notes\.txt/);
+await refusal("cut.json", "{\"format\": \"symmetry-annotation\", ", /cut\.json/);
+await refusal("scan.xyz", "0 0 here\n", /scan\.xyz/);
+await refusal("handles.json", "{\"handles\": [{\"centre\": [0, 0, 0]}]}", /handle 0/);
 orbifit("generate", "wheel", "-o", ".", "--quiet");
 orbifit("detect", "wheel.ply", "-o", "wheel.json", "--quiet");
-await refusal("wheel.json", readFileSync(join(folder, "wheel.json"), "utf8"), /annotation|mesh|vertices|faces/);
+const foreign = readFileSync(join(folder, "wheel.json"), "utf8");
+await refusal("wheel.json", foreign, /annotation|mesh|vertices|faces/);
+
+// Another mesh with an annotation that is not its own, one that needs more memory than there is, one that is too large to
+// be read at all: what was there is there, and goes on.
+const dropped = async (what, pattern, names) => {
+  await ask(({ names }) => globalThis.dropFiles(names), { names });
+  await page.waitForFunction(() => !document.getElementById("message").hidden, null, { timeout: 20000 });
+  await settled();
+  const message = await ask(() => document.querySelector("#message span").textContent);
+  check(pattern.test(message), `${what}: "${message}"`);
+  check(largestDifference(await shown(), dragged) === 0, "nothing is lost");
+  await page.click("[data-do=message]");
+};
+await ask(({ foreign, cube }) => {
+  const grow = WebAssembly.Memory.prototype.grow;
+  const files = {
+    "cube.obj": () => new File([cube], "cube.obj"),
+    "wheel.json": () => new File([foreign], "wheel.json"),
+    "vast.obj": () => { // as it is where memory cannot grow
+      WebAssembly.Memory.prototype.grow = () => { throw new RangeError("Maximum memory size exceeded"); };
+      return new File(["v 0.123456789 0.5 0.25\n".repeat(4e6), "f 1 2 3\n"], "vast.obj");
+    },
+    "huge.ply": () => { // as a browser answers that cannot hold a file
+      const file = new File(["ply"], "huge.ply");
+      Object.defineProperty(file, "arrayBuffer", { value: () => Promise.reject(new DOMException("could not be read", "NotReadableError")) });
+      return file;
+    }
+  };
+  globalThis.dropFiles = names => {
+    const list = names.map(name => files[name]());
+    const event = new DragEvent("drop", { bubbles: true, cancelable: true });
+    Object.defineProperty(event, "dataTransfer", { value: { files: list } });
+    window.dispatchEvent(event);
+  };
+  globalThis.growAgain = () => { WebAssembly.Memory.prototype.grow = grow; };
+}, { foreign, cube: "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n" });
+await dropped("a mesh with an annotation of another", /annotation|mesh|vertices|faces/, ["cube.obj", "wheel.json"]);
+await dropped("a mesh that memory does not hold", /vast\.obj: too large/, ["vast.obj"]);
+await ask(() => globalThis.growAgain());
+await dropped("a file that the browser cannot read", /huge\.ply: too large/, ["huge.ply"]);
 
 // A scan, and the fit.
 orbifit("scan", "replayed.ply", "--views", "2", "-o", "scan.ply", "--quiet");
@@ -384,6 +468,20 @@ if (pictures) {
 }
 check(complaints.length === 0, `no errors or warnings until the end ${complaints.join("; ")}`);
 
+// A radius field: a basis that the page builds is sampled as the native program's.
+writeFileSync(join(folder, "field.json"), JSON.stringify({ areas: [{ centre: [0, 0.2, 0.9], radius: 0.15, factor: 0.5 }] }));
+const field = ["--radius-field", "field.json", "--samples", "400"];
+orbifit("edit", "chair.ply", "chair.json", ...field, "-o", "field.html", "--quiet");
+const native = orbifit("subspace", "chair.ply", "chair.json", ...field, "--mode", "fixed", "--json", "--quiet");
+await page.goto(pathToFileURL(join(folder, "field.html")).href);
+await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 60000 });
+await page.selectOption("#mode", "0");
+await settled();
+const built = await ask(() => globalThis.orbifit.editor.info);
+check(built.mode === "fixed" && built.samples === native.samples && built.degrees_of_freedom === native.degrees_of_freedom,
+      `the page samples by the radius field: ${built.samples} samples, ${built.degrees_of_freedom} degrees of freedom`);
+check(/--radius-field field\.json/.test(await page.textContent("#command")), "and names it in the command that replays");
+
 // Without WebGL there is a message.
 const bare = await browser.newContext();
 await bare.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
@@ -391,6 +489,7 @@ const plain = await bare.newPage();
 await plain.goto(pathToFileURL(join(folder, "chair.html")).href);
 await plain.waitForFunction(() => !document.getElementById("message").hidden, null, { timeout: 30000 });
 check(/WebGL/.test(await plain.textContent("#message")), "without WebGL the page says so");
+check(await plain.evaluate(() => document.getElementById("mesh").textContent.length > 1000), "and keeps the mesh");
 
 await browser.close();
 finish();

@@ -26,7 +26,7 @@ class EditorCoreTest : public testing::Test {
     write_annotation(folder_.file("chair.json"), chair_.truth);
     ASSERT_EQ(editor_read_mesh(session_, path("chair.ply").c_str()), 0) << editor_error();
     ASSERT_EQ(editor_read_annotation(session_, path("chair.json").c_str(), 0), 0) << editor_error();
-    ASSERT_EQ(editor_build_basis(session_, 1, 0, 0, 0, 0), 0) << editor_error();
+    ASSERT_EQ(editor_build_basis(session_, 1, 0, 0, 0, 0, nullptr), 0) << editor_error();
   }
   void TearDown() override { editor_free(session_); }
 
@@ -43,10 +43,23 @@ class EditorCoreTest : public testing::Test {
     ASSERT_EQ(editor_set_handles(session_, path("handles.json").c_str()), 2) << editor_error();
     solve(0, by);
   }
-  void solve(int side, double by) {
+  void solve(int side, double by, int iterations = 10, bool onwards = false) {
     const std::array<double, 24> motion{1, 0, 0, by, 0, 1, 0, by, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     std::array<double, 5> record{};
-    ASSERT_EQ(editor_solve(session_, side, motion.data(), 2, 10, record.data()), 0) << editor_error();
+    ASSERT_EQ(editor_solve(session_, side, motion.data(), 2, iterations, onwards ? 1 : 0, record.data()), 0)
+        << editor_error();
+  }
+  // The side without symmetries, from a basis that another session built, as the page's worker does.
+  void compare() {
+    const auto samples = nlohmann::json::parse(editor_info(session_))["samples"].get<int>();
+    write_annotation(folder_.file("none.json"), empty_annotation(chair_.mesh, chair_.truth.tolerance));
+    EditorSession* other = editor_new();
+    ASSERT_EQ(editor_read_mesh(other, path("chair.ply").c_str()), 0) << editor_error();
+    ASSERT_EQ(editor_read_annotation(other, path("none.json").c_str(), 0), 0) << editor_error();
+    ASSERT_EQ(editor_build_basis(other, 1, 0, 0, samples, 0, nullptr), 0) << editor_error();
+    ASSERT_EQ(editor_write_basis(other, path("free.basis").c_str()), 0) << editor_error();
+    editor_free(other);
+    ASSERT_EQ(editor_compare(session_, path("free.basis").c_str()), 0) << editor_error();
   }
   double worst(int kind) {
     std::vector<double> numbers(2 * chair_.truth.regions.size());
@@ -63,7 +76,7 @@ class EditorCoreTest : public testing::Test {
 };
 
 TEST_F(EditorCoreTest, AnEditIsSymmetricToRoundingAndOneWithoutSymmetriesIsNot) {
-  ASSERT_EQ(editor_compare(session_, 1), 0) << editor_error();
+  ASSERT_NO_FATAL_FAILURE(compare());
   move_foot(0.05);
   solve(1, 0.05);
   EXPECT_LT(worst(0), 1e-9);
@@ -76,6 +89,14 @@ TEST_F(EditorCoreTest, TheSameMotionsGiveTheSameBitsWhateverWasBefore) {
   const std::vector<double> first = shown();
   solve(0, 0.02);
   EXPECT_NE(shown(), first);
+  solve(0, 0.05);
+  EXPECT_EQ(shown(), first);
+  for (int step = 1; step <= 5; ++step) solve(0, 0.01 * step, 2, true);
+  const std::vector<double> dragged = shown();
+  EXPECT_NE(dragged, first);
+  double off = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) off = std::max(off, std::abs(dragged[i] - first[i]));
+  EXPECT_LT(off, 0.005) << "a drag of few iterations a frame shows nearly what the release does";
   solve(0, 0.05);
   EXPECT_EQ(shown(), first);
   ASSERT_EQ(editor_rest(session_), 0);

@@ -54,7 +54,7 @@ for (const { name, mode, handles } of models) {
   const session = module._editor_new();
   expected(withFile(module._editor_read_mesh, session, mesh, readFileSync(join(folder, mesh))));
   expected(withFile(module._editor_read_annotation, session, "a.json", readFileSync(join(folder, `${name}.json`)), 0));
-  expected(module._editor_build_basis(session, modes.indexOf(mode), 0, 0, 0, 0));
+  expected(module._editor_build_basis(session, modes.indexOf(mode), 0, 0, 0, 0, 0));
   expected(withFile(module._editor_set_handles, session, "handles.json", readFileSync(join(folder, "handles.json"))));
   const numbers = module._editor_allocate(8 * 1024);
   const motions = list.flatMap((handle, number) => {
@@ -70,7 +70,7 @@ for (const { name, mode, handles } of models) {
   new Float64Array(module.HEAPU8.buffer, numbers, motions.length).set(motions);
   let best = Infinity;
   for (let i = 0; i < 5; ++i) {
-    expected(module._editor_solve(session, 0, numbers, list.length, 10, numbers + 4096));
+    expected(module._editor_solve(session, 0, numbers, list.length, 10, 0, numbers + 4096));
     const [solve, lift] = new Float64Array(module.HEAPU8.buffer, numbers + 4096, 2);
     best = Math.min(best, solve + lift);
   }

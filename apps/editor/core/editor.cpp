@@ -11,6 +11,7 @@
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/scan_io.h"
+#include "orbifit/subspace/radius_field.h"
 
 #include "session.h"
 
@@ -122,7 +123,8 @@ int editor_write_mesh(EditorSession* session, const char* file, int at_rest) {
   return done([&] { at_rest != 0 ? session->write_rest(file) : session->write_shown(file); });
 }
 
-int editor_build_basis(EditorSession* session, int mode, int lift, double radius, int samples, int sharp) {
+int editor_build_basis(EditorSession* session, int mode, int lift, double radius, int samples, int sharp,
+                       const char* radius_field) {
   return done([&] {
     if (mode < 0 || mode > 2) throw orbifit::UsageError("mode: 0, 1 or 2");
     if (lift < 0 || lift > 1) throw orbifit::UsageError("lift: 0 or 1");
@@ -133,6 +135,9 @@ int editor_build_basis(EditorSession* session, int mode, int lift, double radius
     options.samples = samples;
     options.sharp_features_first = sharp != 0;
     options.validate();
+    if (radius_field != nullptr) {
+      options.relative_radii = orbifit::relative_radii(session->mesh(), radius_field, options, session->context);
+    }
     session->build_basis(options);
   });
 }
@@ -208,7 +213,8 @@ int editor_handle_centroid(EditorSession* session, int handle, double* centroid)
   });
 }
 
-int editor_solve(EditorSession* session, int side, const double* motions, int count, int iterations, double* record) {
+int editor_solve(EditorSession* session, int side, const double* motions, int count, int iterations, int onwards,
+                 double* record) {
   return done([&] {
     std::vector<Motion> list(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -216,7 +222,8 @@ int editor_solve(EditorSession* session, int side, const double* motions, int co
       list[i].linear = rows.leftCols<3>();
       list[i].translation = rows.col(3);
     }
-    const orbifit::editor::SolveRecord found = session->solve(side_of(side), list, std::max(1, iterations));
+    const orbifit::editor::SolveRecord found =
+        session->solve(side_of(side), list, std::max(1, iterations), onwards != 0);
     record[0] = found.solve_ms;
     record[1] = found.lift_ms;
     record[2] = found.show_ms;
@@ -233,8 +240,8 @@ int editor_show(EditorSession* session, const double* vertices) {
   return done([&] { session->show(points_of(*session, vertices)); });
 }
 
-int editor_compare(EditorSession* session, int on) {
-  return done([&] { session->compare(on != 0); });
+int editor_compare(EditorSession* session, const char* basis) {
+  return done([&] { basis != nullptr ? session->compare(basis) : session->stop_comparing(); });
 }
 
 int editor_residuals(EditorSession* session, int kind, double* numbers) {

@@ -27,8 +27,9 @@ int editor_read_basis(struct EditorSession* session, const char* file);
 int editor_write_basis(struct EditorSession* session, const char* file);
 int editor_write_mesh(struct EditorSession* session, const char* file, int at_rest);
 /* mode: 0 fixed, 1 floating, 2 moving; lift: 0 orbit, 1 paper; radius, mesh units, and samples: 0 chooses;
-   sharp: 1 places samples on sharp edges first. */
-int editor_build_basis(struct EditorSession* session, int mode, int lift, double radius, int samples, int sharp);
+   sharp: 1 places samples on sharp edges first; radius_field: a file, as `orbifit deform` takes it, or null. */
+int editor_build_basis(struct EditorSession* session, int mode, int lift, double radius, int samples, int sharp,
+                       const char* radius_field);
 /* The annotation as it is kept, as JSON. */
 const char* editor_annotation(struct EditorSession* session);
 /* Counts, sizes and the basis as JSON. */
@@ -47,12 +48,14 @@ const double* editor_vertices(struct EditorSession* session, int side); /* 3 a v
 int editor_set_handles(struct EditorSession* session, const char* file);
 /* Centroid of a handle's vertices at rest, 3 numbers, and how many vertices there are. */
 int editor_handle_centroid(struct EditorSession* session, int handle, double* centroid);
-/* motions: 12 numbers a handle, 3 by 4, by row. record: solve, lift and show in ms, handle error, energy. */
-int editor_solve(struct EditorSession* session, int side, const double* motions, int count, int iterations,
+/* motions: 12 numbers a handle, 3 by 4, by row. onwards: 1 starts from what was solved for last, 0 from rest, so that
+   nothing depends on what was before. record: solve, lift and show in ms, handle error, energy. */
+int editor_solve(struct EditorSession* session, int side, const double* motions, int count, int iterations, int onwards,
                  double* record);
 int editor_rest(struct EditorSession* session);
 int editor_show(struct EditorSession* session, const double* vertices);
-int editor_compare(struct EditorSession* session, int on);
+/* basis: a file with one of an empty annotation, which the side without symmetries has; null: no such side. */
+int editor_compare(struct EditorSession* session, const char* basis);
 /* 2 numbers a region: rms and max, fractions of the diagonal. kind: 0 of the deformation, 1 of the one without
    symmetries, 2 of the shape shown. \return the number of regions */
 int editor_residuals(struct EditorSession* session, int kind, double* numbers);

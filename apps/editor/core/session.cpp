@@ -85,16 +85,10 @@ void Session::write_basis(const std::string& file) const {
   write_subspace(file, subspace(), mesh_, annotation_);
 }
 
-void Session::compare(bool on) {
-  free_.reset();
-  if (!on) return;
-  if (!symmetric_side_.subspace) throw UsageError("there is no basis to compare with");
-  Edited other;
-  SubspaceOptions options;
-  options.mode = subspace().mode();
-  options.samples = std::max(4, static_cast<int>(subspace().samples().rows()));
+void Session::compare(const std::string& basis) {
   const SymmetryAnnotation nothing = empty_annotation(mesh_, annotation_.tolerance);
-  other.subspace = std::make_unique<Subspace>(build_subspace(mesh_, nothing, options, context));
+  Edited other;
+  other.subspace = std::make_unique<Subspace>(read_subspace(basis, mesh_, nothing, context));
   other.vertices = mesh_.vertices;
   other.display = symmetric_side_.display;
   other.display.move(mesh_.vertices);
@@ -128,7 +122,7 @@ void Session::take_vertices(Edited& edited, Points vertices) {
   if (&edited == &symmetric_side_) picker_stale_ = true;
 }
 
-SolveRecord Session::solve(Side side, const std::vector<Motion>& motions, int iterations) {
+SolveRecord Session::solve(Side side, const std::vector<Motion>& motions, int iterations, bool onwards) {
   Edited& edited = need(side);
   Deformer& deformer = this->deformer(side);
   if (!edited.handles_set) {
@@ -137,7 +131,7 @@ SolveRecord Session::solve(Side side, const std::vector<Motion>& motions, int it
   }
   SolveRecord record;
   const auto start = Clock::now();
-  Deformation deformation = deformer.solve(motions, iterations);
+  Deformation deformation = deformer.solve(motions, iterations, onwards ? edited.state : SubspaceState{});
   const auto solved = Clock::now();
   Points vertices = vertex_displacements(*edited.subspace, deformation.state, context);
   vertices += mesh_.vertices;

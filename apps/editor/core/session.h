@@ -58,15 +58,18 @@ class Session {
   /// Handles of both sides. \throw InputError
   void set_handles(const std::string& file);
   const HandleSet& handles() const { return handles_; }
-  /// One motion a handle, which may scale as well. The vertices of that side move.
-  SolveRecord solve(Side side, const std::vector<Motion>& motions, int iterations);
+  /// One motion a handle, which may scale as well. The vertices of that side move. \param onwards  from what was solved
+  /// for last, so that few iterations do while a handle is dragged; else from rest
+  SolveRecord solve(Side side, const std::vector<Motion>& motions, int iterations, bool onwards = false);
   /// All vertices of both sides as at rest.
   void rest();
   /// Vertices from elsewhere, such as a fit. \pre as many as the mesh has
   void show(const Points& vertices);
 
-  /// Builds the same without symmetries: an empty annotation, on as many samples, in the same mode.
-  void compare(bool on);
+  /// Edits the same without symmetries as well. \param basis  file with one of an empty annotation, for a fair
+  /// comparison on as many samples and in the same mode
+  void compare(const std::string& basis);
+  void stop_comparing() { free_.reset(); }
 
   const DisplayMesh& display(Side side) const { return need(side).display; }
   const Points& vertices(Side side) const { return need(side).vertices; }

@@ -8,6 +8,7 @@ interface Module {
     writeFile(file: string, data: Uint8Array | string): void;
     readFile(file: string): Uint8Array;
     unlink(file: string): void;
+    analyzePath(file: string): { exists: boolean };
   };
   UTF8ToString(pointer: number): string;
   addFunction(call: (...numbers: number[]) => void, signature: string): number;
@@ -32,6 +33,7 @@ export interface Sampling {
   radius: number; // mesh units
   samples: number;
   sharp: boolean;
+  radius_field?: { name: string; text: string }; // as `orbifit deform` reads it
 }
 export const usualSampling: Sampling = { lift: 0, radius: 0, samples: 0, sharp: false };
 
@@ -60,6 +62,9 @@ export const enum Side { symmetric = 0, free = 1 }
 export const enum ResidualKind { deformation = 0, free = 1, shape = 2 }
 
 const scratchNumbers = 4096;
+const noMemory = "not enough memory"; // in the core's words
+export const tooLarge = (name: string): string =>
+  `${name}: too large for the browser's memory; \`orbifit deform\` edits it without a browser`;
 
 export class Core {
   private readonly session: number;
@@ -116,14 +121,17 @@ export class Core {
   /** A file that the core reads, under the name that its messages are to have. */
   private withFile<Result>(name: string, data: Uint8Array | string, use: (file: string) => Result): Result {
     const file = "/" + name.replace(/[/\\]/g, "_");
-    this.module.FS.writeFile(file, data);
     try {
+      this.module.FS.writeFile(file, data);
       return use(file);
     } catch (error) {
+      if (error instanceof RangeError || (error instanceof CoreError && error.message === noMemory)) {
+        throw new CoreError(tooLarge(name));
+      }
       if (error instanceof CoreError) throw new CoreError(error.message.replaceAll(file, name));
       throw error;
     } finally {
-      this.module.FS.unlink(file);
+      if (this.module.FS.analyzePath(file).exists) this.module.FS.unlink(file);
     }
   }
 
@@ -153,8 +161,11 @@ export class Core {
     return this.written("written." + ending,
                         file => this.withName(this.module._editor_write_mesh!, file, atRest ? 1 : 0));
   }
-  buildBasis(mode: number, { lift, radius, samples, sharp }: Sampling): void {
-    this.checked(this.module._editor_build_basis!(this.session, mode, lift, radius, samples, sharp ? 1 : 0));
+  buildBasis(mode: number, { lift, radius, samples, sharp, radius_field }: Sampling): void {
+    const build = (field: number): number => this.checked(
+      this.module._editor_build_basis!(this.session, mode, lift, radius, samples, sharp ? 1 : 0, field));
+    if (!radius_field) build(0);
+    else this.withFile(radius_field.name, radius_field.text, file => this.withName((_, name) => build(name), file));
   }
   annotation(): string { return this.text(this.module._editor_annotation!(this.session)); }
   info(): Info { return JSON.parse(this.text(this.module._editor_info!(this.session))) as Info; }
@@ -195,7 +206,8 @@ export class Core {
     const [x, y, z] = this.numbers(3);
     return [x!, y!, z!];
   }
-  solve(side: Side, motions: Float64Array, iterations: number, record: SolveRecord): void {
+  /** \param onwards  from what was solved for last, and not from rest */
+  solve(side: Side, motions: Float64Array, iterations: number, onwards: boolean, record: SolveRecord): void {
     if (motions.length > this.motionsRoom) {
       if (this.motionsAt) this.module._editor_release(this.motionsAt);
       this.motionsRoom = 2 * motions.length;
@@ -203,7 +215,7 @@ export class Core {
     }
     this.doubles().set(motions, this.motionsAt / 8);
     this.checked(this.module._editor_solve!(this.session, side, this.motionsAt, motions.length / 12, iterations,
-                                            this.scratch));
+                                            onwards ? 1 : 0, this.scratch));
     const numbers = this.doubles();
     const at = this.scratch / 8;
     record.solve = numbers[at]!;
@@ -215,7 +227,11 @@ export class Core {
   show(vertices: Float64Array): void {
     this.withNumbers(vertices, at => this.checked(this.module._editor_show!(this.session, at)));
   }
-  compare(on: boolean): void { this.checked(this.module._editor_compare!(this.session, on ? 1 : 0)); }
+  /** \param basis  of an empty annotation: what the side without symmetries is edited with */
+  compare(basis: Uint8Array): void {
+    this.withFile("basis", basis, file => this.checked(this.withName(this.module._editor_compare!, file)));
+  }
+  stopComparing(): void { this.checked(this.module._editor_compare!(this.session, 0)); }
 
   residuals(kind: ResidualKind): RegionResidual[] {
     const count = this.checked(this.module._editor_residuals!(this.session, kind, this.scratch));

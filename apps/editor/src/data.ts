@@ -1,6 +1,4 @@
 // What the page carries in itself, and files in and out.
-import { gunzipSync } from "fflate";
-
 import workerCode from "worker-code";
 import type { Answer, Request, Task } from "./worker";
 
@@ -21,10 +19,11 @@ export function embedded(id: string): { name: string; source: string; data: Uint
   return { name, source: element.dataset.source || name, data };
 }
 
-export function coreBytes(): Uint8Array {
+export async function coreBytes(): Promise<Uint8Array> {
   const found = embedded("core");
   if (!found) throw new Error("the page has no core: it was not built whole");
-  return gunzipSync(found.data);
+  const stream = new Blob([found.data as BlobPart]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
 export function download(name: string, data: Uint8Array | string, type = "application/octet-stream"): void {
@@ -54,19 +53,9 @@ export class Background {
   /** \param each  every answer but the last, and errors \return the last answer of this kind */
   run<Kind extends Task["kind"]>(task: Task & { kind: Kind },
                                  each: (answer: Answer) => void = () => {}): Promise<Answer & { kind: Kind }> {
-    const number = ++this.number;
-    const request: Request = { number, task };
-    if (!this.worker) {
-      this.worker = new Worker(URL.createObjectURL(new Blob([workerCode], { type: "text/javascript" })));
-      this.worker.addEventListener("message", (event: MessageEvent<Answer>) =>
-        this.waiting.get(event.data.number)?.(event.data));
-      request.wasm = this.wasm;
-      this.meshSent = false;
-    }
-    if (!this.meshSent && this.mesh) {
-      request.mesh = this.mesh;
-      this.meshSent = true;
-    }
+    const request = this.request();
+    const { number } = request;
+    request.task = task;
     return new Promise((resolve, reject) => {
       this.waiting.set(number, answer => {
         if (answer.kind !== task.kind && answer.kind !== "error") {
@@ -79,6 +68,35 @@ export class Background {
       });
       this.worker!.postMessage(request);
     });
+  }
+
+  private preparing = 0; // a timer's
+  /** Starts the worker and gives it the mesh once the page is at rest: the first task then need not wait for that. */
+  prepareSoon(): void {
+    const atRest = 500; // ms
+    clearTimeout(this.preparing);
+    this.preparing = window.setTimeout(() => {
+      if (this.worker && this.meshSent) return;
+      const request = this.request();
+      this.worker!.postMessage(request);
+    }, atRest);
+  }
+
+  /** The next request, with what the worker lacks; there is a worker then. */
+  private request(): Request {
+    const request: Request = { number: ++this.number };
+    if (!this.worker) {
+      this.worker = new Worker(URL.createObjectURL(new Blob([workerCode], { type: "text/javascript" })));
+      this.worker.addEventListener("message", (event: MessageEvent<Answer>) =>
+        this.waiting.get(event.data.number)?.(event.data));
+      request.wasm = this.wasm;
+      this.meshSent = false;
+    }
+    if (!this.meshSent && this.mesh) {
+      request.mesh = this.mesh;
+      this.meshSent = true;
+    }
+    return request;
   }
 
   /** Gives up whatever runs. */

@@ -20,6 +20,7 @@ export interface Snapshot {
   iterations: number;
   mode: number;
   off: number[]; // ids of regions
+  blend: number; // 0: the mesh as it is ... 1: the exactly symmetric one; not 0 without that one
   annotation: Annotation; // shared between snapshots where it is the same
 }
 
@@ -42,7 +43,6 @@ export class Editor {
   readonly record: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
   residual = 0; // worst region's largest, of the deformation that was measured last
   freeResidual = 0;
-  blend = 0;
   fitSteps: { step: number; rms: number }[] = [];
   fitted = false;
 
@@ -58,8 +58,10 @@ export class Editor {
   private stale = false;
   private handlesStale = false;
   private rebuilding = 0;
+  private dragging = false;
+  private iterationTook = 0; // ms, of both sides
   private extents = new Map<string, { elements: Element[]; extent: Extent }>();
-  private symmetricReady = false;
+  private symmetricOf = ""; // the regions that the core has the symmetric shape of
   onChange: () => void = () => {};
   onSolved: () => void = () => {}; // the vertices or what is measured of them changed, nothing else
   onError: (message: string) => void = () => {};
@@ -73,6 +75,12 @@ export class Editor {
   /** \param basis  prebuilt for the annotation, or null */
   async open(name: string, data: Uint8Array, annotation: Annotation | null, basis: Uint8Array | null, mode = 1): Promise<void> {
     this.core.readMesh(name, data); // refuses before anything is lost
+    try {
+      if (annotation) this.core.readAnnotation("annotation", JSON.stringify(annotation), true);
+    } catch (error) {
+      await this.reopen();
+      throw error;
+    }
     this.background.stop();
     this.background.setMesh(name, data);
     this.meshName = name;
@@ -84,13 +92,13 @@ export class Editor {
     this.bases.clear();
     this.extents.clear();
     this.sampling = usualSampling;
-    this.symmetricReady = false;
-    this.blend = 0;
+    this.symmetricOf = "";
+    this.symmetryReport = [];
     this.fitted = false;
     this.comparing = false;
     this.view.setSplit(false);
     const taken = annotation ?? emptyAnnotation(this.info.vertices, this.info.faces, this.info.diagonal);
-    this.state = { handles: [], alpha: 100, iterations: 10, mode, off: [], annotation: taken };
+    this.state = { handles: [], alpha: 100, iterations: 10, mode, off: [], blend: 0, annotation: taken };
     this.selected = -1;
     if (basis) this.bases.set(this.basisKey(), { bytes: basis, annotation: JSON.stringify(taken) });
     this.view.setMesh(this.core);
@@ -104,12 +112,23 @@ export class Editor {
     this.setBusy("reading the basis");
     // The mesh is seen first: what follows a frame's callbacks directly still comes before it is shown.
     await new Promise(shown => requestAnimationFrame(() => setTimeout(shown)));
+    this.shownKey = "";
     await this.takeBasis();
     this.handlesChanged();
+    this.background.prepareSoon();
+  }
+
+  /** Has the core take what is edited again, after it was given something else that was refused. */
+  private async reopen(): Promise<void> {
+    if (!this.meshData.length) return;
+    this.core.readMesh(this.meshName, this.meshData);
+    this.shownKey = this.symmetricOf = "";
+    await this.restored();
   }
 
   async openAnnotation(annotation: Annotation): Promise<void> {
-    this.core.readAnnotation("annotation", JSON.stringify(annotation)); // refuses one of another mesh
+    this.core.readAnnotation("annotation", JSON.stringify(annotation), true); // refuses one of another mesh
+    this.shownKey = "";
     await this.change(state => { state.annotation = annotation; state.off = []; });
   }
 
@@ -168,6 +187,9 @@ export class Editor {
   async change(edit: (state: Snapshot) => void): Promise<void> {
     this.remember();
     edit(this.state);
+    if (await this.restored()) return;
+    this.state = this.done.pop()!; // there is no basis of what was asked for
+    this.shownKey = "";
     await this.restored();
   }
 
@@ -184,10 +206,13 @@ export class Editor {
     await this.restored();
   }
 
-  private async restored(): Promise<void> {
+  /** \return false where there is no basis */
+  private async restored(): Promise<boolean> {
     if (this.selected >= this.state.handles.length) this.selected = -1;
-    await this.takeBasis();
-    this.handlesChanged();
+    const known = await this.takeBasis();
+    if (this.state.blend > 0) await this.takeSymmetric();
+    this.refresh();
+    return known;
   }
 
   // The basis -----------------------------------------------------------------------------------------------------
@@ -195,17 +220,19 @@ export class Editor {
   private active(): Annotation { return without(this.state.annotation, new Set(this.state.off)); }
 
   private annotationKeys = new Map<Annotation, number>();
-  private basisKey(): string {
-    const { annotation, off, mode } = this.state;
+  private regionsKey(): string {
+    const { annotation, off } = this.state;
     if (!this.annotationKeys.has(annotation)) this.annotationKeys.set(annotation, this.annotationKeys.size);
-    return `${this.annotationKeys.get(annotation)} ${mode} ${[...off].sort((a, b) => a - b).join()}`;
+    return `${this.annotationKeys.get(annotation)} ${[...off].sort((a, b) => a - b).join()}`;
   }
+  private basisKey(): string { return `${this.state.mode} ${this.regionsKey()}`; }
 
   private shownKey = "";
-  /** Has the core take the basis of the regions that are on, built in the worker where it is not known. */
-  private async takeBasis(): Promise<void> {
+  /** Has the core take the basis of the regions that are on, built in the worker where it is not known.
+   *  \return false where it cannot be built */
+  private async takeBasis(): Promise<boolean> {
     const key = this.basisKey();
-    if (key === this.shownKey) return;
+    if (key === this.shownKey) return true;
     const turn = ++this.rebuilding;
     let basis = this.bases.get(key);
     if (!basis) {
@@ -218,17 +245,42 @@ export class Editor {
       } catch (error) {
         if (turn === this.rebuilding) this.setBusy("");
         this.failed(error);
-        return;
+        return turn !== this.rebuilding;
       }
     }
-    if (turn !== this.rebuilding) return; // another change has overtaken this one
+    if (turn !== this.rebuilding) return true; // another change has overtaken this one
     this.core.readAnnotation("annotation", basis.annotation, true);
     this.core.readBasis(basis.bytes);
     this.shownKey = key;
     this.kept = (JSON.parse(this.core.annotation()) as Annotation).regions.map(region => region.id);
     this.info = this.core.info();
-    if (this.comparing) this.core.compare(true);
-    this.setBusy("");
+    this.iterationTook = 0;
+    if (this.comparing) {
+      try {
+        await this.takeFreeBasis();
+      } catch (error) {
+        this.failed(error);
+        this.comparing = false;
+        this.view.setSplit(false);
+      }
+    }
+    if (turn === this.rebuilding) this.setBusy("");
+    return true;
+  }
+
+  /** The same without symmetries: as many samples, in the same mode. */
+  private async takeFreeBasis(): Promise<void> {
+    const { vertices, faces, diagonal, samples } = this.info;
+    const sampling = { ...usualSampling, samples: Math.max(4, samples ?? 0) };
+    const key = `free ${this.state.mode} ${sampling.samples}`;
+    let basis = this.bases.get(key);
+    if (!basis) {
+      const annotation = JSON.stringify(emptyAnnotation(vertices, faces, diagonal));
+      const answer = await this.background.run({ kind: "basis", annotation, mode: this.state.mode, sampling });
+      basis = { bytes: answer.basis, annotation };
+      this.bases.set(key, basis);
+    }
+    this.core.compare(basis.bytes);
   }
 
   private failed(error: unknown): void {
@@ -271,6 +323,10 @@ export class Editor {
 
   /** Their number, places, radii or weight changed: the system is factorised anew. */
   handlesChanged(): void {
+    this.state.blend = 0;
+    this.refresh();
+  }
+  private refresh(): void {
     this.handlesStale = true;
     this.stale = true;
     this.fitted = false;
@@ -278,8 +334,10 @@ export class Editor {
     this.onChange();
   }
 
-  /** Where they are to go changed. */
-  motionsChanged(): void {
+  /** Where they are to go changed. \param dragging  it will go on: few iterations may do */
+  motionsChanged(dragging = false): void {
+    this.dragging = dragging;
+    this.state.blend = 0;
     this.stale = true;
     this.showHandles();
     this.view.draw();
@@ -298,8 +356,9 @@ export class Editor {
 
   showHandles(): void {
     const { handles } = this.state;
-    this.view.showHandles(handles.length);
-    for (let number = 0; number < handles.length; ++number) {
+    const shown = this.state.blend > 0 ? 0 : handles.length; // they do not act on what the slider shows
+    this.view.showHandles(shown);
+    for (let number = 0; number < shown; ++number) {
       this.view.showHandle(number, this.target(number), handles[number]!.pin, number === this.selected);
     }
     if (this.selected >= 0) this.view.gizmoTarget.position.set(...this.target(this.selected));
@@ -328,20 +387,36 @@ export class Editor {
       this.view.marksChanged();
       this.showHandles();
     }
-    if (!handles.length) {
+    if (this.state.blend > 0) {
+      this.core.blend(this.state.blend);
+    } else if (!handles.length) {
       this.core.rest();
       this.record.solve = this.record.lift = this.record.handleError = 0;
     } else {
       for (let number = 0; number < handles.length; ++number) {
         writeMotion(handles[number]!, this.centroids[number]!, this.motions, 12 * number);
       }
-      this.core.solve(Side.symmetric, this.motions, iterations, this.record);
-      if (this.comparing) this.core.solve(Side.free, this.motions, iterations, this.freeRecord);
+      const count = this.iterationsNow();
+      this.core.solve(Side.symmetric, this.motions, count, count < iterations, this.record);
+      this.iterationTook = this.record.solve / count;
+      if (this.comparing) {
+        this.core.solve(Side.free, this.motions, count, count < iterations, this.freeRecord);
+        this.iterationTook += this.freeRecord.solve / count;
+      }
     }
     this.view.positionsChanged(Side.symmetric);
     if (this.comparing) this.view.positionsChanged(Side.free);
     this.measureSoon();
     this.onSolved();
+  }
+
+  /** A drag keeps up with the pointer: where a full solve does not, each frame has as many iterations as go into it and
+   *  starts from the last. What is released is solved for from rest, so that it does not depend on the way. */
+  private iterationsNow(): number {
+    const frame = 25; // ms
+    const { iterations } = this.state;
+    if (!this.dragging || this.iterationTook * iterations <= frame) return iterations;
+    return Math.max(1, Math.min(iterations, Math.floor(frame / this.iterationTook)));
   }
 
   private measuring = 0; // a timer's
@@ -377,25 +452,24 @@ export class Editor {
     this.onSolved();
   }
 
-  /** Without symmetries every sample is an unknown: that takes seconds to factorise. */
   async setComparing(on: boolean): Promise<void> {
     if (on === this.comparing || this.busy) return;
     if (on) {
-      this.setBusy("solving without symmetries");
-      await new Promise(shown => requestAnimationFrame(() => setTimeout(shown)));
+      this.setBusy("preparing the side without symmetries");
+      try {
+        await this.takeFreeBasis();
+      } catch (error) {
+        this.failed(error);
+        return;
+      } finally {
+        this.setBusy("");
+      }
+    } else {
+      this.core.stopComparing();
     }
-    try {
-      this.core.compare(on);
-      this.comparing = on;
-      this.view.setSplit(on);
-      this.handlesStale = true;
-      if (on) this.solve();
-    } finally {
-      if (on) this.setBusy("");
-    }
-    this.stale ||= !on;
-    this.view.draw();
-    this.onChange();
+    this.comparing = on;
+    this.view.setSplit(on);
+    this.refresh();
   }
 
   // Symmetrise ----------------------------------------------------------------------------------------------------
@@ -403,25 +477,40 @@ export class Editor {
   symmetryReport: SymmetryChange[] = [];
   /** Shows what lies between the mesh as it is (0) and the exactly symmetric one (1). */
   async setBlend(share: number): Promise<void> {
-    if (!this.symmetricReady) {
-      this.setBusy("looking for the symmetric shape");
-      try {
-        const answer = await this.background.run(
-          { kind: "symmetrize", annotation: JSON.stringify(this.active()) });
-        this.core.setSymmetric(answer.vertices);
-        this.symmetryReport = (JSON.parse(answer.report) as { regions: SymmetryChange[] }).regions;
-        this.symmetricReady = true;
-      } catch (error) {
-        this.failed(error);
-        return;
-      } finally {
-        this.setBusy("");
-      }
-    }
-    this.blend = share;
-    this.core.blend(share);
-    this.view.positionsChanged(Side.symmetric);
+    this.state.blend = share;
+    if (share > 0 && !(await this.takeSymmetric())) return;
+    this.stale = true;
+    this.showHandles();
+    this.solveNow(); // the table of residuals is that of what is shown
+    this.view.draw();
     this.onChange();
+  }
+
+  private symmetricComes: Promise<boolean> | null = null;
+  /** \return whether the core has the symmetric shape of the regions that are on; the blend is 0 where it has not */
+  private async takeSymmetric(): Promise<boolean> {
+    if (this.symmetricOf === this.regionsKey()) return true;
+    this.symmetricComes ??= this.findSymmetric();
+    const known = await this.symmetricComes;
+    this.symmetricComes = null;
+    if (!known) this.state.blend = 0;
+    return known;
+  }
+  private async findSymmetric(): Promise<boolean> {
+    const key = this.regionsKey();
+    this.setBusy("looking for the symmetric shape");
+    try {
+      const answer = await this.background.run({ kind: "symmetrize", annotation: JSON.stringify(this.active()) });
+      this.core.setSymmetric(answer.vertices);
+      this.symmetryReport = (JSON.parse(answer.report) as { regions: SymmetryChange[] }).regions;
+      this.symmetricOf = key;
+      return key === this.regionsKey();
+    } catch (error) {
+      this.failed(error);
+      return false;
+    } finally {
+      this.setBusy("");
+    }
   }
 
   shapeResiduals(): Map<number, RegionResidual> {
@@ -430,9 +519,9 @@ export class Editor {
 
   /** Makes the shape that the slider shows the mesh that is edited. */
   async keepBlend(): Promise<void> {
-    if (!this.symmetricReady || this.blend === 0) return;
-    const { annotation, mode } = this.state;
-    this.core.keepBlend(this.blend);
+    const { annotation, mode, blend } = this.state;
+    if (blend === 0 || this.symmetricOf !== this.regionsKey()) return;
+    this.core.keepBlend(blend);
     const name = this.meshName.replace(/\.[^.]*$/, "") + "_symmetric.ply";
     const mesh = this.core.writeMesh("ply", true);
     const changed = structuredClone(annotation);

@@ -36,7 +36,8 @@ export class Input {
 
   private nearestHandle(x: number, y: number, within = reach): number {
     let best = -1, least = within;
-    this.editor.state?.handles.forEach((_, number) => {
+    if (!this.editor.state || this.editor.state.blend > 0) return best; // they are not shown
+    this.editor.state.handles.forEach((_, number) => {
       const [sx, sy] = this.editor.view.screen(this.editor.target(number));
       const distance = Math.hypot(sx - x, sy - y);
       if (distance < least) [best, least] = [number, distance];
@@ -74,7 +75,7 @@ export class Input {
       const handle = editor.state.handles[drag.number]!;
       handle.translation = add(drag.start, times(editor.info.diagonal, way));
       if (handle.pin) handle.pin = false;
-      editor.motionsChanged();
+      editor.motionsChanged(true);
       return;
     }
     if (event.buttons === 0 && event.pointerType !== "touch") {
@@ -88,7 +89,10 @@ export class Input {
     this.drag = null;
     this.pressed = null;
     if (drag) {
-      if (drag.moved) editor.remember(drag.before);
+      if (drag.moved) {
+        editor.remember(drag.before);
+        editor.motionsChanged();
+      }
       editor.onChange();
       return;
     }
@@ -267,7 +271,10 @@ export class Input {
         this.gizmoStart = { translation: [...handle.translation], rotation: new ThreeQuaternion(...handle.rotation),
                             scale: handle.scale, position: editor.target(editor.selected) };
       } else {
-        if (this.gizmoBefore) editor.remember(this.gizmoBefore);
+        if (this.gizmoBefore) {
+          editor.remember(this.gizmoBefore);
+          editor.motionsChanged();
+        }
         this.gizmoBefore = this.gizmoStart = null;
         this.attachGizmo();
         editor.onChange();
@@ -289,7 +296,7 @@ export class Input {
           Math.abs(Math.log(Math.max(0.05, entry))) > Math.abs(Math.log(most)) ? Math.max(0.05, entry) : most, 1);
         handle.scale = Math.min(20, start.scale * factor);
       }
-      editor.motionsChanged();
+      editor.motionsChanged(true);
     });
     window.addEventListener("keydown", event => { if (event.key === "Shift") this.snap(true); });
     window.addEventListener("keyup", event => { if (event.key === "Shift") this.snap(false); });

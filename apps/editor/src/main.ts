@@ -1,6 +1,6 @@
 // Puts the page together.
 import { without, type Annotation } from "./annotation";
-import { Core, CoreError, type Sampling } from "./core";
+import { Core, CoreError, tooLarge, type Sampling } from "./core";
 import { Background, coreBytes, download, embedded } from "./data";
 import { Editor, modes } from "./editor";
 import { fromJson } from "./handles";
@@ -42,8 +42,14 @@ function isScan(name: string, data: Uint8Array): boolean {
 
 async function openFiles(editor: Editor, files: File[]): Promise<void> {
   showMessage("");
-  const read = await Promise.all(files.map(async file =>
-    ({ name: file.name, data: new Uint8Array(await file.arrayBuffer()) })));
+  const read = await Promise.all(files.map(async file => {
+    try {
+      return { name: file.name, data: new Uint8Array(await file.arrayBuffer()) };
+    } catch (error) {
+      if (error instanceof RangeError || (error as DOMException).name === "NotReadableError") throw new Error(tooLarge(file.name));
+      throw error;
+    }
+  }));
   let annotation: Annotation | null = null;
   let replay: string | null = null;
   for (const { name, data } of read.filter(file => /\.json$/i.test(file.name))) {
@@ -62,10 +68,9 @@ async function openFiles(editor: Editor, files: File[]): Promise<void> {
   const unknown = read.find(file => file !== scan && file !== mesh && !/\.json$/i.test(file.name));
   if (unknown) throw new Error(`${unknown.name}: a mesh (OBJ, OFF, PLY, STL, glTF, GLB), a scan (PLY, PCD, XYZ, PTS), an annotation or handles (JSON) can be opened`);
   if (mesh) {
-    await editor.open(mesh.name, mesh.data, null, null);
+    await editor.open(mesh.name, mesh.data, annotation, null);
     if (!annotation) showMessage("The mesh came without its annotation: it moves as one free surface. `orbifit detect` finds its symmetries; drop the annotation here.");
-  }
-  if (annotation) await editor.openAnnotation(annotation);
+  } else if (annotation) await editor.openAnnotation(annotation);
   if (scan) {
     editor.openScan(scan.name, scan.data);
     (element("fit-section") as HTMLDetailsElement).open = true;
@@ -156,7 +161,7 @@ async function start(): Promise<void> {
     return;
   }
   darkWanted.addEventListener("change", event => setTheme(view, event.matches));
-  const wasm = coreBytes();
+  const wasm = await coreBytes();
   const core = await Core.create(wasm);
   const editor = new Editor(core, view, new Background(wasm));
   const input = new Input(editor, element<HTMLCanvasElement>("canvas"));

@@ -19,9 +19,9 @@ export function showMessage(text: string): void {
 }
 
 /** The options of `orbifit deform` that sample as the page does. */
-function samplingWords({ sampling: { lift, radius, samples, sharp } }: Editor): string {
+function samplingWords({ sampling: { lift, radius, samples, sharp, radius_field } }: Editor): string {
   return (lift ? " --lift paper" : "") + (radius ? ` --radius ${radius}` : "") + (samples ? ` --samples ${samples}` : "") +
-    (sharp ? " --sharp-features" : "");
+    (sharp ? " --sharp-features" : "") + (radius_field ? ` --radius-field ${radius_field.name}` : "");
 }
 
 /** Regions in order of importance (as listed, where it is not given), children under their parents. */
@@ -75,7 +75,10 @@ export class Panel {
       if (handle) changing(() => { handle.radius = editor.radius * editor.info.diagonal; })(value);
       this.update();
     }, changed);
-    slider("blend", value => void editor.setBlend(value));
+    slider("blend", value => {
+      remembered ??= before();
+      void editor.setBlend(value);
+    }, changed);
     element<HTMLSelectElement>("mode").addEventListener("change", event =>
       void editor.change(state => { state.mode = Number((event.target as HTMLSelectElement).value); }));
   }
@@ -84,7 +87,7 @@ export class Panel {
     const { editor } = this;
     const { info, state } = editor;
     if (!info) return;
-    element("mesh-name").textContent = editor.sourceName;
+    element("mesh-name").textContent = element("mesh-name").title = editor.sourceName;
     element("mesh-facts").textContent =
       `${info.vertices.toLocaleString("en")} vertices, ${info.faces.toLocaleString("en")} faces` +
       (info.samples ? `; ${info.samples} samples, ${info.degrees_of_freedom} degrees of freedom` : "");
@@ -97,8 +100,8 @@ export class Panel {
     element("radius-value").textContent = `${(100 * radius).toPrecision(2)} %`;
     element<HTMLInputElement>("radius").value = String(100 * radius);
     element<HTMLSelectElement>("mode").value = String(state.mode);
-    element<HTMLInputElement>("blend").value = String(editor.blend);
-    element("blend-value").textContent = `${Math.round(100 * editor.blend)} %`;
+    element<HTMLInputElement>("blend").value = String(state.blend);
+    element("blend-value").textContent = `${Math.round(100 * state.blend)} %`;
     element("command").textContent =
       `orbifit deform ${editor.sourceName} annotation.json --handles handles.json --mode ${modes[state.mode]}${samplingWords(editor)} -o edited.ply`;
     const button = (name: string): HTMLButtonElement => document.querySelector(`[data-do=${name}]`)!;
@@ -109,7 +112,7 @@ export class Panel {
     button("fit").disabled = !editor.scan || editor.busy !== "";
     button("stop-fit").disabled = editor.busy !== "fitting";
     button("clear-scan").disabled = !editor.scan;
-    button("keep-blend").disabled = editor.blend === 0;
+    button("keep-blend").disabled = state.blend === 0;
     this.readout();
     this.regionList();
     this.blendTable();
@@ -145,7 +148,10 @@ export class Panel {
     const { editor } = this;
     const parts: string[] = [];
     const { solve, lift } = editor.record;
-    if (editor.state.handles.length) {
+    const { handles, blend } = editor.state;
+    if (blend > 0) {
+      parts.push(`<b>${Math.round(100 * blend)} %</b> of the way to the symmetric mesh; handles act on the mesh as it is`);
+    } else if (handles.length) {
       parts.push(`residual <b>${share(editor.residual)}</b>`);
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
       const frames = this.framesOfLastSecond();
@@ -153,7 +159,9 @@ export class Panel {
     } else {
       parts.push("no handles yet");
     }
-    element("readout").innerHTML = parts.join(" &nbsp;·&nbsp; ");
+    // Where nothing else is held a drag moves all of it: what one tries first must not look like a failure.
+    const hint = handles.length === 1 && blend === 0 ? "<br>One handle alone moves all of it; pin another place (<kbd>P</kbd>)." : "";
+    element("readout").innerHTML = parts.join(" &nbsp;·&nbsp; ") + hint;
     for (const id of ["divider", "label-left", "label-right"]) element(id).hidden = !editor.comparing;
     element("label-left-residual").textContent = share(editor.residual);
     element("label-right-residual").textContent = share(editor.freeResidual);
@@ -192,7 +200,7 @@ export class Panel {
     const name = document.createElement("button");
     name.className = "name";
     name.textContent = region.name || `region ${region.id}`;
-    name.title = "Click: on or off. Double click: rename";
+    name.title = `${name.textContent}\nClick: on or off. Double click: rename`;
     let click = 0;
     name.addEventListener("click", event => { // not at once: it may be the first of two
       if (event.detail < 2) click = window.setTimeout(() => box.click(), event.detail === 1 ? 250 : 0);
@@ -259,7 +267,7 @@ export class Panel {
       table.textContent = "";
       return;
     }
-    const now = editor.blend > 0 || !editor.state.handles.length ? editor.shapeResiduals() : new Map();
+    const now = editor.state.blend > 0 || !editor.state.handles.length ? editor.shapeResiduals() : new Map();
     const rows = editor.symmetryReport.map(entry => {
       const region = editor.regions.find(other => other.id === entry.id);
       if (!region) return "";

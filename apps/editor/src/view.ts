@@ -282,7 +282,7 @@ export class View {
   /** \param point  in the display's frame */
   showHandle(number: number, point: Vec3, pin: boolean, selected: boolean): void {
     const dot = this.dots[number]!;
-    const size = selected ? 0.030 : 0.022;
+    const size = (selected ? 0.030 : 0.022) / this.camera.zoom; // the same on the screen, whatever is in sight
     dot.scale.set(size, size, 1);
     dot.position.set(point[0], point[1], point[2]);
     dot.material.color.copy(pin ? this.pinColour : this.handleColour);
@@ -306,9 +306,7 @@ export class View {
 
   /** Looks at what lies within a sphere, in the display's frame. */
   frame(centre: Vec3 = [0, 0, 0], radius = 0.52): void {
-    const width = this.split ? this.canvas.clientWidth / 2 : this.canvas.clientWidth;
-    const aspect = Math.max(0.1, width / Math.max(1, this.canvas.clientHeight));
-    const half = Math.tan(this.camera.fov * Math.PI / 360) * Math.min(1, aspect);
+    const half = Math.tan(this.camera.fov * Math.PI / 360); // of the shorter side
     const direction = this.camera.position.clone().sub(this.controls.target).normalize();
     this.controls.target.set(...centre);
     this.camera.position.copy(this.controls.target).addScaledVector(direction, radius / half * 1.1 + radius * 0.3);
@@ -326,6 +324,7 @@ export class View {
     const width = Math.max(1, parent.clientWidth), height = Math.max(1, parent.clientHeight);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = (this.split ? width / 2 : width) / height;
+    this.camera.zoom = Math.min(1, this.camera.aspect); // what was framed stays in sight, in half the width too
     this.camera.updateProjectionMatrix();
     this.draw();
   }

@@ -9,7 +9,7 @@ export interface Request {
   number: number;
   wasm?: Uint8Array; // with the first
   mesh?: { name: string; data: Uint8Array }; // when it is another
-  task: Task;
+  task?: Task; // none: to be ready for the next
 }
 export type Answer =
   | { number: number; kind: "error"; message: string }
@@ -57,7 +57,7 @@ self.addEventListener("message", (event: MessageEvent<Request>) => {
         core.readMesh(mesh.name, mesh.data);
         vertexCount = core.info().vertices;
       }
-      run(core, number, task);
+      if (task) run(core, number, task);
     } catch (error) {
       answer({ number, kind: "error", message: error instanceof Error ? error.message : String(error) });
     }

@@ -65,8 +65,9 @@ void define_fit(py::module_& module) {
          const SubspacePointer& subspace, const std::optional<ArrayLike>& pose,
          const std::optional<LandmarkList>& landmarks, const std::optional<py::iterable>& handles,
          const std::string& mode, std::optional<double> radius, std::optional<int> samples, double stiffness,
-         int scan_points, double inlier_distance, bool contacts, bool judge_groups, bool drop_unsupported,
-         std::uint64_t seed, std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
+         int refinements, int scan_points, double inlier_distance, bool contacts, bool judge_groups,
+         bool drop_unsupported, std::uint64_t seed, std::optional<int> threads, std::optional<double> timeout,
+         const Progress& progress) {
         Given given{mesh_from(mesh_like), scan_from(scans), annotation, subspace, {}, {}, {}};
         if (subspace) require_fit(subspace->annotation->value, *given.mesh);
         if (annotation) require_fit(annotation->value, *given.mesh);
@@ -77,6 +78,7 @@ void define_fit(py::module_& module) {
         options.subspace = subspace_options(mode, "orbit", radius, samples, {}, false, *given.mesh);
         options.place = !pose && given.handles.empty();
         options.last_stiffness = stiffness;
+        options.refinements = subspace ? 0 : refinements;
         options.scan_points = scan_points;
         options.inlier_distance = inlier_distance;
         options.contacts = contacts;
@@ -90,9 +92,10 @@ void define_fit(py::module_& module) {
       py::arg("subspace") = py::none(), py::arg("pose") = py::none(), py::arg("landmarks") = py::none(),
       py::arg("handles") = py::none(), py::arg("mode") = "floating", py::arg("radius") = py::none(),
       py::arg("samples") = py::none(), py::arg("stiffness") = defaults.last_stiffness,
-      py::arg("scan_points") = defaults.scan_points, py::arg("inlier_distance") = defaults.inlier_distance,
-      py::arg("contacts") = true, py::arg("judge_groups") = false, py::arg("drop_unsupported") = false, seed_argument(),
-      threads_argument(), timeout_argument(), progress_argument(),
+      py::arg("refinements") = defaults.refinements, py::arg("scan_points") = defaults.scan_points,
+      py::arg("inlier_distance") = defaults.inlier_distance, py::arg("contacts") = true,
+      py::arg("judge_groups") = false, py::arg("drop_unsupported") = false, seed_argument(), threads_argument(),
+      timeout_argument(), progress_argument(),
       "Deforms a template to a scan within its symmetric subspace.\n\n"
       "Args:\n"
       "    template: see :meth:`Mesh.of`.\n"
@@ -105,6 +108,8 @@ void define_fit(py::module_& module) {
       "    handles: of :class:`Handle`, their motions in the template's frame.\n"
       "    mode, radius, samples: of the basis, see :class:`Subspace`.\n"
       "    stiffness: of the last iterations; less follows the scan more closely.\n"
+      "    refinements: how often the basis may be made finer, by three times the degrees of freedom, where the scan\n"
+      "        asks for it; not where `subspace`, `radius` or `samples` say how fine it is.\n"
       "    scan_points: how many of the scan's points are used.\n"
       "    inlier_distance: a point nearer than this fraction of the diagonal is explained.\n"
       "    contacts: parts of the template that touch stay in touch.\n"

@@ -26,7 +26,7 @@ struct EditArguments {
   std::string mesh, annotation, output;
   bool open = false;
   std::vector<int> without;
-  SubspaceOptions options;
+  SubspaceArguments subspace;
 };
 
 // A folder that goes away with this.
@@ -51,12 +51,16 @@ class ScratchFolder {
 };
 
 // How the page samples when it builds a basis anew.
-std::string sampling_json(const SubspaceOptions& options) {
-  return nlohmann::ordered_json{{"lift", options.lift == LiftKind::orbit ? 0 : 1},
+std::string sampling_json(const SubspaceArguments& arguments) {
+  const SubspaceOptions& options = arguments.options;
+  nlohmann::ordered_json result{{"lift", options.lift == LiftKind::orbit ? 0 : 1},
                                 {"radius", options.radius},
                                 {"samples", options.samples},
-                                {"sharp", options.sharp_features_first}}
-      .dump();
+                                {"sharp", options.sharp_features_first}};
+  if (const std::filesystem::path field(arguments.radius_field); !field.empty()) {
+    result["radius_field"] = {{"name", field.filename().string()}, {"text", read_file(field)}};
+  }
+  return result.dump();
 }
 
 // Shows a page in the user's browser.
@@ -78,12 +82,12 @@ CommandBody edit(CLI::App& app) {
   app.add_option("-o,--output", arguments->output, "Page to write (.html)")->required()->type_name("FILE");
   app.add_flag("--open", arguments->open, "Open it in the browser");
   add_without_option(app, arguments->without);
-  add_sampling_options(app, arguments->options);
+  add_subspace_options(app, arguments->subspace);
   return [arguments](CommandContext& context) {
-    const SubspaceOptions& options = arguments->options;
-    options.validate();
-    check_output(arguments->output, {".html"}, {arguments->annotation});
+    arguments->subspace.options.validate();
+    check_output(arguments->output, {".html"}, {arguments->annotation, arguments->subspace.radius_field});
     const Mesh mesh = read_mesh(arguments->mesh);
+    const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
     SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
                                                                   : read_annotation(arguments->annotation, mesh);
     annotation = without(arguments->without, std::move(annotation));
@@ -98,7 +102,7 @@ CommandBody edit(CLI::App& app) {
         editor_page(),
         {{"mesh", source.stem().string() + ".ply", source.filename().string(), read_file(scratch / "mesh.ply")},
          {"annotation", "annotation.json", arguments->annotation, to_json(annotation)},
-         {"sampling", "sampling.json", "", sampling_json(options)},
+         {"sampling", "sampling.json", "", sampling_json(arguments->subspace)},
          {"basis", to_string(subspace.mode()), "", read_file(scratch / "basis")}});
     write_file(arguments->output, page);
     if (arguments->open) open_page(arguments->output, context.run);

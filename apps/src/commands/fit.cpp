@@ -123,6 +123,11 @@ void add_fit_options(CLI::App& app, FitArguments& arguments) {
   app.add_option("--stiffness", arguments.options.last_stiffness,
                  "Stiffness in the last iterations; a smaller value follows the scan more closely")
       ->capture_default_str();
+  app.add_option("--refinements", arguments.options.refinements,
+                 "How often the subspace may be made finer, by three times the degrees of freedom, where the scan asks "
+                 "for it; not where --samples or --radius say how fine it is")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 4));
   app.add_option("--scan-points", arguments.options.scan_points, "Number of scan points used")->capture_default_str();
   add_up_option(app, arguments.up, "Upward direction of the pictures");
   add_subspace_options(app, arguments.subspace);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,9 @@
 namespace orbifit {
 
 using BadInputs = std::vector<BadInput>;
+
+/// Adds a file to a list: what is wrong with it is a part of its name.
+using AddText = std::function<void(const std::string& what, const std::string& content)>;
 
 // The lists of which bad_input() is made, by format.
 void add_bad_obj(BadInputs& files);

@@ -20,15 +20,7 @@ std::string with_line_ends(const std::string& text, const std::string& end) {
   return result;
 }
 
-}  // namespace
-
-void add_bad_obj(BadInputs& files) {
-  const auto add = [&](const std::string& what, const std::string& content) {
-    files.push_back({"obj_" + what + ".obj", BadInputKind::mesh, content});
-  };
-  add("empty", "");
-  add("blanks", " \n\t\n\r\n");
-  add("comments_only", "# nothing\n# at all\n");
+void add_obj_faces(const AddText& add) {
   add("index_zero", kTriangle + "f 0 1 2\n");
   add("index_beyond", kTriangle + "f 1 2 4\n");
   add("index_negative", kTriangle + "f -3 -2 -1\n");
@@ -46,6 +38,9 @@ void add_bad_obj(BadInputs& files) {
   add("face_before_vertices", "f 1 2 3\n" + kTriangle);
   add("face_repeats_corner", kTriangle + "f 1 1 2\n");
   add("faces_missing", kTriangle);
+}
+
+void add_obj_vertices(const AddText& add) {
   add("vertex_of_two", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   add("vertex_of_none", "v\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   add("vertex_with_colour", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
@@ -64,6 +59,9 @@ void add_bad_obj(BadInputs& files) {
   add("vertex_plus", "v +0.5 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   add("vertex_two_points", "v 0.5.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   add("vertex_many_digits", "v 0." + std::string(100'000, '3') + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+}
+
+void add_obj_encodings(const AddText& add) {
   add("crlf", with_line_ends(kTriangle + "f 1 2 3\n", "\r\n"));
   add("cr", with_line_ends(kTriangle + "f 1 2 3\n", "\r"));
   add("byte_order_mark", "\xef\xbb\xbf" + kTriangle + "f 1 2 3\n");
@@ -76,6 +74,9 @@ void add_bad_obj(BadInputs& files) {
       "# gr\xf6\xdf"
       "er\n" +
           kTriangle + "f 1 2 3 # \xe9\n");
+}
+
+void add_obj_lines(const AddText& add) {
   add("comment_in_line", "v 0 0 0 # here\nv 1 0 0#there\nv 0 1 0\nf 1 2 3 # 4\n");
   add("continued_line", "v 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nf 1 2 \\\n3\n");
   add("no_line_end", kTriangle + "f 1 2 3");
@@ -94,6 +95,21 @@ void add_bad_obj(BadInputs& files) {
   add("free_form", "vp 0 1\ncstype bezier\ndeg 2\ncurv 0 1 1 2 3\nend\n" + kTriangle + "f 1 2 3\n");
   add("cut_in_number", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 0 -");
   add("cut_in_face", kTriangle + "f 1 2 3\nf 1 2");
+}
+
+}  // namespace
+
+void add_bad_obj(BadInputs& files) {
+  const auto add = [&](const std::string& what, const std::string& content) {
+    files.push_back({"obj_" + what + ".obj", BadInputKind::mesh, content});
+  };
+  add("empty", "");
+  add("blanks", " \n\t\n\r\n");
+  add("comments_only", "# nothing\n# at all\n");
+  add_obj_faces(add);
+  add_obj_vertices(add);
+  add_obj_encodings(add);
+  add_obj_lines(add);
 }
 
 void add_bad_off(BadInputs& files) {

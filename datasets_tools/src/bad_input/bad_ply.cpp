@@ -1,5 +1,6 @@
 #include <array>
 #include <bit>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -29,17 +30,10 @@ std::string triangle(int a, int b, int c) {
   return bytes;
 }
 
-void add_ascii(BadInputs& files) {
-  const auto add = [&](const std::string& what, const std::string& content) {
-    files.push_back({"ply_" + what + ".ply", BadInputKind::mesh, content});
-  };
-  const auto change = [&](const std::string& what, const std::string& from, const std::string& to) {
-    add(what, with(kAscii, from, to));
-  };
-  add_truncated(files, "ply", ".ply", BadInputKind::mesh, kAscii);
-  add("empty", "");
-  add("word_only", "ply");
-  add("header_endless", "ply\nformat ascii 1.0\n" + std::string(10'000, '\n'));
+// Adds the ASCII file with the first `from` replaced.
+using Change = std::function<void(const std::string& what, const std::string& from, const std::string& to)>;
+
+void change_header(const Change& change) {
   change("other_word", "ply", "plx");
   change("format_unknown", "ascii 1.0", "utf8 1.0");
   change("format_missing", "format ascii 1.0\n", "");
@@ -72,6 +66,9 @@ void add_ascii(BadInputs& files) {
       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
       "element face 1\nproperty list uchar int vertex_indices\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nend_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n");
+}
+
+void change_rows(const Change& change) {
   change("list_huge", "3 0 1 2", "4000000000 0 1 2");
   change("list_negative", "3 0 1 2", "-1 0 1 2");
   change("list_too_short", "3 0 1 2", "3 0 1");
@@ -90,6 +87,21 @@ void add_ascii(BadInputs& files) {
   change("comments", "format ascii 1.0\n", "comment before\nformat ascii 1.0\ncomment after\nobj_info none\n");
   change("comment_in_body", "1 0 0\n", "comment here\n1 0 0\n");
   change("blank_lines_in_body", "1 0 0\n", "\n\n1 0 0\n");
+}
+
+void add_ascii(BadInputs& files) {
+  const auto add = [&](const std::string& what, const std::string& content) {
+    files.push_back({"ply_" + what + ".ply", BadInputKind::mesh, content});
+  };
+  const auto change = [&](const std::string& what, const std::string& from, const std::string& to) {
+    add(what, with(kAscii, from, to));
+  };
+  add_truncated(files, "ply", ".ply", BadInputKind::mesh, kAscii);
+  add("empty", "");
+  add("word_only", "ply");
+  add("header_endless", "ply\nformat ascii 1.0\n" + std::string(10'000, '\n'));
+  change_header(change);
+  change_rows(change);
   add("byte_order_mark", "\xef\xbb\xbf" + kAscii);
   std::string crlf;
   for (const char letter : kAscii) crlf += letter == '\n' ? "\r\n" : std::string(1, letter);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 
@@ -73,10 +74,9 @@ Mesh tetrahedra(int count) {
   return of(vertices, faces);
 }
 
-void add_degenerate(BadInputs& files) {
-  const auto add = [&](const std::string& what, const Mesh& mesh) {
-    files.push_back({"shape_" + what + ".obj", BadInputKind::mesh, obj_text(mesh)});
-  };
+using AddMesh = std::function<void(const std::string& what, const Mesh& mesh)>;
+
+void add_flat_shapes(const AddMesh& add) {
   add("one_triangle", of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}));
   add("one_symmetric_triangle", of({{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}));
   add("one_point_thrice", of({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}));
@@ -85,6 +85,10 @@ void add_degenerate(BadInputs& files) {
   add("needle", of({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-14, 0}}, {{0, 1, 2}}));
   add("needles",
       of({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0}, {0.5, -1e-9, 0}, {0.5, 0, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 1, 4}}));
+}
+
+// The cube with other faces: repeated, turned round, of too few corners.
+void add_changed_cubes(const AddMesh& add) {
   const Mesh cube = cube_of_bad_input();
   add("cube", cube);
   Mesh changed = cube;
@@ -106,6 +110,9 @@ void add_degenerate(BadInputs& files) {
   changed = cube;
   changed.faces.col(1).swap(changed.faces.col(2));
   add("inside_out", changed);
+}
+
+void add_non_manifold(const AddMesh& add) {
   add("edge_of_three",
       of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0.5, 0}, {-1, -0.5, 0}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}));
   std::vector<Corner> vertices{{0, 0, 0}, {0, 0, 1}};
@@ -115,6 +122,7 @@ void add_degenerate(BadInputs& files) {
     faces.emplace_back(0, 1, k + 2);
   }
   add("edge_of_500", of(vertices, faces));
+  const Mesh cube = cube_of_bad_input();
   add("two_cubes_at_one_vertex", [&] {
     Mesh mesh = joined(cube, placed(cube, 1, {1, 1, 1}));
     for (int f = 12; f < 24; ++f) {
@@ -124,6 +132,11 @@ void add_degenerate(BadInputs& files) {
   }());
   add("t_junctions", of({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {0, -1, 0}, {2, -1, 0}},
                         {{0, 1, 2}, {4, 3, 0}, {4, 5, 3}, {5, 1, 3}}));
+}
+
+// What lies in the same place: surfaces, corners of triangles, all vertices.
+void add_coincident(const AddMesh& add) {
+  const Mesh cube = cube_of_bad_input();
   add("crossing", joined(cube, placed(cube, 1, {0.3, 0.2, 0.1})));
   Mesh soup;
   soup.vertices.resize(36, 3);
@@ -142,10 +155,7 @@ void add_degenerate(BadInputs& files) {
   }());
 }
 
-void add_sizes(BadInputs& files) {
-  const auto add = [&](const std::string& what, const Mesh& mesh) {
-    files.push_back({"shape_" + what + ".obj", BadInputKind::mesh, obj_text(mesh)});
-  };
+void add_sizes(const AddMesh& add) {
   const Mesh cube = cube_of_bad_input();
   add("band", band(0));
   add("moebius", band(1));
@@ -176,8 +186,14 @@ void add_sizes(BadInputs& files) {
 }  // namespace
 
 void add_hard_shapes(BadInputs& files) {
-  add_degenerate(files);
-  add_sizes(files);
+  const auto add = [&](const std::string& what, const Mesh& mesh) {
+    files.push_back({"shape_" + what + ".obj", BadInputKind::mesh, obj_text(mesh)});
+  };
+  add_flat_shapes(add);
+  add_changed_cubes(add);
+  add_non_manifold(add);
+  add_coincident(add);
+  add_sizes(add);
   files.push_back({"large_1e5_components.ply", BadInputKind::mesh, ply_bytes(tetrahedra(100'000), std::nullopt)});
 }
 

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "models/car_wheel.h"
 #include "models/model_builder.h"
 #include "models/models.h"
 #include "models/primitives.h"
@@ -23,10 +22,6 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 // x forwards, y to the left, z up; metres.
-constexpr double kTyreWidth = 0.26;
-constexpr int kSpokes = 5;
-constexpr int kTread = 10;  // blocks around the tyre, a multiple of the spokes
-
 struct Size {
   double half_length, half_width, axle, wheel;  // axle: from the middle of the car
 };
@@ -81,135 +76,6 @@ Mesh cabin(const Size& size, int detail) {
   });
 }
 
-// About z, its treads' blocks mirrored across its middle plane.
-Mesh tyre(double radius, int detail) {
-  const double half = kTyreWidth / 2;
-  const double rim = 0.62 * radius;
-  const auto section = [&](double depth) {
-    return trace_profile({{radius - depth, 0, 0, 2 * detail},
-                          {radius - depth, half, 0.22 * half, detail},
-                          {0.8 * radius, 1.08 * half, 0, detail},
-                          {rim, 0.9 * half, 0.1 * half, detail},
-                          {0.93 * rim, 0.6 * half, 0, 1},
-                          {0.93 * rim, 0, 0, 1},
-                          {0.93 * rim, -0.6 * half, 0, detail},
-                          {rim, -0.9 * half, 0.1 * half, detail},
-                          {0.8 * radius, -1.08 * half, 0, detail},
-                          {radius - depth, -half, 0.22 * half, 2 * detail}},
-                         detail, true);
-  };
-  const auto high = section(0);
-  const auto low = section(0.05 * radius);
-  const int pieces = 4 * detail;  // of a block and its gap
-  std::vector<Ring> rings;
-  for (const Matrix3d& turn : elements({Family::Cn, kTread})) {
-    for (int k = 0; k < pieces; ++k) {
-      // The gap is in the middle of the period.
-      const bool gap = std::abs(2 * k - pieces) <= pieces / 4;
-      const Matrix3d within = axis_rotation(Vector3d::UnitZ(), 2 * std::numbers::pi * k / (pieces * kTread));
-      Ring& ring = rings.emplace_back();
-      for (const Eigen::Vector2d& point : gap ? low : high) {
-        ring.emplace_back(turn * (within * Vector3d(point.x(), 0, point.y())));
-      }
-    }
-  }
-  const int points = static_cast<int>(high.size());
-  return closed_loft(rings,
-                     [&](int ring, int point) { return (2 * (ring % pieces) < pieces) == (2 * point < points); });
-}
-
-// Five lobes: no rounder than the wheel.
-Mesh hub(double radius, int detail) {
-  return turned(
-      {kSpokes, 2 * detail, 2 * detail},
-      trace_profile({{0, 0.055, 0, 1}, {radius, 0.03, 0.02, 1}, {0.9 * radius, -0.06, 0.02, 1}, {0, -0.06, 0, 1}}, 12,
-                    false),
-      [](double, double cosine, double sine) { return 1 + 0.09 * cosine_of_multiple(kSpokes, cosine, sine); });
-}
-
-// Along z from the hub's end, narrowing; mirror-symmetric about both planes through its axis.
-Mesh spoke(double length, int detail) {
-  const Curve outline(
-      trace_profile({{0, 0, 0, 1}, {0.042, 0, 0.012, 1}, {0.026, length, 0.012, 1}, {0, length, 0, 1}}, 12, false));
-  return capped_skin({4, detail, 6 * detail}, [&](double share, double cosine, double sine) {
-    const Vector3d place = outline(share);
-    const Eigen::Vector2d around = place.x() * rounded_square(cosine, sine, 2.8);
-    return Vector3d(0.6 * around.x(), around.y(), place.z());
-  });
-}
-
-Mesh nut(double radius, double height, int detail) {
-  // Half the angle between the flats is pi / 6: a hexagon's edge by its distance from the axis.
-  return turned({6, detail, detail},
-                trace_profile({{0, height, 0, 1},
-                               {0.75 * radius, height, 0.2 * radius, 1},
-                               {radius, 0.6 * height, 0.1 * radius, 1},
-                               {radius, -0.2 * height, 0, 1},
-                               {0, -0.2 * height, 0, 1}},
-                              12, false),
-                [](double, double cosine, double sine) {
-                  const double angle = std::atan2(sine, cosine);
-                  const double off = std::remainder(angle - std::numbers::pi / 6, std::numbers::pi / 3);
-                  return std::cos(std::numbers::pi / 6) / std::cos(off);
-                });
-}
-
-// Wheels are made once, about z with their outer side to +z, and placed four times.
-struct Wheel {
-  PartFaces tyre, all;
-  std::vector<PartFaces> spokes, nuts;
-};
-
-// Places in the wheel's frame.
-Placement spoke_place(int i, double radius, const std::vector<Matrix3d>& turns) {
-  // Column 2 along the spoke, which leans outwards from the hub's front; column 1 across it in the wheel's plane.
-  const Vector3d along = Vector3d(1, 0, -0.22).normalized();
-  Matrix3d frame;
-  frame << Vector3d::UnitY().cross(along), Vector3d::UnitY(), along;
-  const Matrix3d& turn = turns[static_cast<std::size_t>(i)];
-  return {turn * frame, turn * Vector3d(0.13 * radius, 0, 0.075)};
-}
-
-Wheel add_wheel(ModelBuilder& builder, const Motion& place, double radius, int detail) {
-  const std::vector<Matrix3d> turns = elements({Family::Cn, kSpokes});
-  const Mesh spoke_mesh = spoke(0.5 * radius, detail);
-  const Mesh nut_mesh = nut(0.03, 0.035, detail);
-  Wheel wheel;
-  wheel.tyre = builder.add(tyre(radius, detail), place);
-  std::vector<PartFaces> parts{wheel.tyre};
-  parts.push_back(builder.add(moved(hub(0.27 * radius, detail), {Matrix3d::Identity(), Vector3d(0, 0, 0.05)}), place));
-  for (int i = 0; i < kSpokes; ++i) {
-    wheel.spokes.push_back(builder.add(moved(spoke_mesh, spoke_place(i, radius, turns)), place));
-    // Nuts stand between the spokes, a corner outwards.
-    const Matrix3d between =
-        turns[static_cast<std::size_t>(i)] * axis_rotation(Vector3d::UnitZ(), std::numbers::pi / kSpokes);
-    wheel.nuts.push_back(builder.add(moved(nut_mesh, {between, between * Vector3d(0.17 * radius, 0, 0.085)}), place));
-  }
-  parts.insert(parts.end(), wheel.spokes.begin(), wheel.spokes.end());
-  parts.insert(parts.end(), wheel.nuts.begin(), wheel.nuts.end());
-  wheel.all = joined(parts);
-  return wheel;
-}
-
-void declare_wheel(ModelBuilder& builder, const std::string& name, const Wheel& wheel, const Motion& place,
-                   double radius) {
-  const std::vector<Matrix3d> turns = elements({Family::Cn, kSpokes});
-  // Columns of a placement are right-handed: a mirrored one's second column turns over, and no group minds.
-  const auto placed = [&](const Placement& local) { return image(place, local); };
-  const Placement axle{frame_about(Vector3d::UnitZ(), Vector3d::UnitY()), Vector3d::Zero()};
-  builder.declare(name, {Family::Cnv, kSpokes}, placed(axle), wheel.all);
-  builder.declare(name + " tyre", {Family::Dnh, kTread}, placed({}), wheel.tyre);
-  for (int i = 0; i < kSpokes; ++i) {
-    const std::size_t k = static_cast<std::size_t>(i);
-    const std::string number = std::to_string(i + 1);
-    builder.declare(name + " spoke " + number, {Family::Cnv, 2}, placed(spoke_place(i, radius, turns)),
-                    wheel.spokes[k]);
-    const Matrix3d between = turns[k] * axis_rotation(Vector3d::UnitZ(), std::numbers::pi / kSpokes);
-    builder.declare(name + " nut " + number, {Family::Cnv, 6},
-                    placed({between, between * Vector3d(0.17 * radius, 0, 0)}), wheel.nuts[k]);
-  }
-}
-
 // A superellipsoid about the origin: D2h.
 Mesh pebble(const Vector3d& half, double exponent, const SkinCounts& counts) {
   return capped_skin(counts, [&](double share, double cosine, double sine) {
@@ -220,94 +86,111 @@ Mesh pebble(const Vector3d& half, double exponent, const SkinCounts& counts) {
   });
 }
 
-GeneratedModel build_car(const ModelValues& values) {
-  const int detail = values.count("detail");
-  const Size size{values["length"] / 2, values["width"] / 2, values["wheelbase"] / 2, values["wheel_radius"]};
-  const double camber = values["camber"] * std::numbers::pi / 180;
-  ModelBuilder builder(0);
-  std::vector<PartFaces> shell{builder.add(body(size, detail)), builder.add(cabin(size, detail))};
+// In the order of the elements of C2v: the front left one, its opposite, and the two mirror images.
+constexpr std::array<const char*, 4> kWheelNames{"front left wheel", "rear right wheel", "rear left wheel",
+                                                 "front right wheel"};
 
+std::vector<CarWheel> add_wheels(ModelBuilder& builder, const Size& size, double camber, int detail) {
   // The front left wheel's z looks out to the left and its x, a spoke, upwards.
   Matrix3d outwards;
   outwards << 0, 1, 0, 0, 0, 1, 1, 0, 0;
-  const double track = size.half_width - 0.4 * kTyreWidth;
+  const double track = size.half_width - 0.4 * kCarTyreWidth;
   const Motion front_left{axis_rotation(Vector3d::UnitX(), camber) * outwards, Vector3d(size.axle, track, size.wheel)};
-  const std::array<std::string, 4> wheel_names{"front left wheel", "rear right wheel", "rear left wheel",
-                                               "front right wheel"};
-  std::vector<Wheel> wheels;
-  std::vector<Motion> wheel_places;
-  std::vector<PartFaces> all_wheels;
+  std::vector<CarWheel> wheels;
   for (const Matrix3d& element : elements({Family::Cnv, 2})) {
-    wheel_places.push_back(Motion{element, Vector3d::Zero()} * front_left);
-    wheels.push_back(add_wheel(builder, wheel_places.back(), size.wheel, detail));
-    all_wheels.push_back(wheels.back().all);
+    wheels.push_back(add_car_wheel(builder, Motion{element, Vector3d::Zero()} * front_left, size.wheel, detail));
   }
-  shell.insert(shell.end(), all_wheels.begin(), all_wheels.end());
-  std::vector<PartFaces> parts = shell;
+  return wheels;
+}
 
-  struct Fitting {
-    std::string name;
-    Vector3d half, place;
-    double yaw, pitch;  // of the left one, degrees
-    SkinCounts counts;
-    double exponent;
+void declare_wheels(ModelBuilder& builder, const std::vector<CarWheel>& wheels, const Size& size) {
+  const auto declare_pair = [&](const char* name, double x, const CarWheel& one, const CarWheel& other) {
+    builder.declare(name, {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(x, 0, size.wheel)},
+                    joined({one.all, other.all}));
   };
+  declare_pair("front wheels", size.axle, wheels[0], wheels[3]);
+  declare_pair("rear wheels", -size.axle, wheels[1], wheels[2]);
+  for (std::size_t i = 0; i < wheels.size(); ++i) declare_car_wheel(builder, kWheelNames[i], wheels[i]);
+}
+
+// A pebble on the left of the car and its mirror image on the right.
+struct Fitting {
+  std::string name;
+  Vector3d half, place;
+  double yaw, pitch;  // of the left one, degrees
+  SkinCounts counts;
+  double exponent;
+};
+
+// Swept back and tilted: a pair in one line would have more symmetries than each of the two.
+std::array<Fitting, 4> fittings(const Size& size, int detail) {
   const SkinCounts fine{6, 2 * detail, 2 * detail};
   const SkinCounts small{6, detail, 2 * detail};
   const double nose = size.half_length;
   const double side = size.half_width;
-  // Swept back and tilted: a pair in one line would have more symmetries than each of the two.
-  const std::array<Fitting, 4> fittings{
-      {{"headlight", {0.07, 0.17, 0.075}, {0.985 * nose, 0.55 * side, 0.66}, 22, -20, fine, 2.3},
-       {"tail light", {0.05, 0.15, 0.06}, {-0.985 * nose, 0.6 * side, 0.7}, -14, 10, fine, 3},
-       {"mirror", {0.06, 0.1, 0.065}, {0.2 * nose, 0.93 * side, 0.88}, 15, -10, small, 2.4},
-       {"door handle", {0.1, 0.025, 0.02}, {-0.12 * nose, 0.99 * side, 0.78}, 2, 5, small, 3}}};
-  std::vector<std::pair<std::string, PartFaces>> fitted;
-  std::vector<Placement> fitted_places;
-  for (const Fitting& fitting : fittings) {
-    // The skin's poles lie on the longest axis.
-    Matrix3d frame = Matrix3d::Identity();
-    Vector3d half = fitting.half;
-    if (half.x() > half.y()) {
-      frame << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-      half = {fitting.half.y(), fitting.half.z(), fitting.half.x()};
-    } else {
-      frame << 0, 1, 0, 0, 0, 1, 1, 0, 0;
-      half = {fitting.half.z(), fitting.half.x(), fitting.half.y()};
-    }
+  return {{{"headlight", {0.07, 0.17, 0.075}, {0.985 * nose, 0.55 * side, 0.66}, 22, -20, fine, 2.3},
+           {"tail light", {0.05, 0.15, 0.06}, {-0.985 * nose, 0.6 * side, 0.7}, -14, 10, fine, 3},
+           {"mirror", {0.06, 0.1, 0.065}, {0.2 * nose, 0.93 * side, 0.88}, 15, -10, small, 2.4},
+           {"door handle", {0.1, 0.025, 0.02}, {-0.12 * nose, 0.99 * side, 0.78}, 2, 5, small, 3}}};
+}
+
+// Axes in cyclic order, the longest of x and y last: there the skin's poles lie.
+Matrix3d axes_with_longest_last(const Vector3d& half) {
+  Matrix3d axes;
+  if (half.x() > half.y()) {
+    axes << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  } else {
+    axes << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  }
+  return axes;
+}
+
+struct Fitted {
+  std::string name;
+  PartFaces faces;
+  Placement place;
+};
+
+std::vector<Fitted> add_fittings(ModelBuilder& builder, const Size& size, int detail) {
+  std::vector<Fitted> fitted;
+  for (const Fitting& fitting : fittings(size, detail)) {
+    const Matrix3d axes = axes_with_longest_last(fitting.half);
+    const Vector3d half = axes.transpose() * fitting.half;
     const Matrix3d tilt = axis_rotation(Vector3d::UnitZ(), fitting.yaw * std::numbers::pi / 180) *
                           axis_rotation(Vector3d::UnitY(), fitting.pitch * std::numbers::pi / 180);
-    const Placement left{tilt * frame, fitting.place};
+    const Placement left{tilt * axes, fitting.place};
     const Mesh part = moved(pebble(half, fitting.exponent, fitting.counts), left);
     for (const double hand : {1.0, -1.0}) {
       const Motion motion{Vector3d(1, hand, 1).asDiagonal(), Vector3d::Zero()};
-      fitted.emplace_back((hand > 0 ? "left " : "right ") + fitting.name, builder.add(part, motion));
-      fitted_places.push_back(image(motion, left));
-      parts.push_back(fitted.back().second);
+      fitted.push_back(
+          {(hand > 0 ? "left " : "right ") + fitting.name, builder.add(part, motion), image(motion, left)});
     }
   }
-  const Vector3d roof(-0.05 * nose, 0, 1.56);
-  const PartFaces roof_box = builder.add(box({0.5, 0.36, 0.1}, {6 * detail, 4 * detail, 2 * detail}, 0.08, detail),
-                                         {Matrix3d::Identity(), roof});
+  return fitted;
+}
+
+GeneratedModel build_car(const ModelValues& values) {
+  const int detail = values.count("detail");
+  const Size size{values["length"] / 2, values["width"] / 2, values["wheelbase"] / 2, values["wheel_radius"]};
+  ModelBuilder builder(0);
+  std::vector<PartFaces> shell{builder.add(body(size, detail)), builder.add(cabin(size, detail))};
+  const double camber = values["camber"] * std::numbers::pi / 180;
+  const std::vector<CarWheel> wheels = add_wheels(builder, size, camber, detail);
+  for (const CarWheel& wheel : wheels) shell.push_back(wheel.all);
+  std::vector<PartFaces> parts = shell;
+  const std::vector<Fitted> fitted = add_fittings(builder, size, detail);
+  for (const Fitted& each : fitted) parts.push_back(each.faces);
+  const Placement roof{Matrix3d::Identity(), Vector3d(-0.05 * size.half_length, 0, 1.56)};
+  const PartFaces roof_box =
+      builder.add(box({0.5, 0.36, 0.1}, {6 * detail, 4 * detail, 2 * detail}, 0.08, detail), roof);
   parts.push_back(roof_box);
 
   builder.declare("car", {Family::Cs, 1}, {frame_about(Vector3d::UnitY()), Vector3d::Zero()}, joined(parts));
   builder.declare("body and wheels", {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(0, 0, size.wheel)},
                   joined(shell));
-  // elements() of C2v: the wheel itself, its opposite, and the two mirror images.
-  for (const auto& [name, x, first, second] :
-       {std::tuple{"front wheels", size.axle, 0, 3}, {"rear wheels", -size.axle, 1, 2}}) {
-    builder.declare(
-        name, {Family::Cnv, 2}, {Matrix3d::Identity(), Vector3d(x, 0, size.wheel)},
-        joined({all_wheels[static_cast<std::size_t>(first)], all_wheels[static_cast<std::size_t>(second)]}));
-  }
-  for (std::size_t i = 0; i < wheels.size(); ++i) {
-    declare_wheel(builder, wheel_names[i], wheels[i], wheel_places[i], size.wheel);
-  }
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    builder.declare(fitted[i].first, {Family::Dnh, 2}, fitted_places[i], fitted[i].second);
-  }
-  builder.declare("roof box", {Family::Dnh, 2}, {Matrix3d::Identity(), roof}, roof_box);
+  declare_wheels(builder, wheels, size);
+  for (const Fitted& each : fitted) builder.declare(each.name, {Family::Dnh, 2}, each.place, each.faces);
+  builder.declare("roof box", {Family::Dnh, 2}, roof, roof_box);
   return builder.finish();
 }
 

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <Eigen/Geometry>
 
@@ -18,6 +17,12 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr int kLobes = 8;
+constexpr double kFoot = 0.024;   // half the height of a foot, m
+constexpr double kPlinth = 0.02;  // half that of the plinth, m
+
+Placement at(double x, double y, double z) {
+  return {Matrix3d::Identity(), Vector3d(x, y, z)};
+}
 
 // Column and bowl in one, the bowl's rim in eight petals.
 Mesh column(double height, double bowl, int detail) {
@@ -83,73 +88,88 @@ Mesh candle(double height, int detail) {
                 [](double, double cosine, double sine) { return 1 + 0.06 * cosine_of_multiple(6, cosine, sine); });
 }
 
-GeneratedModel build_centre_piece(const ModelValues& values) {
-  const int detail = values.count("detail");
-  const double height = values["height"];
-  const double bowl = values["bowl"];
-  const double reach = values["reach"];
-  const double base = values["base"] / 2;
-  const auto at = [](double x, double y, double z) { return Motion{Matrix3d::Identity(), Vector3d(x, y, z)}; };
-  ModelBuilder builder(0);
-  std::vector<PartFaces> all;
-  // Feet and plinth.
-  const double foot = 0.024;
-  const double plinth_half = 0.02;
-  const Vector3d plinth_middle(0, 0, 1.7 * foot + plinth_half);
-  const PartFaces plinth =
-      builder.add(box({base, base, plinth_half}, {14 * detail, 14 * detail, 2 * detail}, 0.6 * plinth_half, detail),
-                  {Matrix3d::Identity(), plinth_middle});
-  Mesh foot_part = turned(
-      {8, detail, 3 * detail},
-      trace_profile({{0, -foot, 0, 1}, {foot, -foot, 0.9 * foot, 1}, {foot, foot, 0.9 * foot, 1}, {0, foot, 0, 1}}, 16,
-                    false));
-  // Claws rather than balls: they narrow downwards and reach out along the diagonal.
-  for (auto vertex : foot_part.vertices.rowwise()) {
-    const double down = -vertex.z() / foot;
-    vertex.x() = (1 - 0.3 * down) * vertex.x() + 0.4 * foot * down;
-    vertex.y() = (1 - 0.3 * down) * vertex.y() + 0.4 * foot * down;
+// A claw rather than a ball: it narrows downwards and reaches out along the diagonal.
+Mesh claw(int detail) {
+  Mesh part =
+      turned({8, detail, 3 * detail},
+             trace_profile(
+                 {{0, -kFoot, 0, 1}, {kFoot, -kFoot, 0.9 * kFoot, 1}, {kFoot, kFoot, 0.9 * kFoot, 1}, {0, kFoot, 0, 1}},
+                 16, false));
+  for (auto vertex : part.vertices.rowwise()) {
+    const double down = -vertex.z() / kFoot;
+    vertex.x() = (1 - 0.3 * down) * vertex.x() + 0.4 * kFoot * down;
+    vertex.y() = (1 - 0.3 * down) * vertex.y() + 0.4 * kFoot * down;
   }
-  const double corner = base - 0.9 * foot;
-  for (const Matrix3d& turn : elements({Family::Cn, 4})) {
-    all.push_back(builder.add(moved(foot_part, at(corner, corner, foot)), {turn, Vector3d::Zero()}));
-  }
-  const double floor = plinth_middle.z() + plinth_half;
-  // What is eightfold: column with bowl, knob and beads.
-  const PartFaces bowl_faces = builder.add(column(height, bowl, detail), at(0, 0, floor - 0.004));
-  const double knob_level = floor + 0.42 * height;
-  const PartFaces knob_faces = builder.add(knob(0.06, detail), at(0, 0, knob_level));
-  const double beads_level = floor + 0.62 * height;
-  const PartFaces beads_faces = builder.add(beads(0.036, 0.012, detail), at(0, 0, beads_level));
-  const PartFaces eightfold = joined({bowl_faces, knob_faces, beads_faces});
+  return part;
+}
 
-  // Four arms from the knob, each with a candle.
-  const double rise = knob_level + values["rise"];
+PartFaces add_feet(ModelBuilder& builder, double base, int detail) {
+  const double corner = base - 0.9 * kFoot;
+  const Mesh foot = moved(claw(detail), at(corner, corner, kFoot));
+  std::vector<PartFaces> feet;
+  for (const Matrix3d& turn : elements({Family::Cn, 4})) feet.push_back(builder.add(foot, {turn, Vector3d::Zero()}));
+  return joined(feet);
+}
+
+// Along +x, from the knob's middle to a candle's foot at the end (reach, rise).
+Mesh arm(double knob_level, double reach, double rise, int detail) {
   const Curve line = smooth_curve({Vector3d(0.045, 0, knob_level), Vector3d(0.4 * reach, 0, knob_level - 0.045),
                                    Vector3d(0.78 * reach, 0, knob_level - 0.02),
                                    Vector3d(1.0 * reach, 0, 0.5 * (knob_level + rise)), Vector3d(reach, 0, rise)});
-  const Mesh arm = tube({6, 2 * detail, 32 * detail}, line, Vector3d::UnitY(), [](double share) {
+  return tube({6, 2 * detail, 32 * detail}, line, Vector3d::UnitY(), [](double share) {
     return smooth_table({{0, 0.02}, {0.3, 0.012}, {0.6, 0.015}, {1, 0.011}}, share);
   });
+}
+
+struct Arms {
+  PartFaces arms;
+  PartCopies candles;
+};
+
+// Four arms from the knob, each with a candle.
+Arms add_arms(ModelBuilder& builder, const ModelValues& values, double knob_level) {
+  const int detail = values.count("detail");
+  const double reach = values["reach"];
+  const double rise = knob_level + values["rise"];
+  const Mesh arm_part = arm(knob_level, reach, rise, detail);
   const Mesh candle_part = candle(values["candle"], detail);
-  std::vector<PartFaces> candles;
-  std::vector<Placement> candle_places;
+  std::vector<PartFaces> arms;
+  Arms result;
   for (const Matrix3d& turn : elements({Family::Cn, 4})) {
     const Motion motion{turn, Vector3d::Zero()};
-    all.push_back(builder.add(arm, motion));
-    candle_places.push_back(image(motion, {Matrix3d::Identity(), Vector3d(reach, 0, rise)}));
-    candles.push_back(builder.add(candle_part, candle_places.back()));
+    arms.push_back(builder.add(arm_part, motion));
+    builder.add_copy(candle_part, image(motion, at(reach, 0, rise)), result.candles);
   }
-  all.push_back(plinth);
-  all.push_back(eightfold);
-  all.push_back(joined(candles));
-  builder.declare("centre piece", {Family::Cnv, 4}, {}, joined(all));
+  result.arms = joined(arms);
+  return result;
+}
+
+GeneratedModel build_centre_piece(const ModelValues& values) {
+  const int detail = values.count("detail");
+  const double height = values["height"];
+  const double base = values["base"] / 2;
+  ModelBuilder builder(0);
+  const Placement plinth_place = at(0, 0, 1.7 * kFoot + kPlinth);
+  const PartFaces plinth = builder.add(
+      box({base, base, kPlinth}, {14 * detail, 14 * detail, 2 * detail}, 0.6 * kPlinth, detail), plinth_place);
+  const PartFaces feet = add_feet(builder, base, detail);
+  // What is eightfold: column with bowl, knob and beads.
+  const double floor = plinth_place.origin.z() + kPlinth;
+  const PartFaces bowl = builder.add(column(height, values["bowl"], detail), at(0, 0, floor - 0.004));
+  const Placement knob_place = at(0, 0, floor + 0.42 * height);
+  const PartFaces knob_faces = builder.add(knob(0.06, detail), knob_place);
+  const Placement beads_place = at(0, 0, floor + 0.62 * height);
+  const PartFaces beads_faces = builder.add(beads(0.036, 0.012, detail), beads_place);
+  const PartFaces eightfold = joined({bowl, knob_faces, beads_faces});
+  const Arms arms = add_arms(builder, values, knob_place.origin.z());
+
+  builder.declare("centre piece", {Family::Cnv, 4}, {},
+                  joined({feet, plinth, eightfold, arms.arms, joined(arms.candles.faces)}));
   builder.declare("column and bowl", {Family::Cnv, kLobes}, {}, eightfold);
-  builder.declare("plinth", {Family::Dnh, 4}, {Matrix3d::Identity(), plinth_middle}, plinth);
-  builder.declare("knob", {Family::Dnh, kLobes}, {Matrix3d::Identity(), Vector3d(0, 0, knob_level)}, knob_faces);
-  builder.declare("beads", {Family::Dnh, kLobes}, {Matrix3d::Identity(), Vector3d(0, 0, beads_level)}, beads_faces);
-  for (std::size_t i = 0; i < candles.size(); ++i) {
-    builder.declare("candle " + std::to_string(i + 1), {Family::Cnv, 6}, candle_places[i], candles[i]);
-  }
+  builder.declare("plinth", {Family::Dnh, 4}, plinth_place, plinth);
+  builder.declare("knob", {Family::Dnh, kLobes}, knob_place, knob_faces);
+  builder.declare("beads", {Family::Dnh, kLobes}, beads_place, beads_faces);
+  builder.declare_each("candle", {Family::Cnv, 6}, arms.candles);
   return builder.finish();
 }
 

@@ -16,17 +16,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-// A square leg about z, narrowing from 1 at the upper end to `foot`.
-Mesh leg_part(double thickness, double length, double foot, int detail) {
-  Mesh leg = box({thickness / 2, thickness / 2, length / 2}, {2 * detail, 2 * detail, 8 * detail}, thickness * 0.14, 2);
-  for (auto vertex : leg.vertices.rowwise()) {
-    const double width = 1 + (foot - 1) * (0.5 - vertex.z() / length);
-    vertex.x() *= width;
-    vertex.y() *= width;
-  }
-  return leg;
-}
-
 // Axis along the leg, and the section turned so that the plane through the axis and the diagonal of x and y is a
 // mirror of the leg: in a square seat it is one of the whole frame.
 Matrix3d leg_frame(const Vector3d& axis) {
@@ -38,8 +27,7 @@ Matrix3d leg_frame(const Vector3d& axis) {
 }
 
 struct Base {
-  std::vector<PartFaces> legs, bars;
-  std::vector<Placement> leg_places, bar_places;
+  PartCopies legs, bars;
   PartFaces seat;
   Vector3d seat_middle;
 };
@@ -62,12 +50,12 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
   const Vector3d upper(half_width - inset, half_depth - inset, height);
   const Vector3d lower(upper.x() + spread, upper.y() + spread, 0);
   const Vector3d along = upper - lower;
-  const Mesh leg = leg_part(thickness, along.norm(), 0.6, detail);
+  const Mesh leg = tapered_leg(thickness, along.norm(), 0.6, detail);
   const Placement leg_place{leg_frame(along.normalized()), (upper + lower) / 2};
   for (const Matrix3d& element : elements({Family::Cnv, 2})) {
     const Motion motion{element, Vector3d::Zero()};
-    base.legs.push_back(builder.add(moved(leg, leg_place), motion));
-    base.leg_places.push_back(image(motion, leg_place));
+    base.legs.faces.push_back(builder.add(moved(leg, leg_place), motion));
+    base.legs.places.push_back(image(motion, leg_place));
   }
 
   // Bars from leg to leg at one height: one at the side and its image, one in front and its image.
@@ -85,16 +73,15 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
   for (const auto& [half_length, place] : bars) {
     for (const Matrix3d& element : elements({Family::Cn, 2})) {
       const Motion motion{element, Vector3d::Zero()};
-      base.bars.push_back(builder.add(moved(bar(half_length), place), motion));
-      base.bar_places.push_back(image(motion, place));
+      base.bars.faces.push_back(builder.add(moved(bar(half_length), place), motion));
+      base.bars.places.push_back(image(motion, place));
     }
   }
   return base;
 }
 
 struct Back {
-  std::vector<PartFaces> posts, slats;
-  std::vector<Placement> post_places, slat_places;
+  PartCopies posts, slats;
   PartFaces crest;
   Placement crest_place;
   Placement middle;  // of posts and slats
@@ -117,15 +104,13 @@ Back build_back(ModelBuilder& builder, const ModelValues& values) {
 
   const Mesh post_part = box({post / 2, post / 2, height / 2}, {2 * detail, 2 * detail, 8 * detail}, 0.14 * post, 2);
   for (const double side : {-1.0, 1.0}) {
-    back.post_places.push_back(at(side * half_width, height / 2));
-    back.posts.push_back(builder.add(post_part, back.post_places.back()));
+    builder.add_copy(post_part, at(side * half_width, height / 2), back.posts);
   }
   const double spacing = height / (slats + 0.6);
   back.step = frame * Vector3d(0, 0, spacing);
   const Mesh slat = box({half_width, 0.2 * post, 0.24 * spacing}, {8 * detail, 2, 2 * detail}, 0.12 * post, 2);
   for (int i = 0; i < slats; ++i) {
-    back.slat_places.push_back(at(0, height / 2 + (i - 0.5 * (slats - 1)) * spacing));
-    back.slats.push_back(builder.add(slat, back.slat_places.back()));
+    builder.add_copy(slat, at(0, height / 2 + (i - 0.5 * (slats - 1)) * spacing), back.slats);
   }
   const double crest_half = 0.75 * post;
   back.crest_place = at(0, height + 0.8 * crest_half);
@@ -139,8 +124,8 @@ GeneratedModel build_chair(const ModelValues& values) {
   ModelBuilder builder;
   const Base base = build_base(builder, values);
   const Back back = build_back(builder, values);
-  const PartFaces lower = joined({base.seat, joined(base.legs), joined(base.bars)});
-  const PartFaces ladder = joined({joined(back.posts), joined(back.slats)});
+  const PartFaces lower = joined({base.seat, joined(base.legs.faces), joined(base.bars.faces)});
+  const PartFaces ladder = joined({joined(back.posts.faces), joined(back.slats.faces)});
   const PartFaces upper = joined({ladder, back.crest});
 
   const bool square = values["seat_width"] == values["seat_depth"];
@@ -148,23 +133,18 @@ GeneratedModel build_chair(const ModelValues& values) {
   builder.declare("chair", {Family::Cs, 1}, {frame_about(Vector3d::UnitX()), Vector3d::Zero()}, joined({lower, upper}));
   builder.declare("seat and legs", {Family::Cnv, fold}, {}, lower);
   builder.declare("seat", {Family::Dnh, fold}, {Matrix3d::Identity(), base.seat_middle}, base.seat);
-  for (std::size_t i = 0; i < base.legs.size(); ++i) {
-    builder.declare("leg " + std::to_string(i + 1), {Family::Cnv, 4}, base.leg_places[i], base.legs[i]);
-  }
-  for (std::size_t i = 0; i < base.bars.size(); ++i) {
-    builder.declare("bar " + std::to_string(i + 1), {Family::Dnh, 2}, base.bar_places[i], base.bars[i]);
-  }
+  builder.declare_each("leg", {Family::Cnv, 4}, base.legs);
+  builder.declare_each("bar", {Family::Dnh, 2}, base.bars);
   builder.declare("back", {Family::Cnv, 2}, back.middle, upper);
   builder.declare("posts and slats", {Family::Dnh, 2}, back.middle, ladder);
-  for (std::size_t i = 0; i < back.posts.size(); ++i) {
-    builder.declare("post " + std::to_string(i + 1), {Family::Dnh, 4}, back.post_places[i], back.posts[i]);
-  }
-  for (std::size_t i = 0; i < back.slats.size(); ++i) {
-    if (2 * i + 1 == back.slats.size()) continue;  // the middle one has no more than what posts and slats have
-    builder.declare("slat " + std::to_string(i + 1), {Family::Dnh, 2}, back.slat_places[i], back.slats[i]);
+  builder.declare_each("post", {Family::Dnh, 4}, back.posts);
+  const std::vector<PartFaces>& slats = back.slats.faces;
+  for (std::size_t i = 0; i < slats.size(); ++i) {
+    if (2 * i + 1 == slats.size()) continue;  // the middle one has no more than what posts and slats have
+    builder.declare("slat " + std::to_string(i + 1), {Family::Dnh, 2}, back.slats.places[i], slats[i]);
   }
   builder.declare("crest", {Family::Dnh, 2}, back.crest_place, back.crest);
-  if (back.slats.size() >= 3) builder.declare_row("slats", back.step, back.slats);
+  if (slats.size() >= 3) builder.declare_row("slats", back.step, slats);
   return builder.finish();
 }
 

@@ -33,83 +33,122 @@ Mesh fan_blade(double root, double tip, int detail) {
   });
 }
 
-GeneratedModel build_desk_fan(const ModelValues& values) {
-  const int detail = values.count("detail");
-  const double height = values["height"];
-  const double radius = values["radius"];
-  const double depth = values["depth"];
-  ModelBuilder builder(0);
-  // The head is made about z, its front to +z, then looks to -y.
-  Matrix3d frame;
-  frame << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  const Placement head{frame, Vector3d(0, 0, height)};
-
-  std::vector<PartFaces> guard;
-  // The rim waves out to the wires: no rounder than the guard.
-  std::vector<Ring> rim;
+// The rim waves out to the wires: no rounder than the guard.
+Mesh guard_rim(double radius, int detail) {
+  std::vector<Ring> rings;
   const std::vector<Matrix3d> sides = elements({Family::Cn, 2 * detail + 4});
   for (const Matrix3d& turn : elements({Family::Cn, 2 * kWires * (detail + 1)})) {
     const double wave = radius * (1 + 0.03 * (cosine_of_multiple(kWires, turn(0, 0), turn(1, 0)) - 1));
-    Ring& ring = rim.emplace_back();
+    Ring& ring = rings.emplace_back();
     for (const Matrix3d& side : sides)
       ring.emplace_back(turn * Vector3d(wave + 0.008 * side(0, 0), 0, 0.008 * side(1, 0)));
   }
-  guard.push_back(builder.add(closed_loft(rim), head));
-  // Each wire runs from the front's middle over the rim to the back's: one part, its own mirror image.
+  return closed_loft(rings);
+}
+
+// Each wire runs from the front's middle over the rim to the back's: one part, its own mirror image.
+Mesh guard_wire(double radius, double depth, int detail) {
   const Curve arc =
       smooth_curve({Vector3d(0.1 * radius, 0, depth), Vector3d(0.7 * radius, 0, 0.9 * depth), Vector3d(radius, 0, 0),
                     Vector3d(0.7 * radius, 0, -0.9 * depth), Vector3d(0.1 * radius, 0, -depth)});
-  const Mesh wire = tube({4, 1, 8 * detail + 2}, arc, Vector3d::UnitY(), [](double) { return 0.005; });
-  for (const Matrix3d& turn : elements({Family::Cn, kWires})) {
-    guard.push_back(builder.add(moved(wire, {turn, Vector3d::Zero()}), head));
-  }
-  const Mesh plate = turned(
+  return tube({4, 1, 8 * detail + 2}, arc, Vector3d::UnitY(), [](double) { return 0.005; });
+}
+
+// In the middle of the front, where the wires end.
+Mesh guard_plate(double radius, int detail) {
+  return turned(
       {kWires, detail, 1},
       trace_profile({{0, 0.01, 0, 1}, {0.2 * radius, 0.004, 0, 1}, {0.2 * radius, -0.004, 0, 1}, {0, -0.01, 0, 1}}, 4,
                     false),
       [](double, double cosine, double sine) { return 1 + 0.06 * cosine_of_multiple(kWires, cosine, sine); });
-  for (const double side : {1.0, -1.0}) {
-    guard.push_back(builder.add(moved(plate, {Vector3d(1, 1, side).asDiagonal(), Vector3d(0, 0, side * depth)}), head));
-  }
+}
 
-  // The rotor: its hub is a screw's, so that the blades' rotations are all it has.
-  const Mesh hub = turned(
+// A screw's hub, so that the blades' rotations are all that the rotor has.
+Mesh rotor_hub(int detail) {
+  return turned(
       {kBlades, detail, 2 * detail},
       trace_profile({{0, 0.035, 0, 1}, {0.04, 0.03, 0.012, 1}, {0.042, -0.035, 0.01, 1}, {0, -0.035, 0, 1}}, 8, false),
       [](double share, double cosine, double sine) {
         const double angle = std::atan2(sine, cosine) + 1.2 * share;
         return 1 + 0.1 * std::cos(kBlades * angle);
       });
-  std::vector<PartFaces> rotor{builder.add(hub, head)};
-  const Mesh blade_part = fan_blade(0.03, 0.88 * radius, detail);
-  for (const Matrix3d& turn : elements({Family::Cn, kBlades})) {
-    rotor.push_back(builder.add(moved(blade_part, {turn, Vector3d::Zero()}), head));
-  }
+}
 
-  // Motor, neck and foot stand in the mirror plane.
-  std::vector<PartFaces> still = guard;
-  const Mesh motor =
+// Behind the guard; taller above the axis than below it.
+Mesh motor(double depth, int detail) {
+  Mesh part = moved(
       turned({6, detail, 3 * detail},
-             trace_profile({{0, 0, 0, 1}, {0.055, 0, 0.02, 1}, {0.045, -0.14, 0.03, 1}, {0, -0.14, 0, 1}}, 8, false));
-  Mesh motor_part = moved(motor, {Matrix3d::Identity(), Vector3d(0, 0, -depth - 0.004)});
-  for (auto vertex : motor_part.vertices.rowwise()) vertex.y() *= vertex.y() > 0 ? 1.25 : 0.9;
-  still.push_back(builder.add(motor_part, head));
-  const Curve neck = smooth_curve(
+             trace_profile({{0, 0, 0, 1}, {0.055, 0, 0.02, 1}, {0.045, -0.14, 0.03, 1}, {0, -0.14, 0, 1}}, 8, false)),
+      {Matrix3d::Identity(), Vector3d(0, 0, -depth - 0.004)});
+  for (auto vertex : part.vertices.rowwise()) vertex.y() *= vertex.y() > 0 ? 1.25 : 0.9;
+  return part;
+}
+
+Mesh neck(double height, double depth, int detail) {
+  const Curve line = smooth_curve(
       {Vector3d(0, 0.02, 0.02), Vector3d(0, 0.1 + depth, 0.4 * height), Vector3d(0, 0.075 + depth, height - 0.03)});
-  still.push_back(builder.add(
-      tube({6, 1, 9 * detail + 1}, neck, Vector3d::UnitX(), [](double share) { return 0.024 - 0.008 * share; })));
-  still.push_back(builder.add(capped_skin({6, 2 * detail, 2}, [&](double share, double cosine, double sine) {
-    const Curve outline(
-        trace_profile({{0, 0, 0, 1}, {0.13, 0, 0.012, 1}, {0.11, 0.035, 0.02, 1}, {0, 0.04, 0, 1}}, 8, false));
+  return tube({6, 1, 9 * detail + 1}, line, Vector3d::UnitX(), [](double share) { return 0.024 - 0.008 * share; });
+}
+
+Mesh stand(int detail) {
+  const Curve outline(
+      trace_profile({{0, 0, 0, 1}, {0.13, 0, 0.012, 1}, {0.11, 0.035, 0.02, 1}, {0, 0.04, 0, 1}}, 8, false));
+  return capped_skin({6, 2 * detail, 2}, [&](double share, double cosine, double sine) {
     const Vector3d place = outline(share);
     const Eigen::Vector2d around = place.x() * rounded_square(cosine, sine, 2.6);
     return Vector3d(around.x(), 0.04 + (around.y() > 0 ? 0.9 : 1.15) * around.y(), place.z());
-  })));
+  });
+}
 
+PartFaces add_guard(ModelBuilder& builder, const ModelValues& values, const Placement& head) {
+  const int detail = values.count("detail");
+  const double radius = values["radius"];
+  const double depth = values["depth"];
+  std::vector<PartFaces> parts{builder.add(guard_rim(radius, detail), head)};
+  const Mesh wire = guard_wire(radius, depth, detail);
+  for (const Matrix3d& turn : elements({Family::Cn, kWires})) {
+    parts.push_back(builder.add(moved(wire, {turn, Vector3d::Zero()}), head));
+  }
+  const Mesh plate = guard_plate(radius, detail);
+  for (const double side : {1.0, -1.0}) {
+    parts.push_back(builder.add(moved(plate, {Vector3d(1, 1, side).asDiagonal(), Vector3d(0, 0, side * depth)}), head));
+  }
+  return joined(parts);
+}
+
+PartFaces add_rotor(ModelBuilder& builder, const ModelValues& values, const Placement& head) {
+  const int detail = values.count("detail");
+  std::vector<PartFaces> parts{builder.add(rotor_hub(detail), head)};
+  const Mesh blade = fan_blade(0.03, 0.88 * values["radius"], detail);
+  for (const Matrix3d& turn : elements({Family::Cn, kBlades})) {
+    parts.push_back(builder.add(moved(blade, {turn, Vector3d::Zero()}), head));
+  }
+  return joined(parts);
+}
+
+// Motor, neck and stand, which have the mirror plane x = 0.
+PartFaces add_support(ModelBuilder& builder, const ModelValues& values, const Placement& head) {
+  const int detail = values.count("detail");
+  const double depth = values["depth"];
+  std::vector<PartFaces> parts{builder.add(motor(depth, detail), head)};
+  parts.push_back(builder.add(neck(values["height"], depth, detail)));
+  parts.push_back(builder.add(stand(detail)));
+  return joined(parts);
+}
+
+GeneratedModel build_desk_fan(const ModelValues& values) {
+  ModelBuilder builder(0);
+  // The head is made about z, its front to +z, then looks to -y.
+  Matrix3d frame;
+  frame << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  const Placement head{frame, Vector3d(0, 0, values["height"])};
+  const PartFaces guard = add_guard(builder, values, head);
+  const PartFaces rotor = add_rotor(builder, values, head);
+  const PartFaces support = add_support(builder, values, head);
   builder.declare("fan without blades", {Family::Cs, 1}, {frame_about(Vector3d::UnitX()), Vector3d::Zero()},
-                  joined(still));
-  builder.declare("guard", {Family::Dnh, kWires}, head, joined(guard));
-  builder.declare("rotor", {Family::Cn, kBlades}, head, joined(rotor));
+                  joined({guard, support}));
+  builder.declare("guard", {Family::Dnh, kWires}, head, guard);
+  builder.declare("rotor", {Family::Cn, kBlades}, head, rotor);
   return builder.finish();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include <Eigen/LU>
@@ -46,11 +47,22 @@ PartFaces ModelBuilder::add(const Mesh& part, const Motion& motion) {
   return faces;
 }
 
+void ModelBuilder::add_copy(const Mesh& part, const Placement& place, PartCopies& copies) {
+  copies.places.push_back(place);
+  copies.faces.push_back(add(part, place));
+}
+
 void ModelBuilder::declare(const std::string& name, const PointGroup& group, const Placement& about,
                            const PartFaces& faces) {
   Region region = make_region(group, about.origin, about.frame, faces, name);
   std::vector<Motion> measured = region.generators;
   regions_.push_back({std::move(region), std::move(measured)});
+}
+
+void ModelBuilder::declare_each(const std::string& name, const PointGroup& group, const PartCopies& copies) {
+  for (std::size_t i = 0; i < copies.faces.size(); ++i) {
+    declare(name + " " + std::to_string(i + 1), group, copies.places[i], copies.faces[i]);
+  }
 }
 
 void ModelBuilder::declare_turned(const std::string& name, bool alike, bool round, int facets, const Placement& about,

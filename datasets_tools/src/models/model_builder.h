@@ -27,6 +27,12 @@ struct Placement {
 
 Placement image(const Motion& motion, const Placement& placement);
 
+/// Copies of a part, and where each is placed.
+struct PartCopies {
+  std::vector<PartFaces> faces;
+  std::vector<Placement> places;
+};
+
 /// Puts a model together from parts and says what is symmetric.
 class ModelBuilder {
  public:
@@ -36,10 +42,16 @@ class ModelBuilder {
   /// The part's image under `motion`; its faces.
   PartFaces add(const Mesh& part, const Motion& motion = {});
 
+  /// Adds one more copy of the part.
+  void add_copy(const Mesh& part, const Placement& place, PartCopies& copies);
+
   /// Declares `faces` symmetric under the group about a place; column 2 of its frame is the axis. Regions of under
   /// 0.25 % of the model's area are left out where nothing else was asked for: no picture and no measure would show
   /// them.
   void declare(const std::string& name, const PointGroup& group, const Placement& about, const PartFaces& faces);
+
+  /// Declares every copy symmetric under the group about its place; they are named `name` 1, `name` 2 ...
+  void declare_each(const std::string& name, const PointGroup& group, const PartCopies& copies);
 
   /// Declares a turned part: Cinfv, or Dinfh if its two ends are `alike`; Cnv or Dnh of its facets where these count.
   /// \param round whether to take the part as round

@@ -226,6 +226,16 @@ Mesh box(const Vector3d& half, const std::array<int, 3>& cells, double bevel, in
   return assemble(vertices, faces);
 }
 
+Mesh tapered_leg(double thickness, double length, double foot, int detail) {
+  Mesh leg = box({thickness / 2, thickness / 2, length / 2}, {2 * detail, 2 * detail, 8 * detail}, thickness * 0.14, 2);
+  for (auto vertex : leg.vertices.rowwise()) {
+    const double width = 1 + (foot - 1) * (0.5 - vertex.z() / length);
+    vertex.x() *= width;
+    vertex.y() *= width;
+  }
+  return leg;
+}
+
 Mesh rod(const std::vector<Vector3d>& path, const Vector3d& normal, double radius, int sides) {
   const std::vector<Eigen::Matrix3d> turns = elements({PointGroup::Family::Cn, sides});
   std::vector<Ring> rings;

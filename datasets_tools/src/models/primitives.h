@@ -47,6 +47,9 @@ Mesh lathe(const std::vector<Eigen::Vector2d>& profile, int facets, bool closed)
 /// \param bevel_cells pieces of each rounding; 0 for sharp edges (bevel is then 0)
 Mesh box(const Eigen::Vector3d& half, const std::array<int, 3>& cells, double bevel, int bevel_cells);
 
+/// A square leg about z, its edges rounded, that narrows from `thickness` at the upper end to the share `foot` of it.
+Mesh tapered_leg(double thickness, double length, double foot, int detail);
+
 /// A rod along a line that lies in a plane, mirror-symmetric about that plane; its bends are mitred.
 /// \param normal unit normal of the plane
 /// \param sides of the rod's section, even

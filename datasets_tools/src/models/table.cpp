@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 // A square leg about z from 0 down to -height, narrowing to `foot` of its thickness.
-Mesh tapered_leg(double thickness, double height, double foot, int detail) {
+Mesh hanging_leg(double thickness, double height, double foot, int detail) {
   Mesh leg = box({thickness / 2, thickness / 2, height / 2}, {2 * detail, 2 * detail, 8 * detail}, thickness * 0.08, 2);
   for (auto vertex : leg.vertices.rowwise()) {
     vertex.z() -= height / 2;
@@ -38,32 +38,22 @@ GeneratedModel build_table(const ModelValues& values) {
   const double reach = half - inset - leg / 2;
   const double apron_height = values["apron_height"];
   const double apron_half = reach - 0.4 * leg;
-  const Mesh leg_part = tapered_leg(leg, underside, values["foot"], detail);
+  const Mesh leg_part = hanging_leg(leg, underside, values["foot"], detail);
   const Mesh apron_part = box({apron_half, 0.14 * leg, apron_height / 2}, {6 * detail, 2, 2 * detail}, 0.03 * leg, 1);
-  std::vector<PartFaces> parts{top};
-  std::vector<PartFaces> legs;
-  std::vector<PartFaces> aprons;
-  std::vector<Placement> leg_places;
-  std::vector<Placement> apron_places;
+  PartCopies legs;
+  PartCopies aprons;
   for (const Eigen::Matrix3d& turn : elements({Family::Cn, 4})) {
     const Motion about_table{turn, Vector3d::Zero()};
-    leg_places.push_back(image(about_table, {Eigen::Matrix3d::Identity(), Vector3d(reach, reach, underside)}));
-    legs.push_back(builder.add(leg_part, leg_places.back()));
-    apron_places.push_back(
-        image(about_table, {Eigen::Matrix3d::Identity(), Vector3d(0, reach, underside - apron_height / 2)}));
-    aprons.push_back(builder.add(apron_part, apron_places.back()));
+    builder.add_copy(leg_part, image(about_table, {Eigen::Matrix3d::Identity(), Vector3d(reach, reach, underside)}),
+                     legs);
+    builder.add_copy(
+        apron_part, image(about_table, {Eigen::Matrix3d::Identity(), Vector3d(0, reach, underside - apron_height / 2)}),
+        aprons);
   }
-  parts.insert(parts.end(), legs.begin(), legs.end());
-  parts.insert(parts.end(), aprons.begin(), aprons.end());
-
-  builder.declare("table", {Family::Cnv, 4}, {}, joined(parts));
+  builder.declare("table", {Family::Cnv, 4}, {}, joined({top, joined(legs.faces), joined(aprons.faces)}));
   builder.declare("top", {Family::Dnh, 4}, {Eigen::Matrix3d::Identity(), lift.translation}, top);
-  for (std::size_t i = 0; i < 4; ++i) {
-    builder.declare("leg " + std::to_string(i + 1), {Family::Cnv, 4}, leg_places[i], legs[i]);
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    builder.declare("apron " + std::to_string(i + 1), {Family::Dnh, 2}, apron_places[i], aprons[i]);
-  }
+  builder.declare_each("leg", {Family::Cnv, 4}, legs);
+  builder.declare_each("apron", {Family::Dnh, 2}, aprons);
   return builder.finish();
 }
 

@@ -23,8 +23,12 @@ double octagon(double cosine, double sine, double round) {
   return (1 - round) * std::cos(eighth) / std::cos(off) + round;
 }
 
+double top_radius(double foot) {
+  return 0.56 * foot;
+}
+
 Mesh tower(double height, double foot, int detail) {
-  const double top = 0.56 * foot;
+  const double top = top_radius(foot);
   return turned({8, 2 * detail, 28 * detail},
                 trace_profile({{0, 0, 0, 1},
                                {foot, 0, 0.1, 1},
@@ -54,44 +58,26 @@ Mesh dome(double radius, int detail) {
                 [](double, double cosine, double sine) { return octagon(cosine, sine, 0.3); });
 }
 
-GeneratedModel build_wind_mill(const ModelValues& values) {
-  const int detail = values.count("detail");
-  const double height = values["height"];
-  const double foot = values["foot"];
-  const double top = 0.56 * foot;
-  const double sail = values["sail"];
-  const double width = values["sail_width"];
-  const auto at = [](double x, double y, double z) { return Motion{Matrix3d::Identity(), Vector3d(x, y, z)}; };
-  ModelBuilder builder(0);
-  std::vector<PartFaces> house;
-  house.push_back(builder.add(tower(height, foot, detail)));
-  house.push_back(builder.add(gallery(1.25 * foot, detail), at(0, 0, 0.3 * height)));
-  house.push_back(builder.add(dome(1.12 * top, detail), at(0, 0, height)));
+// The shaft of the sails: square and twisted, like the cross that it carries.
+Mesh sail_shaft(int detail) {
+  return turned({4, 2 * detail, 4 * detail},
+                trace_profile({{0, 0.45, 0, 1}, {0.3, 0.45, 0.1, 1}, {0.3, -1.9, 0.1, 1}, {0, -1.9, 0, 1}}, 8, false),
+                [](double share, double cosine, double sine) {
+                  return 1 + 0.15 * std::cos(4 * (std::atan2(sine, cosine) + share));
+                });
+}
 
-  // About z with the front to +z, then turned: the shaft rises a little to the front, -y.
-  const double rise = values["shaft_rise"] * std::numbers::pi / 180;
-  Matrix3d frame;
-  frame << 1, 0, 0, 0, -std::sin(rise), -std::cos(rise), 0, std::cos(rise), -std::sin(rise);
-  frame.col(2) = Vector3d(0, -std::cos(rise), std::sin(rise));
-  frame.col(1) = frame.col(2).cross(frame.col(0));
-  const Placement hub{frame, Vector3d(0, 0, height + 0.5 * top) + frame.col(2) * (1.12 * top + 0.7)};
-  std::vector<PartFaces> rotor;
-  // Square and twisted, like the cross of sails it carries.
-  const Mesh shaft =
-      turned({4, 2 * detail, 4 * detail},
-             trace_profile({{0, 0.45, 0, 1}, {0.3, 0.45, 0.1, 1}, {0.3, -1.9, 0.1, 1}, {0, -1.9, 0, 1}}, 8, false),
-             [](double share, double cosine, double sine) {
-               return 1 + 0.15 * std::cos(4 * (std::atan2(sine, cosine) + share));
-             });
-  rotor.push_back(builder.add(shaft, hub));
-  // One sail along +x: a tapering stock, laths along it on its one side, and bars across, all pitched.
-  const Matrix3d pitch = axis_rotation(Vector3d::UnitX(), values["pitch"] * std::numbers::pi / 180);
-  const auto beam = [&](const Vector3d& from, const Vector3d& to, double thickness, int cells) {
-    Mesh part =
-        box({(to - from).x() / 2 + thickness, (to - from).y() / 2 + thickness, thickness},
-            {(to - from).x() > (to - from).y() ? cells : 2, (to - from).x() > (to - from).y() ? 2 : cells, 2}, 0, 0);
-    return moved(part, {Matrix3d::Identity(), (from + to) / 2});
-  };
+// A square beam along x or along y; `cells` pieces along it.
+Mesh beam(const Vector3d& from, const Vector3d& to, double thickness, int cells) {
+  const Vector3d along = to - from;
+  const bool lengthwise = along.x() > along.y();
+  Mesh part = box({along.x() / 2 + thickness, along.y() / 2 + thickness, thickness},
+                  {lengthwise ? cells : 2, lengthwise ? 2 : cells, 2}, 0, 0);
+  return moved(part, {Matrix3d::Identity(), (from + to) / 2});
+}
+
+// One sail along +x: a tapering stock, laths along it on its one side, and bars across.
+std::vector<Mesh> sail_parts(double sail, double width, int detail) {
   constexpr int kBars = 14;
   std::vector<Mesh> parts;
   const double inner = 0.16 * sail;
@@ -110,11 +96,49 @@ GeneratedModel build_wind_mill(const ModelValues& values) {
     const double x = inner + (0.985 * sail - inner) * i / (kBars - 1);
     parts.push_back(beam({x, -0.22 * width, 0}, {x, width, 0}, 0.035, 8 * detail));
   }
+  return parts;
+}
+
+PartFaces add_house(ModelBuilder& builder, const ModelValues& values) {
+  const int detail = values.count("detail");
+  const double height = values["height"];
+  const double foot = values["foot"];
+  const auto at = [](double z) { return Motion{Matrix3d::Identity(), Vector3d(0, 0, z)}; };
+  std::vector<PartFaces> parts{builder.add(tower(height, foot, detail))};
+  parts.push_back(builder.add(gallery(1.25 * foot, detail), at(0.3 * height)));
+  parts.push_back(builder.add(dome(1.12 * top_radius(foot), detail), at(height)));
+  return joined(parts);
+}
+
+// About z with the front to +z, then turned: the shaft rises a little to the front, -y.
+Placement hub_place(const ModelValues& values) {
+  const double rise = values["shaft_rise"] * std::numbers::pi / 180;
+  const double top = top_radius(values["foot"]);
+  Matrix3d frame;
+  frame << 1, 0, 0, 0, -std::sin(rise), -std::cos(rise), 0, std::cos(rise), -std::sin(rise);
+  frame.col(2) = Vector3d(0, -std::cos(rise), std::sin(rise));
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return {frame, Vector3d(0, 0, values["height"] + 0.5 * top) + frame.col(2) * (1.12 * top + 0.7)};
+}
+
+PartFaces add_sails(ModelBuilder& builder, const ModelValues& values, const Placement& hub) {
+  const int detail = values.count("detail");
+  std::vector<PartFaces> parts{builder.add(sail_shaft(detail), hub)};
+  const std::vector<Mesh> sail = sail_parts(values["sail"], values["sail_width"], detail);
+  const Matrix3d pitch = axis_rotation(Vector3d::UnitX(), values["pitch"] * std::numbers::pi / 180);
   for (const Matrix3d& turn : elements({Family::Cn, 4})) {
-    for (const Mesh& part : parts) rotor.push_back(builder.add(moved(part, {turn * pitch, Vector3d::Zero()}), hub));
+    for (const Mesh& part : sail) parts.push_back(builder.add(moved(part, {turn * pitch, Vector3d::Zero()}), hub));
   }
-  builder.declare("tower", {Family::Cnv, 8}, {}, joined(house));
-  builder.declare("sails", {Family::Cn, 4}, hub, joined(rotor));
+  return joined(parts);
+}
+
+GeneratedModel build_wind_mill(const ModelValues& values) {
+  ModelBuilder builder(0);
+  const Placement hub = hub_place(values);
+  const PartFaces house = add_house(builder, values);
+  const PartFaces sails = add_sails(builder, values, hub);
+  builder.declare("tower", {Family::Cnv, 8}, {}, house);
+  builder.declare("sails", {Family::Cn, 4}, hub, sails);
   return builder.finish();
 }
 

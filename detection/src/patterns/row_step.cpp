@@ -19,6 +19,95 @@ namespace {
 
 constexpr double kLevelPitch = 1e-3;  // a turn with less of a shift has none
 
+// Least squares for the step that brings the faces at the first place onto the surface at the others.
+class StepRefinement {
+ public:
+  StepRefinement(const PreparedMesh& prepared, const RowStep& start, const std::vector<int>& faces, int places,
+                 double tolerance)
+      : prepared_(prepared), faces_(faces), places_(places), reach_(kReach * tolerance), turns_(start.turns()) {
+    const Motion first = start.times(1);
+    level_ = turns_ && std::abs(axis_angle(first.linear).axis.dot(first.translation)) <= kLevelPitch;
+    for (const int face : faces) centre_ += face_centroid(prepared, face) / static_cast<double>(faces.size());
+  }
+
+  struct NormalEquations {
+    Matrix6d matrix = Matrix6d::Zero();
+    Vector6d right = Vector6d::Zero();
+  };
+
+  // A small turn and shift after the step; a level step stays level.
+  Motion changed(const Motion& step, const Vector6d& by) const {
+    const double angle = by.head<3>().norm();
+    Motion change{Eigen::Matrix3d::Identity(), by.tail<3>()};
+    if (angle > 0) {
+      change = Motion::rotation(by.head<3>() / angle, angle, centre_);
+      change.translation += by.tail<3>();
+    }
+    Motion result = change * step;
+    if (level_) {
+      const Vector3d axis = axis_angle(result.linear).axis;
+      result.translation -= axis.dot(result.translation) * axis;
+    }
+    return result;
+  }
+
+  // Of the change that is to be made to the step.
+  NormalEquations equations(const Motion& step) const {
+    constexpr int kMaxPlaces = 5;
+    const RowStep now(step);
+    std::array<RowStep, 6> others{now, now, now, now, now, now};
+    for (int j = first_unknown(); j < 6; ++j) {
+      others[static_cast<std::size_t>(j)] = RowStep(changed(step, kTiny * Vector6d::Unit(j)));
+    }
+    NormalEquations result;
+    const int count = std::min(places_ - 1, kMaxPlaces);
+    for (int i = 1; i <= count; ++i) {
+      const int place = (places_ - 1) * i / count;
+      std::array<Motion, 6> moved;
+      for (std::size_t j = 0; j < 6; ++j) moved[j] = others[j].times(place);
+      add_place(now.times(place), moved, result);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr double kReach = 2;    // tolerances
+  static constexpr double kTiny = 1e-5;  // of a difference quotient
+
+  int first_unknown() const { return turns_ ? 0 : 3; }
+
+  // The faces by the motion to a place, and by those of steps changed a little in each unknown.
+  void add_place(const Motion& motion, const std::array<Motion, 6>& moved, NormalEquations& equations) const {
+    constexpr std::size_t kMaxFaces = 300;
+    const std::size_t looks = std::min(faces_.size(), kMaxFaces);
+    for (std::size_t s = 0; s < looks; ++s) {
+      const int face = faces_[s * faces_.size() / looks];
+      const Vector3d point = face_centroid(prepared_, face);
+      const Vector3d normal = motion.linear * prepared_.normals.row(face).transpose();
+      const SurfaceIndex::Nearest near =
+          prepared_.index->nearest_facing(motion(point), normal, kNearNormals, reach_, true);
+      if (near.face < 0) continue;
+      const Vector3d facing = prepared_.normals.row(near.face);
+      const double ratio = near.distance / reach_;
+      const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
+      Vector6d row = Vector6d::Zero();
+      for (int j = first_unknown(); j < 6; ++j) {
+        row[j] = facing.dot(moved[static_cast<std::size_t>(j)](point) - motion(point)) / kTiny;
+      }
+      equations.matrix += weight * row * row.transpose();
+      equations.right -= weight * facing.dot(motion(point) - near.point) * row;
+    }
+  }
+
+  const PreparedMesh& prepared_;
+  const std::vector<int>& faces_;
+  int places_;
+  double reach_;
+  bool turns_;
+  bool level_ = false;
+  Vector3d centre_ = Vector3d::Zero();  // of the faces
+};
+
 }  // namespace
 
 RowStep::RowStep(const Motion& motion) : motion_(motion), turn_(axis_angle(motion.linear)) {
@@ -45,67 +134,13 @@ Motion RowStep::times(double share) const {
 RowStep refined_step(const PreparedMesh& prepared, const RowStep& start, const std::vector<int>& faces, int places,
                      double tolerance) {
   constexpr int kIterations = 4;
-  constexpr std::size_t kMaxFaces = 300;
-  constexpr int kMaxPlaces = 5;
-  constexpr double kReach = 2;    // tolerances
-  constexpr double kTiny = 1e-5;  // of a difference quotient
-  const bool turns = start.turns();
-  const Motion first = start.times(1);
-  const bool level = turns && std::abs(axis_angle(first.linear).axis.dot(first.translation)) <= kLevelPitch;
-  Vector3d centre = Vector3d::Zero();
-  for (const int face : faces) centre += face_centroid(prepared, face) / static_cast<double>(faces.size());
-  // A small turn and shift after the step.
-  const auto changed = [&](const Motion& step, const Vector6d& by) {
-    const double angle = by.head<3>().norm();
-    Motion change{Eigen::Matrix3d::Identity(), by.tail<3>()};
-    if (angle > 0) {
-      change = Motion::rotation(by.head<3>() / angle, angle, centre);
-      change.translation += by.tail<3>();
-    }
-    Motion result = change * step;
-    if (level) {
-      const Vector3d axis = axis_angle(result.linear).axis;
-      result.translation -= axis.dot(result.translation) * axis;
-    }
-    return result;
-  };
-  const int count = std::min(places - 1, kMaxPlaces);
-  const std::size_t looks = std::min(faces.size(), kMaxFaces);
-  Motion step = first;
+  const StepRefinement refinement(prepared, start, faces, places, tolerance);
+  Motion step = start.times(1);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const RowStep now(step);
-    std::array<RowStep, 6> others{now, now, now, now, now, now};
-    for (int j = turns ? 0 : 3; j < 6; ++j) {
-      others[static_cast<std::size_t>(j)] = RowStep(changed(step, kTiny * Vector6d::Unit(j)));
-    }
-    Matrix6d matrix = Matrix6d::Zero();
-    Vector6d right = Vector6d::Zero();
-    for (int i = 1; i <= count; ++i) {
-      const int place = (places - 1) * i / count;
-      const Motion motion = now.times(place);
-      std::array<Motion, 6> moved;
-      for (std::size_t j = 0; j < 6; ++j) moved[j] = others[j].times(place);
-      for (std::size_t s = 0; s < looks; ++s) {
-        const int face = faces[s * faces.size() / looks];
-        const Vector3d point = face_centroid(prepared, face);
-        const Vector3d normal = motion.linear * prepared.normals.row(face).transpose();
-        const SurfaceIndex::Nearest near =
-            prepared.index->nearest_facing(motion(point), normal, kNearNormals, kReach * tolerance, true);
-        if (near.face < 0) continue;
-        const Vector3d facing = prepared.normals.row(near.face);
-        const double ratio = near.distance / (kReach * tolerance);
-        const double weight = (1 - ratio * ratio) * (1 - ratio * ratio);
-        Vector6d row = Vector6d::Zero();
-        for (int j = turns ? 0 : 3; j < 6; ++j) {
-          row[j] = facing.dot(moved[static_cast<std::size_t>(j)](point) - motion(point)) / kTiny;
-        }
-        matrix += weight * row * row.transpose();
-        right -= weight * facing.dot(motion(point) - near.point) * row;
-      }
-    }
+    auto [matrix, right] = refinement.equations(step);
     if (!(matrix.trace() > 0)) break;
     matrix += 1e-9 * matrix.trace() * Matrix6d::Identity();
-    step = changed(step, solve_semidefinite(matrix, right));
+    step = refinement.changed(step, solve_semidefinite(matrix, right));
   }
   return RowStep(step);
 }

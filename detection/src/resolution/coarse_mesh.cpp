@@ -5,15 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
 
 #include <Eigen/Geometry>
 
-#include "geometry/surface_index.h"
-#include "surface/face_points.h"
+#include "resolution/proxy_faces.h"
 #include "surface/vertex_clusters.h"
 
 namespace orbifit {
@@ -21,7 +19,7 @@ namespace orbifit {
 namespace {
 
 using Eigen::Vector3d;
-using Corners = std::array<int, 3>;
+using Corners = ClusteredMesh::Corners;
 
 constexpr double kWeldTolerance = 1e-7;  // of the diagonal, as when preparing
 constexpr double kTurned = 0.5;          // cosine: more than that a face must not turn
@@ -44,48 +42,45 @@ class Coarsening {
         clustering_(prepared, sites_, options.tolerance, options.noise),
         most_(options.most_faces * static_cast<double>(prepared.mesh.faces.rows())),
         clusters_(clustering_.clusters(context)),
-        as_it_is_(prepared.components.faces.size(), 0) {}
+        as_it_is_(prepared.components.faces.size(), 0),
+        clustered_{prepared, sites_, {}, {}} {}
 
   std::optional<CoarseMesh> run() {
     for (int round = 0;; ++round) {
       context_.check();
       join_faces();
-      if (static_cast<double>(mesh_.faces.rows()) > most_ || round > 2 * kRounds) return std::nullopt;
+      if (static_cast<double>(clustered_.mesh.faces.rows()) > most_ || round > 2 * kRounds) return std::nullopt;
       std::vector<char> spoilt(clusters_.size(), 0);
       if (round < kRounds && mark_turned(spoilt)) {
         split(spoilt);
         continue;
       }
-      const Components coarse = connected_components(mesh_, weld_vertices(mesh_.vertices, kWeldTolerance));
+      const Components coarse =
+          connected_components(clustered_.mesh, weld_vertices(clustered_.mesh.vertices, kWeldTolerance));
       if (round < 2 * kRounds && mark_torn(coarse, spoilt)) {
         split(spoilt);
         continue;
       }
       if (!leave_broken_components(coarse)) break;
     }
-    find_proxy_faces();
+    complete_proxy_faces(clustered_, context_, proxy_face_);
     std::vector<int> all(first_.size());
     std::iota(all.begin(), all.end(), 0);
-    return CoarseMesh{submesh(mesh_, all), std::move(proxy_face_)};
+    return CoarseMesh{submesh(clustered_.mesh, all), std::move(proxy_face_)};
   }
 
  private:
   static std::size_t number(int i) { return static_cast<std::size_t>(i); }
-
-  Corners corners_of(int face) const {
-    Corners corners{};
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = cluster_of_site_[number(sites_.of_face[number(face)][k])];
-    return corners;
-  }
+  Corners corners_of(int face) const { return clustered_.corners_of(face); }
 
   // The faces whose corners are in three clusters, those that have the same ones once, component by component. Faces of
   // opposite sense with the same corners are a fold pressed flat: none of them stays.
   void join_faces() {
-    cluster_of_site_.assign(sites_.group.size(), -1);
-    mesh_.vertices.resize(static_cast<Eigen::Index>(clusters_.size()), 3);
+    clustered_.cluster_of_site.assign(sites_.group.size(), -1);
+    clustered_.mesh.vertices.resize(static_cast<Eigen::Index>(clusters_.size()), 3);
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
-      mesh_.vertices.row(static_cast<Eigen::Index>(c)) = clusters_[c].place;
-      for (const int site : clusters_[c].sites) cluster_of_site_[number(site)] = static_cast<int>(c);
+      clustered_.mesh.vertices.row(static_cast<Eigen::Index>(c)) = clusters_[c].place;
+      for (const int site : clusters_[c].sites) clustered_.cluster_of_site[number(site)] = static_cast<int>(c);
     }
     proxy_face_.assign(sites_.of_face.size(), -1);
     first_.clear();
@@ -102,10 +97,10 @@ class Coarsening {
         if (proxy_face == static_cast<int>(first_.size())) first_.push_back(face);
       }
     }
-    mesh_.faces.resize(static_cast<Eigen::Index>(first_.size()), 3);
+    clustered_.mesh.faces.resize(static_cast<Eigen::Index>(first_.size()), 3);
     for (std::size_t f = 0; f < first_.size(); ++f) {
       const Corners corners = corners_of(first_[f]);
-      for (int k = 0; k < 3; ++k) mesh_.faces(static_cast<Eigen::Index>(f), k) = corners[number(k)];
+      for (int k = 0; k < 3; ++k) clustered_.mesh.faces(static_cast<Eigen::Index>(f), k) = corners[number(k)];
     }
   }
 
@@ -140,9 +135,9 @@ class Coarsening {
     for (std::size_t f = 0; f < first_.size(); ++f) {
       const auto row = static_cast<Eigen::Index>(f);
       const Vector3d before = prepared_.normals.row(first_[f]);
-      if (prepared_.areas[first_[f]] <= 0 || face_normal(mesh_, row).dot(before) >= kTurned) continue;
+      if (prepared_.areas[first_[f]] <= 0 || face_normal(clustered_.mesh, row).dot(before) >= kTurned) continue;
       for (int k = 0; k < 3; ++k) {
-        const std::size_t cluster = number(mesh_.faces(row, k));
+        const std::size_t cluster = number(clustered_.mesh.faces(row, k));
         if (clusters_[cluster].sites.size() == 1) continue;
         spoilt[cluster] = 1;
         any = true;
@@ -157,7 +152,7 @@ class Coarsening {
     std::vector<int> component(clusters_.size(), -1);
     for (std::size_t f = 0; f < first_.size(); ++f) {
       for (int k = 0; k < 3; ++k) {
-        const std::size_t cluster = number(mesh_.faces(static_cast<Eigen::Index>(f), k));
+        const std::size_t cluster = number(clustered_.mesh.faces(static_cast<Eigen::Index>(f), k));
         const int here = coarse.component_of_face[f];
         if (component[cluster] < 0) component[cluster] = here;
         if (component[cluster] == here || clusters_[cluster].sites.size() == 1) continue;
@@ -219,64 +214,6 @@ class Coarsening {
     clusters_ = std::move(result);
   }
 
-  // Faces whose corners came together: the nearest of the coarse faces at those corners, with regard to the normal.
-  void find_proxy_faces() {
-    std::vector<std::vector<int>> around(clusters_.size());
-    for (Eigen::Index f = 0; f < mesh_.faces.rows(); ++f) {
-      for (int k = 0; k < 3; ++k) around[number(mesh_.faces(f, k))].push_back(static_cast<int>(f));
-    }
-    const Points normals = face_normals(mesh_);
-    parallel_for(context_, proxy_face_.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t f = begin; f < end; ++f) {
-        if (f % 4096 == 0) context_.check();
-        if (proxy_face_[f] < 0) proxy_face_[f] = nearest_of(static_cast<int>(f), around, normals);
-      }
-    });
-    // What dangles has no coarse face at its corners: as its neighbours do.
-    std::vector<int> open;
-    for (std::size_t f = 0; f < proxy_face_.size(); ++f) {
-      if (proxy_face_[f] < 0) open.push_back(static_cast<int>(f));
-    }
-    std::vector<int> of_site(sites_.group.size(), -1);
-    for (std::size_t before = open.size() + 1; !open.empty() && open.size() < before;) {
-      before = open.size();
-      for (std::size_t f = 0; f < proxy_face_.size(); ++f) {
-        for (const int site : sites_.of_face[f]) {
-          if (of_site[number(site)] < 0) of_site[number(site)] = proxy_face_[f];
-        }
-      }
-      std::erase_if(open, [&](int f) {
-        for (const int site : sites_.of_face[number(f)]) {
-          proxy_face_[number(f)] = std::max(proxy_face_[number(f)], of_site[number(site)]);
-        }
-        return proxy_face_[number(f)] >= 0;
-      });
-    }
-  }
-
-  int nearest_of(int face, const std::vector<std::vector<int>>& around, const Points& normals) const {
-    const Vector3d centroid = face_centroid(prepared_, face);
-    const Vector3d normal = prepared_.normals.row(face);
-    int best = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (const int cluster : corners_of(face)) {
-      for (const int other : around[number(cluster)]) {
-        const Vector3d a = mesh_.vertices.row(mesh_.faces(other, 0));
-        const Vector3d b = mesh_.vertices.row(mesh_.faces(other, 1));
-        const Vector3d c = mesh_.vertices.row(mesh_.faces(other, 2));
-        const Vector3d weights = nearest_on_triangle(centroid, a, b, c);
-        // A face that looks elsewhere counts as if it were its own size away.
-        const double away = (weights[0] * a + weights[1] * b + weights[2] * c - centroid).norm();
-        const double cost = away + (1 - normal.dot(normals.row(other))) * (b - a).norm();
-        if (cost < least || (cost == least && other < best)) {
-          least = cost;
-          best = other;
-        }
-      }
-    }
-    return best;
-  }
-
   const PreparedMesh& prepared_;
   const RunContext& context_;
   Sites sites_;
@@ -284,9 +221,8 @@ class Coarsening {
   double most_;
   std::vector<VertexCluster> clusters_;
   std::vector<char> as_it_is_;  // by component: not coarsened
-  std::vector<int> cluster_of_site_;
-  std::vector<int> like_;  // by fine face: the first with its corners' clusters; -1 where two are the same
-  Mesh mesh_;
+  std::vector<int> like_;       // by fine face: the first with its corners' clusters; -1 where two are the same
+  ClusteredMesh clustered_;
   std::vector<int> first_;       // by coarse face: the fine face from which it comes
   std::vector<int> proxy_face_;  // by fine face; -1 as long as there is none
 };

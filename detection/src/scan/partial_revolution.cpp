@@ -213,6 +213,84 @@ std::optional<Line> improved(const Profile& profile, const Line& axis) {
   return result;
 }
 
+// Some of the points, evenly at random, on which axes are scored.
+struct ScoredPoints {
+  Points points, normals;
+  double spacing = 0;
+};
+
+ScoredPoints some_of(const Points& points, const Points& normals, double spacing, Random& random) {
+  const int total = static_cast<int>(points.rows());
+  const int scored = std::min(total, kScored);
+  std::vector<int> chosen(static_cast<std::size_t>(total));
+  std::iota(chosen.begin(), chosen.end(), 0);
+  for (int i = 0; i < scored; ++i) {
+    std::swap(chosen[static_cast<std::size_t>(i)],
+              chosen[static_cast<std::size_t>(i) + random.below(static_cast<std::uint64_t>(total - i))]);
+  }
+  chosen.resize(static_cast<std::size_t>(scored));
+  return {rows(points, chosen), rows(normals, chosen), spacing * std::sqrt(static_cast<double>(total) / scored)};
+}
+
+struct ProposedAxis {
+  Line axis;
+  std::size_t count = 0;  // of the scored points that belong to the surface about it
+};
+
+ProposedAxis scored_axis(const ScoredPoints& few, const Line& axis, double tolerance) {
+  const Profile profile(few.points, few.normals, axis, tolerance, few.spacing);
+  return {axis, profile.sound() ? profile.count() : std::size_t{0}};
+}
+
+// Axes fitted to what lies in balls about random points, the first ball holding everything.
+std::vector<ProposedAxis> proposed_axes(const ScoredPoints& few, double size, double tolerance, Random& random,
+                                        const RunContext& context) {
+  const int scored = static_cast<int>(few.points.rows());
+  std::vector<ProposedAxis> proposals(kProposals);
+  std::vector<std::pair<Vector3d, double>> balls;
+  for (int k = 0; k < kProposals; ++k) {
+    const Vector3d middle = few.points.row(static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(scored))));
+    balls.emplace_back(middle,
+                       k == 0 ? 2 * size : size * std::array{0.15, 0.25, 0.35, 0.5}[static_cast<std::size_t>(k) % 4]);
+  }
+  parallel_for(context, proposals.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      std::vector<int> near;
+      for (int i = 0; i < scored; ++i) {
+        if ((Vector3d(few.points.row(i)) - balls[k].first).norm() <= balls[k].second) near.push_back(i);
+      }
+      const std::optional<RevolutionFit> fit =
+          fit_axis_of_revolution(rows(few.points, near), rows(few.normals, near), {}, kNormalAngle);
+      if (!fit || fit->planar) continue;
+      proposals[k] = scored_axis(few, fit->axis, tolerance);
+    }
+  });
+  context.check();
+  std::ranges::stable_sort(proposals, std::greater<>(), &ProposedAxis::count);
+  return proposals;
+}
+
+// Of the first few proposals and what improving them comes by.
+ProposedAxis best_axis(const std::vector<ProposedAxis>& proposals, const ScoredPoints& few, double tolerance) {
+  constexpr std::size_t kRefined = 5;
+  ProposedAxis best;
+  for (std::size_t k = 0; k < std::min(kRefined, proposals.size()); ++k) {
+    if (proposals[k].count == 0) break;
+    ProposedAxis current = proposals[k];
+    if (current.count > best.count) best = current;
+    for (int step = 0; step < 12; ++step) {
+      // At first a loose band, so that a tilted axis finds what it misses.
+      const double band = tolerance * std::max(1.0, 3.0 - 0.5 * step);
+      const Profile profile(few.points, few.normals, current.axis, band, few.spacing);
+      std::optional<Line> next = improved(profile, current.axis);
+      if (!next) break;
+      current = scored_axis(few, *next, tolerance);
+      if (current.count > best.count) best = current;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 PartialRevolution find_partial_revolution(const PointSurface& surface, const std::vector<int>& among, double tolerance,
@@ -223,64 +301,8 @@ PartialRevolution find_partial_revolution(const PointSurface& surface, const std
   Random random(context.seed, stream);
   const Points points = rows(surface.points, among);
   const Points normals = rows(surface.normals, among);
-  const int scored = std::min(total, kScored);
-  std::vector<int> chosen(static_cast<std::size_t>(total));
-  std::iota(chosen.begin(), chosen.end(), 0);
-  for (int i = 0; i < scored; ++i) {
-    std::swap(chosen[static_cast<std::size_t>(i)],
-              chosen[static_cast<std::size_t>(i) + random.below(static_cast<std::uint64_t>(total - i))]);
-  }
-  chosen.resize(static_cast<std::size_t>(scored));
-  const Points few_points = rows(points, chosen);
-  const Points few_normals = rows(normals, chosen);
-  const double few_spacing = surface.spacing * std::sqrt(static_cast<double>(total) / scored);
-  const double size = diagonal(points);
-
-  const auto seen = [&](const Line& axis) {
-    const Profile profile(few_points, few_normals, axis, tolerance, few_spacing);
-    return profile.sound() ? profile.count() : std::size_t{0};
-  };
-  struct Proposal {
-    Line axis;
-    std::size_t count = 0;
-  };
-  std::vector<Proposal> proposals(kProposals);
-  std::vector<std::pair<Vector3d, double>> balls;
-  for (int k = 0; k < kProposals; ++k) {
-    const Vector3d middle = few_points.row(static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(scored))));
-    balls.emplace_back(middle,
-                       k == 0 ? 2 * size : size * std::array{0.15, 0.25, 0.35, 0.5}[static_cast<std::size_t>(k) % 4]);
-  }
-  parallel_for(context, proposals.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      std::vector<int> near;
-      for (int i = 0; i < scored; ++i) {
-        if ((Vector3d(few_points.row(i)) - balls[k].first).norm() <= balls[k].second) near.push_back(i);
-      }
-      const std::optional<RevolutionFit> fit =
-          fit_axis_of_revolution(rows(few_points, near), rows(few_normals, near), {}, kNormalAngle);
-      if (!fit || fit->planar) continue;
-      proposals[k] = {fit->axis, seen(fit->axis)};
-    }
-  });
-  context.check();
-  std::ranges::stable_sort(proposals, std::greater<>(), &Proposal::count);
-  constexpr std::size_t kRefined = 5;
-  Proposal best;
-  for (std::size_t k = 0; k < std::min(kRefined, proposals.size()); ++k) {
-    if (proposals[k].count == 0) break;
-    Proposal current = proposals[k];
-    if (current.count > best.count) best = current;
-    for (int step = 0; step < 12; ++step) {
-      // At first a loose band, so that a tilted axis finds what it misses.
-      const double band = tolerance * std::max(1.0, 3.0 - 0.5 * step);
-      const Profile profile(few_points, few_normals, current.axis, band, few_spacing);
-      std::optional<Line> next = improved(profile, current.axis);
-      if (!next) break;
-      current = {*next, seen(*next)};
-      if (current.count > best.count) best = current;
-    }
-  }
+  const ScoredPoints few = some_of(points, normals, surface.spacing, random);
+  const ProposedAxis best = best_axis(proposed_axes(few, diagonal(points), tolerance, random, context), few, tolerance);
   if (best.count == 0) return result;
 
   const Profile profile(points, normals, best.axis, tolerance, surface.spacing);

@@ -172,45 +172,51 @@ bool seen_from(const Points& points, const std::vector<double>& spacings, const 
   return static_cast<double>(behind) < kMaxBehind * static_cast<double>(depths.size());
 }
 
-}  // namespace
-
-PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& context) {
+void check_points(const PointCloud& scan) {
   if (scan.points.rows() < kMinPoints) {
     throw InputError("", "",
                      "the scan has " + std::to_string(scan.points.rows()) + " points; symmetries are looked for from " +
                          std::to_string(kMinPoints) + " on");
   }
   if (!scan.points.allFinite()) throw InputError("", "points", "a coordinate is not finite");
-  const double size = diagonal(scan.points);
-  if (!(size > 0)) throw InputError("", "", "the scan has no extent");
-  PointSurface result;
-  const Vector3d centre = bounding_box_centre(scan.points);
-  result.input_of_normalised = {size, Matrix3d::Identity(), centre};
-  const Points all = (scan.points.rowwise() - centre.transpose()) / size;
-  const PointIndex all_index(all);
-  const std::vector<double> distances = neighbour_distances(all, all_index, 8, context);
-  const std::vector<char> outlier = find_outliers(distances);
-  context.check();
+  if (!(diagonal(scan.points) > 0)) throw InputError("", "", "the scan has no extent");
+}
 
-  double edge = std::max(median(distances), 1e-4);
-  std::vector<int> kept = thin(all, outlier, edge, result.kept_of_point);
-  while (static_cast<int>(kept.size()) > most) {
-    edge *= std::max(1.05, std::sqrt(static_cast<double>(kept.size()) / most));
-    kept = thin(all, outlier, edge, result.kept_of_point);
+struct ThinnedPoints {
+  std::vector<int> kept;
+  std::vector<int> kept_of_point;  // see PointSurface
+  double edge = 0;                 // of the voxels
+};
+
+// By voxels that grow until at most `most` points are kept.
+ThinnedPoints thin_to(int most, const Points& points, const std::vector<double>& distances) {
+  const std::vector<char> outlier = find_outliers(distances);
+  ThinnedPoints result;
+  result.edge = std::max(median(distances), 1e-4);
+  result.kept = thin(points, outlier, result.edge, result.kept_of_point);
+  while (static_cast<int>(result.kept.size()) > most) {
+    result.edge *= std::max(1.05, std::sqrt(static_cast<double>(result.kept.size()) / most));
+    result.kept = thin(points, outlier, result.edge, result.kept_of_point);
   }
-  const int count = static_cast<int>(kept.size());
-  if (count < kMinPoints) {
+  const std::size_t count = result.kept.size();
+  if (count < static_cast<std::size_t>(kMinPoints)) {
     throw InputError("", "",
                      "the scan has " + std::to_string(count) + " points at places of their own; symmetries " +
                          "are looked for from " + std::to_string(kMinPoints) + " on");
   }
-  const std::vector<FittedPlane> planes = fit_planes(all, kept, all_index, context);
+  return result;
+}
+
+// Points, their feet on the planes through their neighbours, normals (the scan's where it has them), and the noise.
+void set_points(const PointCloud& scan, const Points& all, const std::vector<int>& kept,
+                const std::vector<FittedPlane>& planes, PointSurface& result) {
+  const auto count = static_cast<Eigen::Index>(kept.size());
   std::vector<double> thicknesses;
   const bool known_normals = scan.normals.rows() == scan.points.rows();
   result.points.resize(count, 3);
   result.smooth.resize(count, 3);
   result.normals.resize(count, 3);
-  for (int i = 0; i < count; ++i) {
+  for (Eigen::Index i = 0; i < count; ++i) {
     const int number = kept[static_cast<std::size_t>(i)];
     const FittedPlane& plane = planes[static_cast<std::size_t>(i)];
     result.points.row(i) = all.row(number);
@@ -221,13 +227,29 @@ PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& 
     thicknesses.push_back(plane.deviations[0]);
   }
   result.noise = median(thicknesses);
+}
+
+}  // namespace
+
+PointSurface prepare_points(const PointCloud& scan, int most, const RunContext& context) {
+  check_points(scan);
+  PointSurface result;
+  const double size = diagonal(scan.points);
+  const Vector3d centre = bounding_box_centre(scan.points);
+  result.input_of_normalised = {size, Matrix3d::Identity(), centre};
+  const Points all = (scan.points.rowwise() - centre.transpose()) / size;
+  const PointIndex all_index(all);
+  ThinnedPoints thinned = thin_to(most, all, neighbour_distances(all, all_index, 8, context));
+  context.check();
+  set_points(scan, all, thinned.kept, fit_planes(all, thinned.kept, all_index, context), result);
+  result.kept_of_point = std::move(thinned.kept_of_point);
   const PointIndex index(result.points);
   // In a square grid the eight nearest are 1.2 steps away on average, among random points as dense nearly as far.
   constexpr double kMeanOfEight = 1.2;
   std::vector<double> spacings = neighbour_distances(result.points, index, 8, context);
   for (double& spacing : spacings) spacing /= kMeanOfEight;
   result.spacing = median(spacings);
-  result.clusters = find_clusters(result.points, index, 4 * std::max(result.spacing, edge));
+  result.clusters = find_clusters(result.points, index, 4 * std::max(result.spacing, thinned.edge));
   if (scan.viewpoints.rows() == 1) {
     result.viewpoint = inverse(result.input_of_normalised)(scan.viewpoints.row(0));
   } else if (scan.viewpoints.rows() == 0) {

@@ -152,6 +152,37 @@ std::string_view LineRegionSearch::reason_of(Question question) {
   return {};
 }
 
+// Whether the region's faces, whose area it sets, are worth a region.
+bool LineRegionSearch::measure(FoundRegion& region) const {
+  region.area = 0;
+  for (const int f : region.faces) region.area += surface_.prepared.areas[f];
+  return region.area >= options_.least_share * surface_.prepared.area;
+}
+
+SurfacePatch LineRegionSearch::patch_of(const FoundRegion& region, const RunContext& context) const {
+  return make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
+}
+
+// Verifies the region's group, and leaves out faces that it does not keep as long as that helps. What is against it;
+// empty when it is verified.
+std::string LineRegionSearch::verify_thinning(FoundRegion& region, SurfacePatch& patch,
+                                              const RunContext& context) const {
+  VerificationLimits limits;
+  // Ragged borders of what any rotation keeps: whoever looks from other places sees more of them.
+  if (region.placement.group.continuous()) limits.joint = kOfTurned;
+  for (int round = 0;; ++round) {
+    const Verification verification = verify_group(patch, region.placement, context);
+    std::string reason = objection(verification, limits);
+    if (reason.empty() || round == kRounds || verification.joint < kNearly) return reason;
+    std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context);
+    if (fewer == region.faces) return reason;
+    region.faces = std::move(fewer);
+    if (!measure(region)) return "too small once thinned out";
+    patch = patch_of(region, context);
+    region.placement = refine(patch, region.placement, context);
+  }
+}
+
 LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, const RunContext& context) const {
   const GroupPlacement& start = candidate.start;
   FoundRegion region{start, {}, 0, "turns or mirrors into itself"};
@@ -174,43 +205,25 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   const auto known_already = [&] { return judged(false, reason_of(*known)); };
   if (is_known(Question::kWhole)) return known_already();
   region.faces = grid_region(surface_, start, context);
-  const double least = options_.least_share * surface_.prepared.area;
-  const auto measure = [&] {
-    region.area = 0;
-    for (const int f : region.faces) region.area += surface_.prepared.areas[f];
-    return region.area >= least;
-  };
-  if (!measure()) return judged(false, "too small");
+  if (!measure(region)) return judged(false, "too small");
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
   if (mere_balls(region)) return judged(false, "little but balls that it fixes");
   if (is_known(Question::kNothingNew)) return known_already();
-  SurfacePatch patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
+  SurfacePatch patch = patch_of(region, context);
   if (hopeless(patch, start, context)) return judged(false, "not verified: a first look keeps too little");
   region.placement = refine(patch, start, context);
   if (is_known(Question::kNothingNew)) return known_already();
   std::vector<int> again = grid_region(surface_, region.placement, context);
   if (again != region.faces) {
     region.faces = std::move(again);
-    if (!measure()) return judged(false, "too small once refined");
-    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
+    if (!measure(region)) return judged(false, "too small once refined");
+    patch = patch_of(region, context);
     region.placement = refine(patch, region.placement, context);
   }
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
   if (is_known(Question::kNothingNew)) return known_already();
-  for (int round = 0;; ++round) {
-    const Verification verification = verify_group(patch, region.placement, context);
-    VerificationLimits limits;
-    // Ragged borders of what any rotation keeps: whoever looks from other places sees more of them.
-    if (start.group.continuous()) limits.joint = kOfTurned;
-    const std::string reason = objection(verification, limits);
-    if (reason.empty()) break;
-    if (round == kRounds || verification.joint < kNearly) return judged(false, reason);
-    std::vector<int> fewer = thinned_region(surface_, patch, verification, region.placement, context);
-    if (fewer == region.faces) return judged(false, reason);
-    region.faces = std::move(fewer);
-    if (!measure()) return judged(false, "too small once thinned out");
-    patch = make_patch(surface_.prepared, region.faces, kPatchSamples, surface_.tolerance, context, "line");
-    region.placement = refine(patch, region.placement, context);
+  if (const std::string reason = verify_thinning(region, patch, context); !reason.empty()) {
+    return judged(false, reason);
   }
   if (is_known(Question::kNothingNew)) return known_already();
   if (region.area < kNearlyWhole * surface_.prepared.area && fades(patch, region.placement, context)) {

@@ -85,6 +85,9 @@ class LineRegionSearch {
     Judgement judgement;
   };
   Judgement judge(const Candidate& candidate, const RunContext& context) const;
+  bool measure(FoundRegion& region) const;
+  SurfacePatch patch_of(const FoundRegion& region, const RunContext& context) const;
+  std::string verify_thinning(FoundRegion& region, SurfacePatch& patch, const RunContext& context) const;
   Explanation::Note note_of(const Candidate& candidate, const FoundRegion& region, bool kept,
                             std::string_view reason) const;
   void judge_all(const std::vector<Candidate>& candidates);

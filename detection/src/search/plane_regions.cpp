@@ -170,13 +170,12 @@ bool same_plane(const Line& a, const Line& b, double tolerance) {
          std::abs((a.point - b.point).dot(b.direction)) < kSamePlace * tolerance;
 }
 
-}  // namespace
-
-std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const std::vector<Line>& turning,
-                                         double least_share, const RunContext& context) {
+// Planes midway between pairs of samples that are mirror images, as far as they keep enough of the surface.
+std::vector<CandidateLine> voted_planes(const ScreenedSurface& surface, const Mirrored& mirrored,
+                                        const std::vector<Line>& turning, double least_share,
+                                        const RunContext& context) {
   const Eigen::Index count = surface.samples.points.rows();
   const Eigen::Index voters = std::min(kVoters, count);
-  const Mirrored mirrored(surface);
   std::vector<CandidateLine> found;
   for (Eigen::Index a = 0; a < voters; ++a) {
     context.check();
@@ -208,6 +207,12 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
       if (share >= least_share) found.push_back({plane, share * surface.prepared.area});
     }
   }
+  return found;
+}
+
+// Those of most weight, moved to where they keep most; by weight.
+std::vector<CandidateLine> climbed_planes(std::vector<CandidateLine> found, const ScreenedSurface& surface,
+                                          const Mirrored& mirrored) {
   std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
   if (found.size() > kMaxClimbed) found.resize(kMaxClimbed);
   for (CandidateLine& plane : found) {
@@ -215,6 +220,16 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
     plane.weight = mirrored.share(plane.line, kSecondLook, 0) * surface.prepared.area;
   }
   std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
+  return found;
+}
+
+}  // namespace
+
+std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const std::vector<Line>& turning,
+                                         double least_share, const RunContext& context) {
+  const Mirrored mirrored(surface);
+  const std::vector<CandidateLine> found =
+      climbed_planes(voted_planes(surface, mirrored, turning, least_share, context), surface, mirrored);
   std::vector<CandidateLine> distinct;
   const auto is_known = [&](const CandidateLine& plane) {
     return std::ranges::any_of(distinct, [&](const CandidateLine& other) {

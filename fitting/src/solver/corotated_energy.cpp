@@ -5,11 +5,25 @@
 
 namespace orbifit {
 
-CorotatedEnergy::CorotatedEnergy(const Points& samples, double radius, double stretch)
-    : corotation_(corotation(samples, 2 * radius)),
+namespace {
+
+Corotation moved_corotation(const Points& samples, double radius, const Points& moved) {
+  Corotation result = corotation(samples, 2 * radius);
+  if (moved.rows() == 0) return result;
+  result.rest += moved;
+  result.delta = result.laplacian * result.rest;
+  return result;
+}
+
+}  // namespace
+
+CorotatedEnergy::CorotatedEnergy(const Points& samples, double radius, double stretch, const Points& moved,
+                                 double anchor)
+    : corotation_(moved_corotation(samples, radius, moved)),
       sums_(corotation_),
       degree_(std::max(1.0, corotation_.laplacian.diagonal().mean())),
       stretch_(stretch / degree_),
+      anchor_(anchor),
       rotations_(static_cast<std::size_t>(samples.rows()), Eigen::Matrix3d::Identity()) {
   corotation_.laplacian /= degree_;
   corotation_.delta /= degree_;
@@ -18,7 +32,8 @@ CorotatedEnergy::CorotatedEnergy(const Points& samples, double radius, double st
 Eigen::SparseMatrix<double> CorotatedEnergy::matrix() const {
   const Eigen::SparseMatrix<double> bending = corotation_.laplacian.transpose() * corotation_.laplacian;
   const Eigen::SparseMatrix<double> stretching = corotation_.laplacian * (degree_ * stretch_);
-  return bending + stretching;
+  const Eigen::SparseMatrix<double> anchor(Eigen::VectorXd::Constant(samples(), anchor_).asDiagonal());
+  return bending + stretching + anchor;
 }
 
 Points CorotatedEnergy::pull() const {
@@ -38,7 +53,8 @@ double CorotatedEnergy::value(const Points& displacements) const {
     stretching += sums_.squared_residual(static_cast<int>(i), rotations, moved);
   }
   // Each edge was met from both of its ends.
-  return laplace_energy(corotation_, rotations_, displacements) + stretch_ * 0.5 * stretching;
+  return laplace_energy(corotation_, rotations_, displacements) + stretch_ * 0.5 * stretching +
+         anchor_ * displacements.squaredNorm();
 }
 
 double CorotatedEnergy::of_growth() const {

@@ -19,7 +19,10 @@ class CorotatedEnergy {
   using Rotations = std::vector<Eigen::Matrix3d>;
 
   /// \param samples #S by 3 \param radius r of the sampling: samples nearer than 2 r are neighbours
-  CorotatedEnergy(const Points& samples, double radius, double stretch);
+  /// \param moved  #S by 3, a displacement that costs nothing, u being counted from there; no rows: none
+  /// \param anchor  weight of |u|^2 of each sample
+  CorotatedEnergy(const Points& samples, double radius, double stretch, const Points& moved = Points(0, 3),
+                  double anchor = 0);
 
   Eigen::Index samples() const { return corotation_.rest.rows(); }
 
@@ -46,6 +49,7 @@ class CorotatedEnergy {
   NeighbourSums sums_;
   double degree_;
   double stretch_;
+  double anchor_;
   Rotations rotations_;
 };
 

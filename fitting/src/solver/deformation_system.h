@@ -65,13 +65,13 @@ class DeformationSystem {
   virtual double contact_energy(const Eigen::VectorXd&) const { return 0; }
 
   /// CorotatedEnergy::value() of the deformation q.
-  double regularity(const Eigen::VectorXd& q) const { return energy_.value(samples_at(q)); }
+  double regularity(const Eigen::VectorXd& q) const { return energy_.value(from_reference(q)); }
 
   /// What a growth of the template costs: as much as if it were stretched so. \param grown  its logarithm
   double growth_cost(double grown) const { return energy_.of_growth() * grown * grown; }
 
   /// Turns the Laplace coordinates to the deformation q.
-  void rotate(const Eigen::VectorXd& q) { energy_.rotate(samples_at(q)); }
+  void rotate(const Eigen::VectorXd& q) { energy_.rotate(from_reference(q)); }
 
   using Rotations = CorotatedEnergy::Rotations;
   const Rotations& rotations() const { return energy_.rotations(); }
@@ -81,9 +81,17 @@ class DeformationSystem {
   Eigen::Index samples() const { return energy_.samples(); }
 
  protected:
-  explicit DeformationSystem(CorotatedEnergy energy) : energy_(std::move(energy)) {}
+  /// \param reference  displacement of the samples from which the energy counts, #S by 3; no rows: none
+  explicit DeformationSystem(CorotatedEnergy energy, Points reference = Points(0, 3))
+      : energy_(std::move(energy)), reference_(std::move(reference)) {}
 
   CorotatedEnergy energy_;
+  Points reference_;
+
+ private:
+  Points from_reference(const Eigen::VectorXd& q) const {
+    return reference_.rows() == 0 ? samples_at(q) : Points(samples_at(q) - reference_);
+  }
 };
 
 /// Of the squared rigid part of the samples' displacements, relative to one sample's share of the data: see

@@ -20,6 +20,7 @@ namespace {
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
+constexpr double kAnchor = 0.1;     // of a sample to the reference: over a few radii from what is seen it stays there
 constexpr double kMaxGrowth = 1.1;  // in one iteration
 
 Sparse diagonal_matrix(const VectorXd& entries) {
@@ -28,8 +29,11 @@ Sparse diagonal_matrix(const VectorXd& entries) {
 
 }  // namespace
 
-FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts)
-    : DeformationSystem(CorotatedEnergy(subspace->sampling.points, subspace->sampling.radius, stretch)),
+FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts,
+                     Points reference)
+    : DeformationSystem(CorotatedEnergy(subspace->sampling.points, subspace->sampling.radius, stretch, reference,
+                                        reference.rows() > 0 ? kAnchor : 0),
+                        reference),
       subspace_(subspace),
       rows_(subspace, subspace->basis),
       mesh_(mesh),
@@ -74,7 +78,9 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   normal.matrix.conservativeResize(all, all);
   normal.matrix += diagonal_matrix(diagonal);
   add_data(rows_, mesh_, step_, pairs, share, scan_points, pulls, context, normal);
-  normal.side.head(dof) += hold.stiffness * (subspace_->basis.columns.transpose() * stacked(energy_.pull()));
+  Points pull = energy_.pull();
+  if (reference_.rows() > 0) pull += energy_.matrix() * reference_;
+  normal.side.head(dof) += hold.stiffness * (subspace_->basis.columns.transpose() * stacked(pull));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
   VectorXd contact_pull = VectorXd::Zero(dof);
   contacts_.add_pull([&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; }, contact_pull);

@@ -23,7 +23,10 @@ class FitSystem final : public DeformationSystem {
  public:
   /// References are kept. One system may serve one fit after another: what it knows of vertices stays.
   /// \param contacts  to be kept, each with the weight of kContactWeight samples
-  FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {});
+  /// \param reference  displacement of the samples, #S by 3, that costs nothing and from which the energy counts, held
+  ///   there where nothing else says where samples go; no rows: the rest shape's, which nothing but its shape holds
+  FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {},
+            Points reference = Points(0, 3));
 
   Solution solve(const std::vector<Correspondence>& pairs, double share, const Points& scan_points,
                  const std::vector<Pull>& pulls, const Hold& hold, const RunContext& context) override;

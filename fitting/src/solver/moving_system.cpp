@@ -26,6 +26,20 @@ constexpr double kHoldTurns = 1e-4;  // of a turn, relative to moving the sample
 constexpr double kConflict = 1e-9;   // of the diagonal
 constexpr Index kEntries = 9;        // of a turn
 
+// Adds to the lower half the rows from `first` on: what couples them with the columns before, and with themselves.
+void add_lower_rows(Index first, const MatrixXd& before, const MatrixXd& own, Eigen::SparseMatrix<double>& lower) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index i = 0; i < own.rows(); ++i) {
+    for (Index j = 0; j < before.cols(); ++j) {
+      if (before(i, j) != 0) entries.emplace_back(first + i, j, before(i, j));
+    }
+    for (Index j = 0; j <= i; ++j) entries.emplace_back(first + i, first + j, own(i, j));
+  }
+  Eigen::SparseMatrix<double> rows(lower.rows(), lower.cols());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  lower += rows;
+}
+
 LiftWeights rows_of(const LiftWeights& weights, const std::vector<int>& rows) {
   LiftWeights result(static_cast<Index>(rows.size()), weights.cols());
   Eigen::VectorXi sizes(result.rows());
@@ -125,94 +139,124 @@ double MovingSystem::contact_energy(const VectorXd& q) const {
   return (contacts.rows * state.q - contacts.right).squaredNorm();
 }
 
+MovingSystem::Linearised MovingSystem::linearised(const VectorXd& q, const RunContext& context) const {
+  Linearised at;
+  at.now = state_of(q);
+  at.turns = turns_of(q);
+  at.moved = sample_displacements(subspace_, at.now);
+  at.deformed.vertices = mesh_.vertices + vertex_displacements(subspace_, at.now, context);
+  at.deformed.faces = mesh_.faces;
+  at.turn_columns =
+      regions_.columns(at.turns, subspace_->sampling.points + at.moved, region_centres(subspace_, at.now));
+  return at;
+}
+
+VertexRows MovingSystem::rows_at(const Linearised& at, const std::vector<int>& touched,
+                                 const RunContext& context) const {
+  const Points samples = subspace_->sampling.points + at.moved;
+  const LiftWeights spread = rows_of(spread_, touched);
+  const Points missing = at.deformed.vertices(touched, Eigen::all) - Points(spread * samples);
+  const MatrixXd turning = applied(spread, at.turn_columns) + regions_.arms(at.turns, spread, missing);
+  VertexRows rows(subspace_, *at.now.basis);
+  rows.prepare(touched, context);
+  const int dof = subspace_.degrees_of_freedom();
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    rows.extend(touched[i], dof, turning.middleRows<3>(3 * static_cast<Index>(i)));
+  }
+  return rows;
+}
+
+void MovingSystem::add_regularity(const Linearised& at, double stiffness, NormalEquations& normal) const {
+  const Index dof = subspace_.degrees_of_freedom();
+  const Index ways = regions_.freedom();
+  const Eigen::SparseMatrix<double>& columns = at.now.basis->columns;
+  const VectorXd pull = stiffness * stacked(energy_.pull() - Points(stiffness_ * at.moved));
+  const MatrixXd bent = stiffness * applied(LiftWeights(stiffness_), at.turn_columns);
+  Eigen::SparseMatrix<double> own = stiffness * restricted(columns, stiffness_);
+  own.conservativeResize(normal.side.size(), normal.side.size());
+  normal.matrix += Eigen::SparseMatrix<double>(own.triangularView<Eigen::Lower>());
+  add_lower_rows(dof, bent.transpose() * columns, at.turn_columns.transpose() * bent, normal.matrix);
+  normal.side.head(dof) += columns.transpose() * pull;
+  normal.side.segment(dof, ways) += at.turn_columns.transpose() * pull;
+}
+
+void MovingSystem::add_contacts(const Linearised& at, NormalEquations& normal) const {
+  if (contacts_.empty()) return;
+  const Index dof = subspace_.degrees_of_freedom();
+  const Index all = normal.side.size();
+  const SmallTurns small{regions_, at.turns, at.turn_columns};
+  const ContactRows contacts = contact_rows_at(contacts_, kContactWeight, subspace_, at.now,
+                                               at.deformed.vertices - mesh_.vertices, rotations(), &small);
+  const VectorXd off = contacts.right - contacts.rows.leftCols(dof) * at.now.q;
+  Eigen::SparseMatrix<double> rows = contacts.rows.sparseView();
+  normal.side.head(rows.cols()) += rows.transpose() * off;
+  rows.conservativeResize(rows.rows(), all);
+  normal.matrix += Eigen::SparseMatrix<double>((rows.transpose() * rows).triangularView<Eigen::Lower>());
+}
+
+// What holds coordinates that move nothing, turns and the pose.
+void MovingSystem::add_holds(const Linearised& at, double damping, NormalEquations& normal) const {
+  const Index dof = subspace_.degrees_of_freedom();
+  const auto all_samples = static_cast<double>(samples());
+  const double still = kHoldStill * all_samples;
+  VectorXd diagonal(normal.side.size());
+  diagonal << VectorXd::Constant(dof, still + damping),
+      (kHoldTurns + damping) * at.turn_columns.colwise().squaredNorm().transpose(),
+      VectorXd::Constant(step_.unknowns(), kHoldPose * all_samples + damping);
+  normal.matrix += Eigen::SparseMatrix<double>(diagonal.asDiagonal());
+  normal.side.head(dof) -= still * at.now.q;
+}
+
 MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pairs, double share,
                                            const Points& scan_points, const std::vector<Pull>& pulls, const Hold& hold,
                                            const RunContext& context) {
   const Index dof = subspace_.degrees_of_freedom();
   const Index ways = regions_.freedom();
-  const auto all_samples = static_cast<double>(samples());
-  const SubspaceState now = state_of(hold.around);
-  const ConjugatedRegions::Turns turns = turns_of(hold.around);
-  const Points moved = sample_displacements(subspace_, now);
-  const Points& rest = subspace_->sampling.points;
-  Mesh deformed;
-  deformed.vertices = mesh_.vertices + vertex_displacements(subspace_, now, context);
-  deformed.faces = mesh_.faces;
-
-  // How the samples move by increments of the coordinates, and by small turns.
-  const Eigen::SparseMatrix<double>& columns = now.basis->columns;
-  const MatrixXd turn_columns = regions_.columns(turns, rest + moved, region_centres(subspace_, now));
-  const std::vector<int> touched = touched_vertices(mesh_, pairs, pulls);
-  const LiftWeights spread = rows_of(spread_, touched);
-  const Points missing = deformed.vertices(touched, Eigen::all) - Points(spread * (rest + moved));
-  const MatrixXd turning = applied(spread, turn_columns) + regions_.arms(turns, spread, missing);
-  VertexRows rows(subspace_, *now.basis);
-  rows.prepare(touched, context);
-  for (std::size_t i = 0; i < touched.size(); ++i) {
-    rows.extend(touched[i], static_cast<int>(dof), turning.middleRows<3>(3 * static_cast<Index>(i)));
-  }
-
+  const Linearised at = linearised(hold.around, context);
+  const VertexRows rows = rows_at(at, touched_vertices(mesh_, pairs, pulls), context);
   step_.others = hold.other_scans;
   const Index all = dof + ways + step_.unknowns();
-  NormalEquations data{Eigen::SparseMatrix<double>(all, all), VectorXd::Zero(all)};
-  add_data(rows, deformed, step_, pairs, share, scan_points, pulls, context, data);
-  struct {
-    MatrixXd matrix;
-    VectorXd side;
-  } normal{MatrixXd(data.matrix), data.side};
-  const Points pull = energy_.pull() - Points(stiffness_ * moved);
-  const MatrixXd bent = hold.stiffness * applied(LiftWeights(stiffness_), turn_columns);
-  normal.matrix.topLeftCorner(dof, dof) += hold.stiffness * restricted(columns, stiffness_);
-  normal.matrix.block(dof, 0, ways, dof) += bent.transpose() * columns;
-  normal.matrix.block(dof, dof, ways, ways) += turn_columns.transpose() * bent;
-  normal.side.head(dof) += hold.stiffness * (columns.transpose() * stacked(pull));
-  normal.side.segment(dof, ways) += hold.stiffness * (turn_columns.transpose() * stacked(pull));
-  if (!contacts_.empty()) {
-    const SmallTurns small{regions_, turns, turn_columns};
-    const ContactRows contacts = contact_rows_at(contacts_, kContactWeight, subspace_, now,
-                                                 deformed.vertices - mesh_.vertices, rotations(), &small);
-    const VectorXd off = contacts.right - contacts.rows.leftCols(dof) * now.q;
-    normal.matrix.topLeftCorner(dof + ways, dof + ways) += contacts.rows.transpose() * contacts.rows;
-    normal.side.head(dof + ways) += contacts.rows.transpose() * off;
-  }
-  MatrixXd rigid(dof + ways, rigid_.cols());
-  rigid << columns.transpose() * rigid_, turn_columns.transpose() * rigid_;
-  const double still = kHoldStill * all_samples;
-  normal.matrix.topLeftCorner(dof + ways, dof + ways) += kPreferPose * rigid * rigid.transpose();
-  normal.side.head(dof + ways) -= kPreferPose * rigid * (rigid_.transpose() * stacked(moved));
-  normal.matrix.diagonal().head(dof).array() += still + hold.damping;
-  normal.side.head(dof) -= still * now.q;
-  normal.matrix.diagonal().segment(dof, ways) +=
-      (kHoldTurns + hold.damping) * turn_columns.colwise().squaredNorm().transpose();
-  normal.matrix.diagonal().tail(step_.unknowns()).array() += kHoldPose * all_samples + hold.damping;
+  NormalEquations normal{Eigen::SparseMatrix<double>(all, all), VectorXd::Zero(all)};
+  add_regularity(at, hold.stiffness, normal);
+  add_contacts(at, normal);
+  add_holds(at, hold.damping, normal);
+  add_data(rows, at.deformed, step_, pairs, share, scan_points, pulls, context, normal);
+  // Prefers the pose to a deformation that does the same.
+  MatrixXd rigid = MatrixXd::Zero(all, rigid_.cols());
+  rigid.topRows(dof) = std::sqrt(kPreferPose) * (at.now.basis->columns.transpose() * rigid_);
+  rigid.middleRows(dof, ways) = std::sqrt(kPreferPose) * (at.turn_columns.transpose() * rigid_);
+  normal.side -= std::sqrt(kPreferPose) * rigid * (rigid_.transpose() * stacked(at.moved));
 
-  matrix_ = std::move(normal.matrix);
-  factor_.compute(matrix_);
-  const VectorXd solved = factor_.solve(normal.side);
-  if (factor_.info() != Eigen::Success || !solved.allFinite()) {
+  VectorXd solved;
+  if (solver_.compute(normal.matrix, rigid)) solved = solver_.solve(normal.side);
+  if (solved.size() == 0 || !solved.allFinite()) {
     throw NoResultError("the fit's linear system has no finite solution");
   }
-  VectorXd change = solved.head(dof + ways);
+  return {moved_by(solved.head(dof + ways), at, hold.around), step_.motion(solved.tail<6>()),
+          step_.other_motions(solved.tail(step_.unknowns()))};
+}
+
+VectorXd MovingSystem::moved_by(VectorXd change, const Linearised& at, const VectorXd& around) const {
+  const Index dof = subspace_.degrees_of_freedom();
+  const Index ways = regions_.freedom();
   VectorXd angles = change.tail(ways);
   const double largest = ways > 0 ? angles.cwiseAbs().maxCoeff() : 0;
   if (largest > kMaxTurn) angles *= kMaxTurn / largest;
   change.tail(ways) = angles;
-  const VectorXd there = stacked(moved) + columns * change.head(dof) + turn_columns * change.tail(ways);
-  Solution solution;
-  solution.q = turned(hold.around, angles, Eigen::Map<const Points>(there.data(), samples(), 3));
-  if (solution.q.size() == 0) {  // the groups stay as they stand
-    solution.q = hold.around;
-    solution.q.head(dof) += change.head(dof);
+  const VectorXd there =
+      stacked(at.moved) + at.now.basis->columns * change.head(dof) + at.turn_columns * change.tail(ways);
+  VectorXd result = turned(around, angles, Eigen::Map<const Points>(there.data(), samples(), 3));
+  if (result.size() == 0) {  // the groups stay as they stand
+    result = around;
+    result.head(dof) += change.head(dof);
   }
-  solution.scan_step = step_.motion(solved.tail<6>());
-  solution.other_steps = step_.other_motions(solved.tail(step_.unknowns()));
-  return solution;
+  return result;
 }
 
 double MovingSystem::condition() const {
   return condition_estimate(
-      matrix_.cols(), [&](const VectorXd& x) -> VectorXd { return matrix_.selfadjointView<Eigen::Lower>() * x; },
-      [&](const VectorXd& b) -> VectorXd { return factor_.solve(b); });
+      solver_.size(), [&](const VectorXd& x) { return solver_.multiply(x); },
+      [&](const VectorXd& b) { return solver_.solve(b); });
 }
 
 }  // namespace orbifit

@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "basis/conjugated_regions.h"
@@ -12,6 +11,8 @@
 #include "deformation/contact_energy.h"
 #include "solver/data_normal.h"
 #include "solver/deformation_system.h"
+#include "solver/normal_solver.h"
+#include "solver/vertex_rows.h"
 
 namespace orbifit {
 
@@ -50,6 +51,22 @@ class MovingSystem final : public DeformationSystem {
   // groups turned so no longer agree.
   Eigen::VectorXd turned(const Eigen::VectorXd& q, const Eigen::VectorXd& angles, const Points& displacements) const;
 
+  // Where the fit is, and how the samples start to move from there as the groups turn.
+  struct Linearised {
+    SubspaceState now;
+    ConjugatedRegions::Turns turns;
+    Points moved;  // displacements of the samples
+    Mesh deformed;
+    Eigen::MatrixXd turn_columns;  // 3#S by the ways in which groups may turn
+  };
+  Linearised linearised(const Eigen::VectorXd& q, const RunContext& context) const;
+  VertexRows rows_at(const Linearised& at, const std::vector<int>& touched, const RunContext& context) const;
+  void add_regularity(const Linearised& at, double stiffness, NormalEquations& normal) const;
+  void add_contacts(const Linearised& at, NormalEquations& normal) const;
+  void add_holds(const Linearised& at, double damping, NormalEquations& normal) const;
+  // By increments of the coordinates and angles, of which no more than are small are made.
+  Eigen::VectorXd moved_by(Eigen::VectorXd change, const Linearised& at, const Eigen::VectorXd& around) const;
+
   const Subspace& subspace_;
   const Mesh& mesh_;
   std::vector<Contact> contacts_;
@@ -63,8 +80,7 @@ class MovingSystem final : public DeformationSystem {
     std::shared_ptr<const ConjugatedBasis> basis;
   };
   mutable std::vector<KnownBasis> known_;  // of those that were asked for last, the last one last
-  Eigen::MatrixXd matrix_;                 // of the last system, lower half
-  Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor_;
+  NormalSolver solver_;                    // of the last system
 };
 
 }  // namespace orbifit

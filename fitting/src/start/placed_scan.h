@@ -27,6 +27,7 @@ struct PlacedScan {
   std::vector<Motion> others = {};
   std::vector<char> other_used = {};  ///< of the others: the template was found in it
   std::vector<int> view_of = {};
+  std::vector<char> held_out = {};  ///< of each point: not fitted to, but kept to judge the fit by; empty: none
 };
 
 /// The start's scan with the points of the other scans moved. \param moves  one for each of PlacedScan::others, or none

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 
 #include "orbifit/model/errors.h"
 
@@ -15,11 +15,13 @@
 #include "deformation/handle_rows.h"
 #include "deformation/moving_solve.h"
 #include "deformation/quotient.h"
-#include "kernels/kernels.h"
+#include "deformation/symmetric_factor.h"
 
 namespace orbifit {
 
 namespace {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
 
 // Keeps what neither Laplacian nor handles hold where it is: relative to the mean of the diagonal without the contacts.
 constexpr double kHold = 1e-12;
@@ -32,6 +34,10 @@ double contact_weight(const Corotation& corotation) {
   return kContactWeight * corotation.laplacian.squaredNorm() / static_cast<double>(corotation.laplacian.cols());
 }
 
+SparseMatrix lower(const SparseMatrix& symmetric) {
+  return symmetric.triangularView<Eigen::Lower>();
+}
+
 }  // namespace
 
 struct Deformer::Implementation {
@@ -40,11 +46,11 @@ struct Deformer::Implementation {
   Corotation corotation;
   Quotient quotient;
   ContactEnergy contacts;
-  Eigen::MatrixXd stiffness;  // U^T L^T L U, and the contacts'
-  double of_contacts = 0;     // mean of the diagonal that is the contacts'
+  SparseMatrix stiffness;  // lower half of U^T L^T L U, and the contacts'
+  double of_contacts = 0;  // mean of the diagonal that is the contacts'
   HandleRows handles;
   double alpha = 0;
-  Eigen::MatrixXd factor;  // lower
+  SymmetricFactor factor;
   std::optional<MovingSolve> moving;
   RunContext context;
 
@@ -54,17 +60,20 @@ struct Deformer::Implementation {
         mesh(the_mesh),
         corotation(deformation_energy(subspace, mesh, options.laplacian, the_context)),
         quotient(subspace, corotation),
-        stiffness(quotient.stiffness()),
+        stiffness(lower(quotient.stiffness())),
         context(the_context) {
     const double weight = contact_weight(corotation);
     std::vector<Contact> found;
     // Fixed groups lock parts in place: what touches them could not follow a handle.
     if (options.contacts && subspace->mode != GroupMode::fixed) found = find_contacts(subspace, mesh, {}, context);
-    if (subspace->mode == GroupMode::moving) moving.emplace(subspace, corotation, found, weight, context);
+    if (subspace->mode == GroupMode::moving && subspace->regions->places() > 0) {
+      moving.emplace(subspace, corotation, found, weight, context);
+    }
     contacts = ContactEnergy(std::move(found), subspace, weight);
-    if (stiffness.size() > 0) of_contacts = -stiffness.diagonal().mean();
-    if (!contacts.contacts().empty()) stiffness += contacts.gram();
-    if (stiffness.size() > 0) of_contacts += stiffness.diagonal().mean();
+    if (contacts.contacts().empty()) return;
+    const SparseMatrix joined = lower(contacts.gram());
+    if (joined.size() > 0) of_contacts = joined.diagonal().mean();
+    stiffness += joined;
   }
 
   Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const;
@@ -85,20 +94,19 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   Implementation& own = *implementation_;
   own.handles = HandleRows(handles, own.subspace, own.mesh);
   own.alpha = alpha;
-  // Equation (4), left.
-  Eigen::MatrixXd system = own.stiffness;
-  own.handles.add_gram(own.alpha, system);
-  const double pulled = system.trace() - own.stiffness.trace();
-  const double energy = own.stiffness.trace() - own.of_contacts * static_cast<double>(system.rows());
-  if (const double most = kMaxHandleWeight * energy; pulled > most && most > 0) {
-    own.alpha *= most / pulled;
-    system = own.stiffness;
-    own.handles.add_gram(own.alpha, system);
+  const Eigen::Index freedom = own.stiffness.rows();
+  const SparseMatrix pulled = own.handles.gram(freedom);
+  const double energy = own.stiffness.diagonal().sum() - own.of_contacts * static_cast<double>(freedom);
+  if (const double most = kMaxHandleWeight * energy; most > 0) {
+    own.alpha = std::min(own.alpha, most / pulled.diagonal().sum());
   }
-  if (system.size() > 0) system.diagonal().array() += kHold * (system.diagonal().mean() - own.of_contacts);
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorisation(system);
-  if (factorisation.info() != Eigen::Success) throw NoResultError("the handles' system could not be factorised");
-  own.factor = std::move(system);
+  // Equation (4), left.
+  SparseMatrix system = own.stiffness + own.alpha * pulled;
+  if (freedom > 0) {
+    const double hold = kHold * (system.diagonal().mean() - own.of_contacts);
+    system += SparseMatrix(Eigen::VectorXd::Constant(freedom, hold).asDiagonal());
+  }
+  if (!own.factor.factorise(system)) throw NoResultError("the handles' system could not be factorised");
 }
 
 Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const {
@@ -132,7 +140,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
     quotient.pull(rotations, side);
     side += handle_pull;
     contacts.add_pull(turned, side);
-    kernels().cholesky_solve(factor.data(), freedom, side.data());
+    factor.solve(side);
     previous.swap(q);
     q.swap(side);
     if (iteration + 1 < iterations) quotient.rotate(q, rotations);

@@ -62,17 +62,23 @@ HandleRows::HandleRows(const std::vector<Handle>& handles, const Subspace& subsp
   rest_ = mesh.vertices(vertices_, Eigen::all);
 }
 
-void HandleRows::add_gram(double alpha, Eigen::MatrixXd& system) const {
+Eigen::SparseMatrix<double> HandleRows::gram(Eigen::Index freedom) const {
+  std::vector<Eigen::Triplet<double>> entries;
   for (const Part& part : parts_) {
     const auto size = static_cast<Eigen::Index>(part.columns.size());
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.rows.transpose(), alpha * part.weight);
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(part.rows.transpose(), part.weight);
     for (Eigen::Index j = 0; j < size; ++j) {
       for (Eigen::Index i = j; i < size; ++i) {
-        system(part.columns[static_cast<std::size_t>(i)], part.columns[static_cast<std::size_t>(j)]) += gram(i, j);
+        if (gram(i, j) == 0) continue;  // x, y and z do not mix everywhere
+        entries.emplace_back(part.columns[static_cast<std::size_t>(i)], part.columns[static_cast<std::size_t>(j)],
+                             gram(i, j));
       }
     }
   }
+  Eigen::SparseMatrix<double> result(freedom, freedom);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
 }
 
 Eigen::VectorXd HandleRows::targets(const std::vector<Motion>& motions) const {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
@@ -19,8 +20,8 @@ class HandleRows {
 
   std::size_t handles() const { return parts_.size(); }
 
-  /// Adds alpha A^T W A to the lower triangle.
-  void add_gram(double alpha, Eigen::MatrixXd& system) const;
+  /// The lower half of A^T W A.
+  Eigen::SparseMatrix<double> gram(Eigen::Index freedom) const;
 
   /// The displacements that the motions ask for, stacked as the rows are.
   Eigen::VectorXd targets(const std::vector<Motion>& motions) const;

@@ -25,15 +25,47 @@ constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of
 constexpr double kMaxTurn = 0.35;           // radians in one iteration
 constexpr double kConflict = 1e-12;         // of the diagonal
 
+using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// A (x) I_3.
+SparseRows thrice(const SparseRows& scalar) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(3 * static_cast<std::size_t>(scalar.nonZeros()));
+  for (Eigen::Index row = 0; row < scalar.rows(); ++row) {
+    for (SparseRows::InnerIterator entry(scalar, row); entry; ++entry) {
+      for (Eigen::Index c = 0; c < 3; ++c) entries.emplace_back(3 * row + c, 3 * entry.col() + c, entry.value());
+    }
+  }
+  SparseRows result(3 * scalar.rows(), 3 * scalar.cols());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+// Adds the lower half of rows^T rows. A row touches few coordinates: those of the samples near its own.
+void add_lower_gram(const SparseRows& rows, Eigen::Ref<MatrixXd> gram) {
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    for (SparseRows::InnerIterator a(rows, row); a; ++a) {
+      for (SparseRows::InnerIterator b = a; b; ++b) gram(b.col(), a.col()) += a.value() * b.value();
+    }
+  }
+}
+
+// How displacements start to change as the groups turn: of the samples, of the Laplace coordinates asked for, and of
+// the handles' points about the samples that they follow.
+struct Turning {
+  MatrixXd samples, along, arms;
+};
+
 // The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset.
 class SampleEnergy {
  public:
   SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights,
                double alpha)
-      : laplacian_(corotation.laplacian), points_(points) {
-    weights_.resize(3 * points.rows());
+      : laplacian_(thrice(corotation.laplacian)), points_(thrice(points)) {
+    weights_.resize(points_.rows());
     for (Eigen::Index i = 0; i < weights_.size(); ++i)
       weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
+    points_ = weights_.asDiagonal() * points_;
   }
 
   struct Solution {
@@ -41,29 +73,27 @@ class SampleEnergy {
     double energy = 0;
   };
 
-  // The last columns are turns; `turned` says how each turns the Laplace coordinates asked for.
-  // `arms` how it turns the points about the samples that they follow.
-  Solution solve(const MatrixXd& columns, const MatrixXd& turned, const MatrixXd& arms, const VectorXd& offset,
-                 const VectorXd& laplace, const VectorXd& targets, const ContactRows& contacts) const {
-    const Eigen::Index turns = turned.cols();
-    MatrixXd rows(3 * (laplacian_.rows() + points_.rows()) + contacts.rows.rows(), columns.cols());
-    VectorXd right(rows.rows());
-    rows.topRows(3 * laplacian_.rows()) = applied(laplacian_, columns);
-    rows.topRightCorner(3 * laplacian_.rows(), turns) -= turned;
-    MatrixXd points = applied(points_, columns);
-    points.rightCols(turns) += arms;
-    rows.middleRows(3 * laplacian_.rows(), weights_.size()) = weights_.asDiagonal() * points;
-    if (contacts.rows.rows() > 0) rows.bottomRows(contacts.rows.rows()) = contacts.rows;
-    right.head(3 * laplacian_.rows()) = laplace - applied(laplacian_, offset);
-    right.segment(3 * laplacian_.rows(), weights_.size()) =
-        weights_.cwiseProduct(targets - VectorXd(applied(points_, offset)));
-    right.tail(contacts.right.size()) = contacts.right;
-    MatrixXd normal = MatrixXd::Zero(columns.cols(), columns.cols());
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-    const Eigen::Index rest = columns.cols() - turns;
-    // However firm contacts are, what holds the unknowns is measured by the rest.
-    VectorXd own = normal.diagonal();
-    if (contacts.rows.rows() > 0) own -= contacts.rows.colwise().squaredNorm().transpose();
+  // The last unknowns are turns.
+  Solution solve(const SparseRows& columns, const Turning& turning, const VectorXd& offset, const VectorXd& laplace,
+                 const VectorXd& targets, const ContactRows& contacts) const {
+    const Eigen::Index rest = columns.cols();
+    const Eigen::Index turns = turning.samples.cols();
+    const Part parts[] = {
+        {laplacian_ * columns, laplacian_ * turning.samples - turning.along, laplace - laplacian_ * offset},
+        {points_ * columns, points_ * turning.samples + weights_.asDiagonal() * turning.arms,
+         weights_.cwiseProduct(targets) - points_ * offset},
+        {contacts.rows.leftCols(rest).sparseView(), contacts.rows.rightCols(turns), contacts.right}};
+    MatrixXd normal = MatrixXd::Zero(rest + turns, rest + turns);
+    VectorXd side = VectorXd::Zero(rest + turns);
+    VectorXd own;  // however firm contacts are, what holds the unknowns is measured by the rest
+    for (const Part& part : parts) {
+      if (&part == &parts[2]) own = normal.diagonal();
+      add_lower_gram(part.rows, normal.topLeftCorner(rest, rest));
+      normal.bottomLeftCorner(turns, rest) += part.turns.transpose() * part.rows;
+      normal.bottomRightCorner(turns, turns) += part.turns.transpose() * part.turns;
+      side.head(rest) += part.rows.transpose() * part.right;
+      side.tail(turns) += part.turns.transpose() * part.right;
+    }
     if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * own.head(rest).mean();
     if (turns > 0) {
       const double largest = own.tail(turns).maxCoeff();
@@ -71,15 +101,23 @@ class SampleEnergy {
     }
     const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
     Solution solution;
-    solution.z = factor.solve(rows.transpose() * right);
+    solution.z = factor.solve(side);
     if (!solution.z.allFinite()) throw NoResultError("the handles' system could not be factorised");
-    solution.energy = (rows * solution.z - right).squaredNorm();
+    for (const Part& part : parts) {
+      solution.energy +=
+          (part.rows * solution.z.head(rest) + part.turns * solution.z.tail(turns) - part.right).squaredNorm();
+    }
     return solution;
   }
 
  private:
-  Eigen::SparseMatrix<double, Eigen::RowMajor> laplacian_;
-  LiftWeights points_;
+  struct Part {
+    SparseRows rows;
+    MatrixXd turns;
+    VectorXd right;
+  };
+
+  SparseRows laplacian_, points_;  // by coordinates, the points weighted
   VectorXd weights_;
 };
 
@@ -146,16 +184,18 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
     }
   }
   const auto contact_rows = [&](const SmallTurns* small) {
-    if (contacts_.empty()) return ContactRows{};
+    if (contacts_.empty()) {
+      return ContactRows{MatrixXd(0, state.q.size() + (small != nullptr ? small->columns.cols() : 0)), VectorXd(0)};
+    }
     return contact_rows_at(contacts_, contact_weight_, subspace_, state, vertex_displacements(subspace_, state), local,
                            small);
   };
+  const Turning still{MatrixXd(3 * rest.rows(), 0), MatrixXd(3 * rest.rows(), 0), MatrixXd(targets.size(), 0)};
   // The best coordinates for groups that stand as they do, and the local rotations to them.
   const auto follow = [&](const Points& before, const VectorXd& wanted, const Points& turned_delta) {
     context.check();
-    const auto solution =
-        energy.solve(MatrixXd(state.basis->columns), MatrixXd(3 * rest.rows(), 0), MatrixXd(wanted.size(), 0),
-                     state.basis->offset, stacked(turned_delta - corotation_.delta), wanted, contact_rows(nullptr));
+    const auto solution = energy.solve(state.basis->columns, still, state.basis->offset,
+                                       stacked(turned_delta - corotation_.delta), wanted, contact_rows(nullptr));
     state.q = solution.z;
     result.energy = solution.energy;
     const Points after = sample_displacements(subspace_, state);
@@ -172,16 +212,13 @@ Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const st
     Points turned_delta = turned_coordinates(local);
     if (regions_.freedom() > 0) {
       const MatrixXd turning = regions_.columns(turns, rest + before, region_centres(subspace_, state));
-      MatrixXd columns(3 * rest.rows(), state.q.size() + turning.cols());
-      columns << MatrixXd(state.basis->columns), turning;
       // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
-      const MatrixXd along = regions_.columns(turns, turned_delta, Points::Zero(subspace_->regions->count(), 3));
+      const Turning all{turning, regions_.columns(turns, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
+                        regions_.arms(turns, spread, handles.rest() - spread * rest)};
       const VectorXd laplace = stacked(turned_delta - corotation_.delta);
       const SmallTurns small{regions_, turns, turning};
-      const VectorXd both = energy
-                                .solve(columns, along, regions_.arms(turns, spread, handles.rest() - spread * rest),
-                                       state.basis->offset, laplace, wanted, contact_rows(&small))
-                                .z;
+      const VectorXd both =
+          energy.solve(state.basis->columns, all, state.basis->offset, laplace, wanted, contact_rows(&small)).z;
       VectorXd angles = both.tail(turning.cols());
       const double largest = angles.cwiseAbs().maxCoeff();
       context.check();

@@ -224,20 +224,21 @@ void Quotient::add_columns(const Subspace& subspace, const Corotation& corotatio
   }
 }
 
-Eigen::MatrixXd Quotient::stiffness() const {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(freedom_, 3 * classes());
+Eigen::SparseMatrix<double> Quotient::stiffness() const {
+  std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t k = 0; k < counts_.size(); ++k) {
     for (int e = first_[k]; e < first_[k + 1]; ++e) {
       for (int c = 0; c < 3; ++c) {
-        rows(column_[static_cast<std::size_t>(e)], 3 * static_cast<Eigen::Index>(k) + c) =
-            std::sqrt(counts_[k]) * laplace_[static_cast<std::size_t>(4 * e + c)];
+        const double value = laplace_[static_cast<std::size_t>(4 * e + c)];
+        if (value == 0) continue;
+        entries.emplace_back(column_[static_cast<std::size_t>(e)], 3 * static_cast<int>(k) + c,
+                             std::sqrt(counts_[k]) * value);
       }
     }
   }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(freedom_, freedom_);
-  result.selfadjointView<Eigen::Lower>().rankUpdate(rows);
-  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
-  return result;
+  Eigen::SparseMatrix<double> rows(freedom_, 3 * classes());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows * Eigen::SparseMatrix<double>(rows.transpose());
 }
 
 void Quotient::rotate(const Eigen::VectorXd& q, std::vector<Matrix3d>& rotations) const {

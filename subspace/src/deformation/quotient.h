@@ -21,8 +21,8 @@ class Quotient {
 
   Eigen::Index classes() const { return static_cast<Eigen::Index>(counts_.size()); }
 
-  /// U^T L^T L U, DoF by DoF.
-  Eigen::MatrixXd stiffness() const;
+  /// U^T L^T L U, DoF by DoF, both halves. A row of L touches the coordinates of the samples near its own.
+  Eigen::SparseMatrix<double> stiffness() const;
 
   /// One rotation a class, #classes of 3 by 3, that take its rest neighbourhood nearest to that at q. Starts from the
   /// rotations given, which decide what the neighbourhood leaves open.

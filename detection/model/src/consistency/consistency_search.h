@@ -127,6 +127,21 @@ class ConsistencySearch {
     std::vector<std::size_t> replaced;  // waiting regions whose place added images take
     std::vector<Claim> asking;          // whose motions the ties are of
   };
+  // A move that takes one of a pattern's instances to another.
+  struct InstanceStep {
+    std::size_t from, to;
+    Motion motion;
+  };
+  // The orbits of a pattern's instances under the moves.
+  struct InstanceOrbits {
+    explicit InstanceOrbits(std::size_t count) : roots(count, -1), ways(count), stabilisers(count) {}
+    std::vector<int> roots;                        // by instance: the first of its orbit
+    std::vector<Motion> ways;                      // from the root
+    std::vector<std::vector<Motion>> stabilisers;  // of the roots
+    std::vector<InstanceStep> steps;
+    std::vector<Motion> normalisers;  // of the pattern's steps: the motions of regions among the moves
+    std::vector<Claim> asking;        // whose the moves are
+  };
   // Why something cannot be placed, and what is in its way.
   struct Refusal {
     std::string reason;
@@ -162,9 +177,11 @@ class ConsistencySearch {
 
   void place_pattern(std::size_t number);
   Verdict fit_pattern(KnownPattern& known) const;
-  std::optional<std::string> fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
-                                        const std::vector<int>& roots,
-                                        const std::vector<std::vector<Motion>>& stabilisers) const;
+  Verdict follow_from(std::size_t root, const KnownPattern& known, InstanceOrbits& orbits) const;
+  std::optional<std::size_t> arrival_of(const KnownPattern& known, std::size_t from, const Move& move,
+                                        bool meets) const;
+  bool closes(const KnownPattern& known, const std::vector<InstanceStep>& steps) const;
+  std::optional<std::string> fit_copies(KnownPattern& known, const InstanceOrbits& orbits) const;
   std::optional<std::string> fit_lattice(KnownPattern& known, const std::vector<Motion>& normalisers) const;
   Motion with_told_directions(const KnownPattern& known, const Motion& motion) const;
   bool symmetry_of_instance(const KnownPattern& known, const Motion& motion) const;

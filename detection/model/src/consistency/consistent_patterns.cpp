@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "consistency/consistency_search.h"
 
@@ -62,6 +63,109 @@ Motion power(const Motion& generator, int count) {
   return result;
 }
 
+// The steps taken so often each, one after the other.
+Motion product(const std::vector<Motion>& steps, const std::vector<int>& counts) {
+  Motion result;
+  for (std::size_t g = 0; g < steps.size(); ++g) result = result * power(steps[g], counts[g]);
+  return result;
+}
+
+// A pattern's steps, and how they may change: translations each by itself, others by one small motion of all of them.
+class Steps {
+ public:
+  /// \param extent  of the first instance, kept by reference
+  Steps(const std::vector<Motion>& steps, const Extent& extent) : steps_(steps), extent_(extent) {
+    translations_ = std::ranges::all_of(
+        steps, [](const Motion& g) { return (g.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9; });
+  }
+
+  Index unknowns() const { return translations_ ? 3 * count() : 6; }
+
+  std::vector<Motion> at(const VectorXd& x) const {
+    std::vector<Motion> result = steps_;
+    for (Index g = 0; g < count(); ++g) {
+      Motion& step = result[static_cast<std::size_t>(g)];
+      if (translations_) {
+        step.linear.setIdentity();
+        step.translation += x.segment<3>(3 * g);
+      } else {
+        step = conjugate(small_motion(x.segment<6>(0), extent_), step);
+      }
+    }
+    return result;
+  }
+
+  // How often each is taken, `most` times at most, to come nearest to the motion.
+  std::vector<int> counts_of(const Motion& motion, int most) const {
+    std::vector<int> result(steps_.size(), 0);
+    if (translations_) {
+      Eigen::MatrixXd columns(3, count());
+      for (Index g = 0; g < count(); ++g) columns.col(g) = steps_[static_cast<std::size_t>(g)].translation;
+      const VectorXd counts = columns.colPivHouseholderQr().solve(motion.translation);
+      for (Index g = 0; g < count(); ++g) {
+        result[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
+      }
+      return result;
+    }
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = -most; k <= most; ++k) {
+      const double d = distance(power(steps_[0], k), motion, extent_);
+      if (d < nearest) {
+        nearest = d;
+        result[0] = k;
+      }
+    }
+    return result;
+  }
+
+ private:
+  Index count() const { return static_cast<Index>(steps_.size()); }
+
+  std::vector<Motion> steps_;
+  const Extent& extent_;
+  bool translations_;
+};
+
+// A step's image under a normaliser: a product of the steps.
+struct StepImage {
+  std::size_t normaliser, step;
+  std::vector<int> counts;  // of each step
+};
+
+// Each step not at all, forwards or back, in all combinations; of up to three steps.
+std::vector<std::vector<int>> single_steps(std::size_t count) {
+  std::vector<std::vector<int>> result;
+  for (int a = -1; a <= 1; ++a) {
+    for (int b = count > 1 ? -1 : 0; b <= (count > 1 ? 1 : 0); ++b) {
+      for (int c = count > 2 ? -1 : 0; c <= (count > 2 ? 1 : 0); ++c) {
+        std::vector<int> counts{a, b, c};
+        counts.resize(count);
+        result.push_back(counts);
+      }
+    }
+  }
+  return result;
+}
+
+// Nothing where an image is farther than `near` from all products of single steps.
+std::optional<std::vector<StepImage>> images_of_steps(const std::vector<Motion>& steps,
+                                                      const std::vector<Motion>& normalisers, const Extent& extent,
+                                                      double near) {
+  const std::vector<std::vector<int>> candidates = single_steps(steps.size());
+  std::vector<StepImage> result;
+  for (std::size_t n = 0; n < normalisers.size(); ++n) {
+    for (std::size_t g = 0; g < steps.size(); ++g) {
+      const Motion image = conjugate(normalisers[n], steps[g]);
+      const auto best = std::ranges::min_element(candidates, {}, [&](const std::vector<int>& counts) {
+        return distance(product(steps, counts), image, extent);
+      });
+      if (distance(product(steps, *best), image, extent) > near) return std::nullopt;
+      result.push_back({n, g, *best});
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 // Whether it is, to rounding, an element of a region that holds the first instance.
@@ -97,17 +201,15 @@ Motion ConsistencySearch::with_told_directions(const KnownPattern& known, const 
 
 // Copies that the groups around take to one another stand where those take them; between others the motion takes what
 // keeps the one to what keeps the other.
-std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, const std::vector<Motion>& ways,
-                                                         const std::vector<int>& roots,
-                                                         const std::vector<std::vector<Motion>>& stabilisers) const {
+std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, const InstanceOrbits& orbits) const {
   const Extent& extent = shapes_.extent(known.shapes[0]);
   const double near = length(policy_.same_group);
-  const std::vector<Motion> own = closure(stabilisers[0], extent, near);
+  const std::vector<Motion> own = closure(orbits.stabilisers[0], extent, near);
   for (std::size_t t = 1; t < known.shapes.size(); ++t) {
     Motion& motion = known.pattern.instances[t].motion;
-    const auto root = static_cast<std::size_t>(roots[t]);
+    const auto root = static_cast<std::size_t>(orbits.roots[t]);
     if (root != t) {
-      const Motion due = ways[t] * known.pattern.instances[root].motion;
+      const Motion due = orbits.ways[t] * known.pattern.instances[root].motion;
       if (!symmetry_of_instance(known, inverse(due) * motion)) motion = due;
       continue;
     }
@@ -116,7 +218,7 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
       Motion there, here;
     };
     std::vector<Pair> pairs;
-    const std::vector<Motion> others = closure(stabilisers[t], shapes_.extent(known.shapes[t]), near);
+    const std::vector<Motion> others = closure(orbits.stabilisers[t], shapes_.extent(known.shapes[t]), near);
     const auto pair_up = [&](const std::vector<Motion>& from, const std::vector<Motion>& to, bool forth) {
       return std::ranges::all_of(from, [&](const Motion& stabiliser) {
         const Motion seen = conjugate(forth ? motion : inverse(motion), stabiliser);
@@ -155,92 +257,27 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
                                                           const std::vector<Motion>& normalisers) const {
   Pattern& pattern = known.pattern;
   const Extent& extent = shapes_.extent(known.shapes[0]);
-  const double near = length(policy_.same_group);
-  const auto count = static_cast<Index>(pattern.generators.size());
-  const bool translations = std::ranges::all_of(
-      pattern.generators, [](const Motion& g) { return (g.linear - Eigen::Matrix3d::Identity()).norm() < 1e-9; });
-  const auto at = [&](const VectorXd& x) {
-    std::vector<Motion> result = pattern.generators;
-    for (Index g = 0; g < count; ++g) {
-      Motion& step = result[static_cast<std::size_t>(g)];
-      if (translations) {
-        step.linear.setIdentity();
-        step.translation += x.segment<3>(3 * g);
-      } else {
-        step = conjugate(small_motion(x.segment<6>(0), extent), step);
-      }
-    }
-    return result;
-  };
-  struct Asked {
-    std::size_t normaliser, from;
-    std::vector<int> counts;  // of each generator
-  };
-  std::vector<Asked> asked;
-  const auto product = [&](const std::vector<Motion>& steps, const std::vector<int>& counts) {
-    Motion result;
-    for (std::size_t g = 0; g < steps.size(); ++g) result = result * power(steps[g], counts[g]);
-    return result;
-  };
-  std::vector<std::vector<int>> candidates;
-  for (int a = -1; a <= 1; ++a) {
-    for (int b = count > 1 ? -1 : 0; b <= (count > 1 ? 1 : 0); ++b) {
-      for (int c = count > 2 ? -1 : 0; c <= (count > 2 ? 1 : 0); ++c) {
-        std::vector<int> counts{a, b, c};
-        counts.resize(static_cast<std::size_t>(count));
-        candidates.push_back(counts);
-      }
-    }
-  }
-  for (std::size_t n = 0; n < normalisers.size(); ++n) {
-    for (std::size_t g = 0; g < pattern.generators.size(); ++g) {
-      const Motion image = conjugate(normalisers[n], pattern.generators[g]);
-      const auto best = std::ranges::min_element(candidates, {}, [&](const std::vector<int>& counts) {
-        return distance(product(pattern.generators, counts), image, extent);
-      });
-      if (distance(product(pattern.generators, *best), image, extent) > near) {
-        return "the groups around it do not keep its steps";
-      }
-      asked.push_back({n, g, *best});
-    }
-  }
+  const Steps given(pattern.generators, extent);
+  const auto images = images_of_steps(pattern.generators, normalisers, extent, length(policy_.same_group));
+  if (!images) return "the groups around it do not keep its steps";
   const auto hard = [&](const VectorXd& x) {
     std::vector<double> rows;
-    const std::vector<Motion> steps = at(x);
-    for (const Asked& each : asked) {
-      add_rows(conjugate(normalisers[each.normaliser], steps[each.from]), product(steps, each.counts), extent, rows);
+    const std::vector<Motion> steps = given.at(x);
+    for (const StepImage& each : *images) {
+      add_rows(conjugate(normalisers[each.normaliser], steps[each.step]), product(steps, each.counts), extent, rows);
     }
     return as_vector(rows);
   };
-  const Index unknowns = translations ? 3 * count : 6;
-  const VectorXd missed = hard(VectorXd::Zero(unknowns));
+  const VectorXd missed = hard(VectorXd::Zero(given.unknowns()));
   if (missed.size() == 0 || missed.cwiseAbs().maxCoeff() <= rounding_) return std::nullopt;
   const auto soft = [](const VectorXd& x) { return x; };
-  const VectorXd x = nearest_solution(unknowns, hard, soft, extent.reach);
+  const VectorXd x = nearest_solution(given.unknowns(), hard, soft, extent.reach);
   if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its steps cannot agree with the groups around it";
-  const std::vector<Motion> before = pattern.generators;
-  const std::vector<Motion> steps = at(x);
+  const std::vector<Motion> steps = given.at(x);
   // Instances are products of steps: counted with the steps as they were, put together of the new ones.
   for (PatternInstance& instance : pattern.instances) {
     const int most = static_cast<int>(pattern.instances.size());
-    std::vector<int> best_counts(before.size(), 0);
-    if (translations) {
-      Eigen::MatrixXd columns(3, count);
-      for (Index g = 0; g < count; ++g) columns.col(g) = before[static_cast<std::size_t>(g)].translation;
-      const VectorXd counts = columns.colPivHouseholderQr().solve(instance.motion.translation);
-      for (Index g = 0; g < count; ++g)
-        best_counts[static_cast<std::size_t>(g)] = static_cast<int>(std::lround(counts[g]));
-    } else {
-      double nearest = std::numeric_limits<double>::infinity();
-      for (int k = -most; k <= most; ++k) {
-        const double d = distance(power(before[0], k), instance.motion, extent);
-        if (d < nearest) {
-          nearest = d;
-          best_counts[0] = k;
-        }
-      }
-    }
-    const Motion moved = product(steps, best_counts);
+    const Motion moved = product(steps, given.counts_of(instance.motion, most));
     if (distance(moved, instance.motion, extent) > length(policy_.movement)) {
       return "to agree with the groups around it its steps would have to change by more than the tolerance";
     }
@@ -250,72 +287,84 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
   return std::nullopt;
 }
 
-ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
-  std::vector<Claim> asking;
-  const std::size_t count = known.shapes.size();
-  std::vector<Motion> ways(count);
-  std::vector<int> roots(count, -1);
-  std::vector<std::vector<Motion>> stabilisers(count);  // of the roots
-  std::vector<Motion> normalisers;
-  struct Edge {
-    std::size_t from, to;
-    Motion motion;
-  };
-  std::vector<Edge> edges;
-  for (std::size_t root = 0; root < count; ++root) {
-    if (roots[root] >= 0) continue;
-    roots[root] = static_cast<int>(root);
-    std::vector<std::size_t> queue{root};
-    for (std::size_t head = 0; head < queue.size(); ++head) {
-      const std::size_t t = queue[head];
-      for (const Move& move : moves_) {
-        const bool meets = shapes_.meet(known.shapes[t], move.domain);
-        // What merely touches it need not come along, but where it does the two agree.
-        if (!meets && (move.turning || !shapes_.touch(known.shapes[t], move.domain))) continue;
-        if (move.turning && shapes_.same(known.shapes[t], move.domain)) continue;
-        if (shapes_.within(move.domain, known.shapes[t]) && !shapes_.within(known.shapes[t], move.domain)) continue;
-        std::size_t to = count;
-        double best = std::numeric_limits<double>::infinity();
-        for (std::size_t s = 0; s < count; ++s) {
-          if (!(meets ? shapes_.meet(known.shapes[s], move.arrival) : shapes_.touch(known.shapes[s], move.arrival)))
-            continue;
-          const int domain = meets ? move.domain : known.shapes[t];
-          const int arrival = meets ? move.arrival : known.shapes[s];
-          const auto match = shapes_.match(known.shapes[t], domain, move.motion, known.shapes[s], arrival);
-          if (match.share < policy_.arrived || match.distance >= best) continue;
-          best = match.distance;
-          to = s;
-        }
-        if (to == count && !meets) continue;
-        if (to == count) {
-          return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
-        }
-        if (std::ranges::find(asking, mover_of(move)) == asking.end()) asking.push_back(mover_of(move));
-        if (move.region >= 0) normalisers.push_back(move.motion);
-        edges.push_back({t, to, move.motion});
-        if (roots[to] < 0) {
-          roots[to] = static_cast<int>(root);
-          ways[to] = move.motion * ways[t];
-          queue.push_back(to);
-        } else {
-          const Motion stabiliser = inverse(ways[to]) * move.motion * ways[t];
-          const Extent& extent = shapes_.extent(known.shapes[root]);
-          if (distance(stabiliser, Motion{}, extent) > rounding_) stabilisers[root].push_back(stabiliser);
-        }
+// The instance to which the move takes one: the nearest of those that what arrives meets, or touches if not `meets`.
+std::optional<std::size_t> ConsistencySearch::arrival_of(const KnownPattern& known, std::size_t from, const Move& move,
+                                                         bool meets) const {
+  std::optional<std::size_t> result;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t to = 0; to < known.shapes.size(); ++to) {
+    if (!(meets ? shapes_.meet(known.shapes[to], move.arrival) : shapes_.touch(known.shapes[to], move.arrival)))
+      continue;
+    const int domain = meets ? move.domain : known.shapes[from];
+    const int arrival = meets ? move.arrival : known.shapes[to];
+    const auto match = shapes_.match(known.shapes[from], domain, move.motion, known.shapes[to], arrival);
+    if (match.share < policy_.arrived || match.distance >= best) continue;
+    best = match.distance;
+    result = to;
+  }
+  return result;
+}
+
+// The instances that moves take the root to, one after the other, each by the way that is found first.
+ConsistencySearch::Verdict ConsistencySearch::follow_from(std::size_t root, const KnownPattern& known,
+                                                          InstanceOrbits& orbits) const {
+  orbits.roots[root] = static_cast<int>(root);
+  std::vector<std::size_t> queue{root};
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const std::size_t from = queue[head];
+    const int shape = known.shapes[from];
+    for (const Move& move : moves_) {
+      const bool meets = shapes_.meet(shape, move.domain);
+      // What merely touches it need not come along, but where it does the two agree.
+      if (!meets && (move.turning || !shapes_.touch(shape, move.domain))) continue;
+      if (move.turning && shapes_.same(shape, move.domain)) continue;
+      if (shapes_.within(move.domain, shape) && !shapes_.within(shape, move.domain)) continue;
+      const std::optional<std::size_t> to = arrival_of(known, from, move, meets);
+      if (!to && !meets) continue;
+      if (!to) {
+        return Refusal{"the group of " + name_of(move) + " takes its instances where it has none", {mover_of(move)}};
       }
+      if (std::ranges::find(orbits.asking, mover_of(move)) == orbits.asking.end()) {
+        orbits.asking.push_back(mover_of(move));
+      }
+      if (move.region >= 0) orbits.normalisers.push_back(move.motion);
+      orbits.steps.push_back({from, *to, move.motion});
+      if (orbits.roots[*to] < 0) {
+        orbits.roots[*to] = static_cast<int>(root);
+        orbits.ways[*to] = move.motion * orbits.ways[from];
+        queue.push_back(*to);
+        continue;
+      }
+      const Motion stabiliser = inverse(orbits.ways[*to]) * move.motion * orbits.ways[from];
+      const Extent& extent = shapes_.extent(known.shapes[root]);
+      if (distance(stabiliser, Motion{}, extent) > rounding_) orbits.stabilisers[root].push_back(stabiliser);
     }
   }
-  const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
-  if (auto reason = copies ? fit_copies(known, ways, roots, stabilisers) : fit_lattice(known, normalisers)) {
-    return Refusal{*reason, asking};
-  }
-  // To go by the groups around and come back by the steps keeps the first instance: in finitely many ways.
+  return std::nullopt;
+}
+
+// Whether to go by the groups around and come back by the pattern's steps keeps the first instance in finitely many
+// ways.
+bool ConsistencySearch::closes(const KnownPattern& known, const std::vector<InstanceStep>& steps) const {
   std::vector<Motion> returns;
   const auto place = [&](std::size_t t) { return known.pattern.instances[t].motion; };
-  for (const Edge& edge : edges) returns.push_back(inverse(place(edge.to)) * edge.motion * place(edge.from));
+  for (const InstanceStep& step : steps) returns.push_back(inverse(place(step.to)) * step.motion * place(step.from));
   const Extent& first = shapes_.extent(known.shapes[0]);
-  if (closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() >= kMaxStabilisers) {
-    return Refusal{"its steps and the groups around it do not close", asking};
+  return closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() < kMaxStabilisers;
+}
+
+ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
+  InstanceOrbits orbits(known.shapes.size());
+  for (std::size_t root = 0; root < known.shapes.size(); ++root) {
+    if (orbits.roots[root] >= 0) continue;
+    if (Verdict refusal = follow_from(root, known, orbits)) return refusal;
+  }
+  const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
+  if (auto reason = copies ? fit_copies(known, orbits) : fit_lattice(known, orbits.normalisers)) {
+    return Refusal{*reason, orbits.asking};
+  }
+  if (!closes(known, orbits.steps)) {
+    return Refusal{"its steps and the groups around it do not close", orbits.asking};
   }
   return std::nullopt;
 }

@@ -80,6 +80,64 @@ VectorXd as_vector(const std::vector<double>& rows) {
   return Eigen::Map<const VectorXd>(rows.data(), static_cast<Index>(rows.size()));
 }
 
+// A direction that a mark of the place takes to another, or to its opposite.
+struct TurnedDirection {
+  std::size_t mark;
+  Vector3d from, to;
+};
+
+std::vector<TurnedDirection> turned_directions(const GroupPlace& place, const std::vector<Vector3d>& directions,
+                                               const Extent& extent, double near) {
+  std::vector<TurnedDirection> result;
+  const std::vector<Motion> all = marks(place);
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    for (const Vector3d& from : directions) {
+      for (const Vector3d& to : directions) {
+        for (const double sign : {1.0, -1.0}) {
+          if (extent.reach * (all[m].linear * from - sign * to).norm() <= near) result.push_back({m, from, sign * to});
+        }
+      }
+    }
+  }
+  return result;
+}
+
+// Nothing where a tie takes a mark to no member.
+std::optional<std::vector<Match>> matches_of(const std::vector<Tie>& ties, const GroupPlace& place, double near) {
+  std::vector<Match> result;
+  for (const Tie& tie : ties) {
+    const Motion way = way_of(tie, place);
+    const std::vector<Motion> among = members(tie.to ? *tie.to : place);
+    const std::vector<Motion> from = marks(tie.from ? *tie.from : place);
+    for (std::size_t m = 0; m < from.size(); ++m) {
+      double best = 0;
+      const int member = nearest(conjugate(way, from[m]), among, tie.extent, best);
+      if (best > near) return std::nullopt;
+      result.push_back({&tie, m, static_cast<std::size_t>(member)});
+    }
+  }
+  return result;
+}
+
+// A motion, and the member of the place's group that is to be it.
+using Aim = std::pair<Motion, std::size_t>;
+
+std::vector<Aim> aims_of(const GroupPlace& place, const std::vector<GroupPlace>& wanted, const Extent& extent,
+                         double near) {
+  std::vector<Aim> result;
+  const std::vector<Motion> among = members(place);
+  const auto add = [&](const GroupPlace& aim) {
+    for (const Motion& mark : marks(aim)) {
+      double best = 0;
+      const int member = nearest(mark, among, extent, best);
+      if (best <= 2 * near) result.emplace_back(mark, static_cast<std::size_t>(member));
+    }
+  };
+  add(place);
+  for (const GroupPlace& aim : wanted) add(aim);
+  return result;
+}
+
 }  // namespace
 
 std::optional<GroupPlace> place_of(const Region& region) {
@@ -208,47 +266,10 @@ VectorXd nearest_solution(Index unknowns, const std::function<VectorXd(const Vec
 std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<GroupPlace>& wanted,
                                      const std::vector<Tie>& ties, const Extent& extent, double near,
                                      const std::vector<Vector3d>& directions) {
-  struct Turned {
-    std::size_t mark;
-    Vector3d from, to;
-  };
-  std::vector<Turned> turned_directions;
-  const std::vector<Motion> start_marks = marks(start);
-  for (std::size_t m = 0; m < start_marks.size(); ++m) {
-    for (const Vector3d& from : directions) {
-      for (const Vector3d& to : directions) {
-        for (const double sign : {1.0, -1.0}) {
-          if (extent.reach * (start_marks[m].linear * from - sign * to).norm() <= near) {
-            turned_directions.push_back({m, from, sign * to});
-          }
-        }
-      }
-    }
-  }
-  std::vector<Match> matches;
-  for (const Tie& tie : ties) {
-    const Motion way = way_of(tie, start);
-    const std::vector<Motion> among = members(tie.to ? *tie.to : start);
-    const std::vector<Motion> from = marks(tie.from ? *tie.from : start);
-    for (std::size_t m = 0; m < from.size(); ++m) {
-      double best = 0;
-      const int member = nearest(conjugate(way, from[m]), among, tie.extent, best);
-      if (best > near) return std::nullopt;
-      matches.push_back({&tie, m, static_cast<std::size_t>(member)});
-    }
-  }
-  std::vector<std::pair<Motion, std::size_t>> aims;  // a motion, and the member of x that it is
-  const auto add_aims = [&](const GroupPlace& place) {
-    const std::vector<Motion> among = members(start);
-    for (const Motion& mark : marks(place)) {
-      double best = 0;
-      const int member = nearest(mark, among, extent, best);
-      if (best <= 2 * near) aims.emplace_back(mark, static_cast<std::size_t>(member));
-    }
-  };
-  add_aims(start);
-  for (const GroupPlace& place : wanted) add_aims(place);
-
+  const std::vector<TurnedDirection> turns = turned_directions(start, directions, extent, near);
+  const std::optional<std::vector<Match>> matches = matches_of(ties, start, near);
+  if (!matches) return std::nullopt;
+  const std::vector<Aim> aims = aims_of(start, wanted, extent, near);
   const auto hard = [&](const VectorXd& x) {
     const GroupPlace now = turned(start, x, extent.reach);
     const std::vector<Motion> own_members = members(now);
@@ -257,7 +278,7 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
     const Tie* last = nullptr;
     Motion way;
     std::vector<Motion> to_members, from_marks;
-    for (const Match& match : matches) {
+    for (const Match& match : *matches) {
       const Tie& tie = *match.tie;
       if (last != &tie) {
         way = way_of(tie, now);
@@ -268,7 +289,7 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
       const Motion image = conjugate(way, (tie.from ? from_marks : own_marks)[match.mark]);
       add_difference(image, (tie.to ? to_members : own_members)[match.member], tie.extent, rows);
     }
-    for (const Turned& each : turned_directions) {
+    for (const TurnedDirection& each : turns) {
       const Vector3d off = extent.reach * (own_marks[each.mark].linear * each.from - each.to);
       rows.insert(rows.end(), off.data(), off.data() + 3);
     }
@@ -281,7 +302,7 @@ std::optional<PlaceFit> fitted_place(const GroupPlace& start, const std::vector<
     return as_vector(rows);
   };
   PlaceFit fit;
-  if (matches.empty() && wanted.empty() && turned_directions.empty()) {
+  if (matches->empty() && wanted.empty() && turns.empty()) {
     fit.place = start;
     return fit;
   }

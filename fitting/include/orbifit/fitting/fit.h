@@ -42,9 +42,21 @@ struct FitOptions {
   bool drop_unsupported = false;
   bool contacts = true;    ///< parts of the template that touch are to touch afterwards: held together at their joints
   bool condition = false;  ///< estimate the condition number of the last linear system
-  bool align = true;       ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
+  /// How often the subspace may be made finer, by three times the degrees of freedom, where the scan asks for it; not
+  /// where `subspace` says how fine it is. >= 0
+  int refinements = 2;
+  bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
+};
+
+/// A subspace that was tried, each finer than the one before (docs/method.md 7.1).
+struct ResolutionLevel {
+  int samples = 0, degrees_of_freedom = 0;
+  /// Root mean square distance of points of the scan that were held out of the finer fits, fraction of the template's
+  /// diagonal; what is far counts as at a certain distance.
+  double held_out = 0;
+  bool kept = false;  ///< these lay nearer, by more than chance
 };
 
 struct FitIteration {
@@ -77,11 +89,13 @@ struct FitResult {
   std::vector<Motion> others;          ///< of FitInput::others each into the scan's frame
   std::vector<char> other_used;        ///< of each, whether it took part: a scan in which nothing is found does not
   std::vector<Placement> placements;   ///< where the template may be, best first; empty where that was not asked
-  Eigen::VectorXd q;                   ///< coordinates of the deformation in the subspace
+  Subspace subspace;                   ///< in which the template was deformed; finer than the one given, if refined
+  Eigen::VectorXd q;                   ///< coordinates of the deformation in that subspace
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
   std::shared_ptr<const ConjugatedBasis> basis;
   int samples = 0, degrees_of_freedom = 0;
-  double condition = 0;  ///< of the last linear system, where FitOptions::condition asked for it
+  double condition = 0;          ///< of the last linear system, where FitOptions::condition asked for it
+  std::vector<ResolutionLevel> levels;  ///< from coarse to fine; the last one that was kept is the result's
   std::vector<FitIteration> iterations;
   int iterations_in_all = 0;  ///< with those from other placements, which were not kept
   bool converged = false;

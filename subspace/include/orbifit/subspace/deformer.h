@@ -58,7 +58,7 @@ class Deformer {
   /// Factorises U^T (L^T L + alpha A^T A) U (equation 4). A has a row for each point of a handle, of whose vertices at
   /// most 48 are taken, evenly; weighted so that a handle counts as the samples near it, however it is tessellated. An
   /// alpha that would leave the energy fewer than half of a double's digits counts as the largest that does not.
-  /// O(DoF^3 / 3).
+  /// O(DoF^3 / 3); where few coordinates meet, as without symmetries, the factor is sparse: about O(DoF^1.5).
   void set_handles(const std::vector<Handle>& handles, double alpha);
 
   /// Where the handles shall go: one motion for each, in the order of set_handles(). O(DoF^2) an iteration; in mode

@@ -7,6 +7,7 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+#include "orbifit/subspace/subspace.h"
 
 namespace orbifit {
 
@@ -41,5 +42,11 @@ Eigen::VectorXd radius_field(const Mesh& mesh, const RadiusFieldOptions& options
 /// \param base the base radius, mesh units
 /// \throw InputError naming the file, the key and the reason
 RadiusFieldOptions read_radius_field(const std::filesystem::path& file, double base);
+
+/// What such a file makes of the radius at each vertex, #V, relative to the base radius: the one that the options give,
+/// or else the one that their number of samples suggests. For SubspaceOptions::relative_radii.
+/// \throw UsageError, InputError
+Eigen::VectorXd relative_radii(const Mesh& mesh, const std::filesystem::path& file, const SubspaceOptions& options,
+                               const RunContext& context);
 
 }  // namespace orbifit

@@ -1,0 +1,129 @@
+#include "resolution/refinement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "base/random.h"
+#include "basis/subspace_parts.h"
+#include "fit_systems.h"
+#include "fit_trial.h"
+#include "resolution/fit_residuals.h"
+#include "solver/fit_system.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kFiner = 3;          // times the degrees of freedom, a level
+constexpr double kHeldOut = 0.1;      // of the scan
+constexpr double kSure = 2;           // standard errors of what held-out points gain
+constexpr int kMaxSamples = 6000;     // of which three times as many are taken
+constexpr double kWorthwhile = 0.05;  // of the squared residuals: what a finer fit could gain at most
+
+std::vector<double> held_out(const std::vector<double>& of_points, const std::vector<char>& chosen) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (chosen[i] != 0) result.push_back(of_points[i]);
+  }
+  return result;
+}
+
+double root_mean(const std::vector<double>& squares) {
+  return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size()));
+}
+
+// Whether the second of two paired samples is smaller in the mean, by more than chance.
+bool smaller(const std::vector<double>& before, const std::vector<double>& after) {
+  const auto count = static_cast<double>(before.size());
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double gain = before[i] - after[i];
+    sum += gain;
+    squares += gain * gain;
+  }
+  const double mean = sum / count;
+  return mean > kSure * std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
+}
+
+double finer_radius(const FitResult& coarse) {
+  return coarse.subspace.radius() / std::sqrt(kFiner);
+}
+
+// From where a coarser fit ended.
+FitResult finer_fit(const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                    const RunContext& context, const FitResult& coarse) {
+  SubspaceOptions finer = options.subspace;
+  finer.samples = 0;
+  finer.radius = finer_radius(coarse);
+  const Subspace subspace = build_subspace(input.mesh, input.annotation, finer, context);
+  Eigen::VectorXd q = transferred(coarse.subspace, {coarse.q, coarse.basis}, subspace, context);
+  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context),
+                   sample_displacements(subspace, q));
+  return fit_from({coarse.pose, std::move(q), coarse.others}, options.levels, input, start, system, options, context);
+}
+
+}  // namespace
+
+namespace {
+
+// Every tenth patch of the scan, each of a width: depth cameras err alike at neighbouring points, so a point's own
+// neighbours do not tell shape from noise. As wide as finer samples are apart, such a fit can bridge it.
+std::vector<char> some_patches(const Points& points, double width, std::uint64_t seed) {
+  std::map<std::array<std::int64_t, 3>, char> chosen;
+  Random random(seed, "held out");
+  std::vector<char> result;
+  for (const auto& point : points.rowwise()) {
+    const auto cell = [&](int c) { return static_cast<std::int64_t>(std::floor(point[c] / width)); };
+    const auto [entry, added] = chosen.try_emplace({cell(0), cell(1), cell(2)}, char{0});
+    if (added) entry->second = random.uniform(0, 1) < kHeldOut ? 1 : 0;
+    result.push_back(entry->second);
+  }
+  return result;
+}
+
+void refine_from_start(const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                       const RunContext& context, FitResult& result) {
+  FitResiduals now = fit_residuals(input, start, result, context);
+  result.levels = {{result.samples, result.degrees_of_freedom, root_mean(now.squared), true}};
+  // Groups that turn are left as coarse as they are.
+  if (result.subspace.mode() == GroupMode::moving) return;
+  PlacedScan most = start;
+  for (int level = 0; level < options.refinements && now.shared > kWorthwhile && result.samples <= kMaxSamples;
+       ++level) {
+    const double width = finer_radius(result) * result.pose.scale;
+    most.held_out = some_patches(start.scan.points, width, context.seed);
+    const std::vector<double> before = held_out(now.squared, most.held_out);
+    FitResult found = finer_fit(input, most, options, context, result);
+    now = fit_residuals(input, start, found, context);
+    const std::vector<double> after = held_out(now.squared, most.held_out);
+    const bool better = smaller(before, after);
+    result.levels.push_back({found.samples, found.degrees_of_freedom, root_mean(after), better});
+    result.iterations_in_all += found.iterations_in_all;
+    if (!better) return;
+    found.levels = std::move(result.levels);
+    found.iterations_in_all = result.iterations_in_all;
+    found.placements = std::move(result.placements);
+    found.groups = std::move(result.groups);
+    found.dropped = std::move(result.dropped);
+    found.other_used = std::move(result.other_used);
+    found.landmarks = std::move(result.landmarks);
+    result = std::move(found);
+  }
+}
+
+}  // namespace
+
+void refine(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
+            FitResult& result) {
+  // The other scans' motions are told from their own frames; while fitting, from where the start has put them.
+  for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * inverse(start.others[k]);
+  refine_from_start(input, start, options, context, result);
+  for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * start.others[k];
+}
+
+}  // namespace orbifit

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "orbifit/fitting/fit.h"
+#include "orbifit/model/run_context.h"
+
+#include "start/placed_scan.h"
+
+namespace orbifit {
+
+/// Fits again with finer and finer subspaces, as long as the scan asks for it (docs/method.md 7.1): patches that
+/// are held out must lie nearer to the finer fit, by more than chance. Each fit begins where the coarser one ended,
+/// which a finer subspace contains, and is held there: what is not seen stays. The rest shape stays the template's.
+/// \param start  as of `result`, of FitResult::subspace; replaced by the finest fit that was kept, with its levels
+void refine(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
+            FitResult& result);
+
+/// A state in the coordinates of another subspace of the same mesh and annotation, whose groups are at rest: the same
+/// displacement of its samples and of the groups, wherever that subspace contains it, else the nearest.
+Eigen::VectorXd transferred(const Subspace& from, const SubspaceState& state, const Subspace& to,
+                            const RunContext& context);
+
+}  // namespace orbifit
