@@ -118,6 +118,20 @@ TEST_F(AppearanceOfFiles, OfAPlyGoesToObjAndGlb) {
   }
 }
 
+TEST_F(AppearanceOfFiles, StaysWithAnEditInAnotherFormat) {
+  Mesh turned = read_mesh(folder_.file("look.obj"));
+  turned.vertices.col(1).swap(turned.vertices.col(2));
+  turned.vertices.col(2) *= -1;  // about x, so that z becomes y
+  EXPECT_TRUE(write_edited_mesh(folder_.file("edited.glb"), folder_.file("look.obj"), turned).empty());
+  const Appearance look = read("edited.glb");
+  expect_same_look(read("look.obj"), look, false);
+  EXPECT_LT((look.normals.row(5) - Eigen::RowVector3d(0, 1, 0)).norm(), 1e-6) << look.normals.row(5);
+  folder_.write("bad.obj", std::string(kLookingObj) + "f 1/9 2/9 3/9\n");
+  const Mesh bad = read_mesh(folder_.file("bad.obj"));
+  EXPECT_EQ(write_edited_mesh(folder_.file("bad.glb"), folder_.file("bad.obj"), bad).size(), 1U);
+  EXPECT_EQ(read_mesh(folder_.file("bad.glb")).faces.rows(), bad.faces.rows());
+}
+
 TEST_F(AppearanceOfFiles, SaysWhatAFormatDoesNotTake) {
   const std::vector<std::string> lost = convert("look.obj", "plain.stl");
   ASSERT_EQ(lost.size(), 1U);
