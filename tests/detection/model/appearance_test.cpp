@@ -132,6 +132,13 @@ TEST_F(AppearanceOfFiles, StaysWithAnEditInAnotherFormat) {
   EXPECT_EQ(read_mesh(folder_.file("bad.glb")).faces.rows(), bad.faces.rows());
 }
 
+TEST_F(AppearanceOfFiles, OfPolygonsLeavesThemPolygons) {
+  EXPECT_TRUE(convert("look.obj", "again/look.obj").empty());
+  EXPECT_NE(content("again/look.obj").find("f 1/1/1 2/2/1 3/3/1 4/4/1\n"), std::string::npos)
+      << content("again/look.obj");
+  expect_same_look(read("look.obj"), read("again/look.obj"), false);
+}
+
 TEST_F(AppearanceOfFiles, SaysWhatAFormatDoesNotTake) {
   const std::vector<std::string> lost = convert("look.obj", "plain.stl");
   ASSERT_EQ(lost.size(), 1U);

@@ -1,3 +1,4 @@
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -15,6 +16,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
+
+// A file's name as a relative URI (RFC 3986).
+std::string as_uri(const std::string& name) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string uri;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = std::isalnum(byte) != 0 || std::string_view("-._~/").find(c) != std::string_view::npos;
+    if (plain) {
+      uri += c;
+    } else {
+      uri += {'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
+    }
+  }
+  return uri;
+}
 
 // A GLB while it is put together.
 class GlbWriter {
@@ -154,7 +171,7 @@ class GlbWriter {
     if (!added) return known->second;
     Json image;
     if (type.empty()) {
-      image["uri"] = material.texture;  // missing, or of a kind that a GLB cannot hold
+      image["uri"] = as_uri(material.texture);  // missing, or of a kind that a GLB cannot hold
     } else {
       if (!material.texture.empty()) image["name"] = material.texture;
       image["bufferView"] = add_view(material.image, 0);

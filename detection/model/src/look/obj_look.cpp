@@ -6,6 +6,7 @@
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
+#include "files/mesh_builder.h"
 #include "files/text.h"
 #include "look/look_formats.h"
 
@@ -316,18 +317,22 @@ ObjFiles obj_with_look(const Mesh& mesh, const Appearance& look, const std::stri
   for (Eigen::Index c = 0; c < look.uvs.rows(); ++c) uv_of.push_back(uvs.number(look.uvs.row(c)));
   for (Eigen::Index c = 0; c < look.normals.rows(); ++c) normal_of.push_back(normals.number(look.normals.row(c)));
   int material = -1;
-  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    const int own = look.material_of_face.empty() ? -1 : look.material_of_face[static_cast<std::size_t>(f)];
+  for (const PolygonRange& range : polygon_ranges(mesh)) {
+    const auto first = static_cast<std::size_t>(range.first_face);
+    const int own = look.material_of_face.empty() ? -1 : look.material_of_face[first];
     if (own != material && own >= 0 && !library_name.empty()) {
       files.mesh += "usemtl " + look.materials[static_cast<std::size_t>(own)].name + "\n";
     }
-    if (own != material) material = own;
+    material = own;
     files.mesh += 'f';
-    for (int k = 0; k < 3; ++k) {
-      const auto row = static_cast<std::size_t>(3 * f + k);
+    // A fan's corners: those of its first triangle, then the last one of each.
+    std::vector<std::size_t> rows{3 * first, 3 * first + 1};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(range.faces); ++k) rows.push_back(3 * (first + k) + 2);
+    for (const std::size_t row : rows) {
       const int uv = uv_of.empty() ? 0 : uv_of[row];
       const int normal = normal_of.empty() ? 0 : normal_of[row];
-      files.mesh += ' ' + std::to_string(mesh.faces(f, k) + 1);
+      const auto corner = static_cast<Eigen::Index>(row);
+      files.mesh += ' ' + std::to_string(mesh.faces(corner / 3, corner % 3) + 1);
       if (uv > 0 || normal > 0) files.mesh += '/' + (uv > 0 ? std::to_string(uv) : std::string());
       if (normal > 0) files.mesh += '/' + std::to_string(normal);
     }
