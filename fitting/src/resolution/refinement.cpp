@@ -22,7 +22,7 @@ namespace {
 constexpr double kFiner = 3;          // times the degrees of freedom, a level
 constexpr double kHeldOut = 0.1;      // of the scan
 constexpr double kSure = 2;           // standard errors of what held-out points gain
-constexpr int kMaxSamples = 6000;     // of which three times as many are taken
+constexpr int kMaxSamples = 10000;    // of which three times as many are taken
 constexpr double kWorthwhile = 0.05;  // of the squared residuals: what a finer fit could gain at most
 
 std::vector<double> held_out(const std::vector<double>& of_points, const std::vector<char>& chosen) {
@@ -98,6 +98,7 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
     const double width = finer_radius(result) * result.pose.scale;
     most.held_out = some_patches(start.scan.points, width, context.seed);
     const std::vector<double> before = held_out(now.squared, most.held_out);
+    if (before.empty()) return;
     FitResult found = finer_fit(input, most, options, context, result);
     now = fit_residuals(input, start, found, context);
     const std::vector<double> after = held_out(now.squared, most.held_out);

@@ -48,7 +48,7 @@ struct SamplingOptions {
   Eigen::VectorXd radius_field;
   /// Points to draw first, such as those on sharp features (paper, section 7).
   SurfaceSamples first;
-  int most_samples = 20000;
+  int most_samples = 40000;
 };
 
 /// Symmetric Poisson-disc sampling: seeds are drawn at random from a dense uniform sampling of the surface, each brings
