@@ -60,10 +60,14 @@ ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry)
 }
 
 ReportTable level_table(const FitResult& result) {
-  ReportTable table{{"degrees of freedom", "samples", "rms distance of points held out, of the diagonal", ""}, {}};
+  ReportTable table{
+      {"degrees of freedom", "samples", "rms distance of points held out, before", "with this subspace", "verdict"},
+      {}};
   for (const ResolutionLevel& level : result.levels) {
+    const bool coarsest = &level == &result.levels.front();
     table.rows.push_back({std::to_string(level.degrees_of_freedom), std::to_string(level.samples),
-                          percent(level.held_out), level.kept ? "kept" : "no nearer: dropped"});
+                          coarsest ? "-" : percent(level.held_out_before), coarsest ? "-" : percent(level.held_out),
+                          level.kept ? "kept" : "not nearer by more than chance: dropped"});
   }
   return table;
 }
@@ -156,6 +160,7 @@ nlohmann::ordered_json levels_json(const FitResult& result) {
   for (const ResolutionLevel& level : result.levels) {
     levels.push_back({{"samples", level.samples},
                       {"degrees_of_freedom", level.degrees_of_freedom},
+                      {"held_out_rms_before", level.held_out_before},
                       {"held_out_rms", level.held_out},
                       {"kept", level.kept}});
   }
@@ -208,11 +213,13 @@ std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResul
                                {}});
   }
   if (result.levels.size() > 1) {
-    report.sections.push_back({"Resolution",
-                               "Finer subspaces are tried as long as points that were held out come nearer.",
-                               {},
-                               {level_table(result)},
-                               {}});
+    report.sections.push_back(
+        {"Resolution",
+         "Finer subspaces are tried as long as points of the scan that were held out come nearer. Each is compared "
+         "with the one before, by points of its own. Distances are in percent of the diagonal.",
+         {},
+         {level_table(result)},
+         {}});
   }
   if (!result.placements.empty()) {
     report.sections.push_back(

@@ -17,7 +17,7 @@ constexpr double kFirstReach = 0.15;  // of the diagonal: correspondences farthe
 // would be taken for outliers. Fractions of the diagonal: at the start, when softest, and at the end.
 constexpr double kFirstRobust = 0.05;
 constexpr double kSoftRobust = 0.02;
-constexpr std::array<double, 3> kConverging{0.02, 0.012, 0.007};
+constexpr std::array<double, 3> kConverging{0.02, 0.012, kLastRobust};
 // The energy weighs data of this noise, a fraction of the diagonal, as the least stiffness is meant for; noisier data
 // count by the inverse of their variance, up to a share of the first stiffness. What is left unexplained where the
 // stiffness has fallen so far tells of noise that neighbours share, which is not seen among them.
@@ -232,8 +232,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   first_scale_ = state.pose.scale;
   state.others.resize(start_.others.size());
   move_to(state);
-  const double scan_noise = scan_.noise / (state.pose.scale * size_);
-  last_stiffness_ = stiffness_for(scan_noise);
+  last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(first_level * options_.iterations);
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
     context_.progress("fit", double(i) / options_.max_iterations);
@@ -253,18 +252,22 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   now.every = 1;
   now.scale_open = scale_open;
   now.others_open = true;
-  // A fit that goes on from one that has converged has only to settle on what is left.
-  const bool goes_on = first_level >= options_.levels;
-  if (goes_on) now.stiffness = stiffness_for(std::max(scan_noise, match(state, now).spread));
+  if (first_level >= options_.levels) return go_on(state, now, iterations);
   for (const double robust : kConverging) {
-    if (goes_on && robust == kConverging.front()) continue;
-    now.robust = (goes_on ? kConverging.back() : robust) * size_;
+    now.robust = robust * size_;
     // Converged once, the fit has reached what it had left unexplained for being on its way.
-    if (robust == (goes_on ? kConverging.back() : kConverging[1]))
-      now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
+    if (robust == kConverging[1]) now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
     reason = minimise(state, now, robust == kConverging.back() ? kLastGain : kGain, iterations);
   }
   return reason;
+}
+
+std::string FitLoop::go_on(FitState& state, Stage now, std::vector<FitIteration>& iterations) {
+  now.robust = kLastRobust * size_;
+  now.stiffness = std::max(last_stiffness_, stiffness_for(match(state, now).spread));
+  minimise(state, now, kGain, iterations);
+  now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
+  return minimise(state, now, kLastGain, iterations);
 }
 
 }  // namespace orbifit

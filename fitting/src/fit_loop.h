@@ -18,10 +18,6 @@
 
 namespace orbifit {
 
-/// Of the diagonal: in the end correspondences farther apart are none, and landmarks farther from their targets hardly
-/// count.
-inline constexpr double kLastReach = 0.04;
-
 /// Where a fit has come to.
 struct FitState {
   Similarity pose;    ///< template -> scan
@@ -79,6 +75,8 @@ class FitLoop {
             FitIteration& record);
   // Steps that lower the energy of one stage, until it stalls.
   std::string minimise(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
+  // For a fit that has converged on a coarser subspace, and has only what is left to settle.
+  std::string go_on(FitState& state, Stage now, std::vector<FitIteration>& iterations);
   void move_to(const FitState& state);
   // A length of the template's as the fit began, in its units now.
   double unit(const FitState& state) const { return first_scale_ / state.pose.scale; }

@@ -12,7 +12,7 @@ export class SymmetricShape {
 
   constructor(private readonly editor: Editor) {}
 
-  /** The core has none any more. */
+  /** To be called when the core drops it, as it does with every new mesh. */
   forget(): void { this.of = ""; }
 
   /** Whether the core has that of the regions that are on. */

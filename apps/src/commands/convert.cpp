@@ -39,7 +39,8 @@ CommandBody convert(CLI::App& app) {
          "Mesh (.obj, .off, .ply, .stl, .gltf, .glb), scan (.ply, .pcd, .xyz, .pts), or with --mesh an annotation")
       ->required()
       ->type_name("FILE");
-  app.add_option("OUT", arguments->output, "Mesh (.obj, .off, .ply, .stl, .glb) or scan (.ply, .pcd, .xyz, .pts)")
+  app.add_option("OUT", arguments->output,
+                 "Mesh (.obj, .off, .ply, .stl, .glb), scan (.ply, .pcd, .xyz, .pts), or what --mesh names")
       ->required()
       ->type_name("FILE");
   app.add_flag("--points", arguments->points,

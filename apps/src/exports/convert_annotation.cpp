@@ -36,17 +36,24 @@ std::string bop_number(const std::string& mesh) {
   return std::to_string(number.value_or(1));
 }
 
-SymmetryAnnotation read_any(const AnnotationConversion& conversion, const Mesh& mesh) {
+struct GivenAnnotation {
+  SymmetryAnnotation annotation;
+  bool from_bop = false;
+};
+
+GivenAnnotation read_any(const AnnotationConversion& conversion, const Mesh& mesh) {
   const std::string text = read_file(conversion.input);
   const Json root = Json::parse(text, nullptr, false);
-  if (!root.is_object() || root.contains("format")) return annotation_from_json(text, mesh, conversion.input);
+  if (!root.is_object() || root.contains("format")) {
+    return {annotation_from_json(text, mesh, conversion.input), false};
+  }
   const std::string number = bop_number(conversion.mesh);
   if (!root.contains(number)) {
     throw InputError(conversion.input, "",
                      "is no annotation, and no models_info.json with an object " + number + ", which " +
                          conversion.mesh + " is by its name");
   }
-  return batch::annotation_from_bop(root[number].dump(), mesh, conversion.input + ": " + number);
+  return {batch::annotation_from_bop(root[number].dump(), mesh, conversion.input + ": " + number), true};
 }
 
 const Region& chosen_region(const AnnotationConversion& conversion, const SymmetryAnnotation& annotation) {
@@ -54,9 +61,10 @@ const Region& chosen_region(const AnnotationConversion& conversion, const Symmet
     return conversion.region < 0 ? !region.elements.empty() : region.id == conversion.region;
   });
   if (found == annotation.regions.end()) {
-    if (conversion.region >= 0)
+    if (conversion.region >= 0) {
       throw UsageError("--region is " + std::to_string(conversion.region) + ": " + conversion.input +
                        " has no such region");
+    }
     throw InputError(conversion.input, "regions", "holds none of a finite group");
   }
   if (found->elements.empty()) {
@@ -139,9 +147,7 @@ void check_conversion(const AnnotationConversion& conversion) {
 
 int convert_annotation(const AnnotationConversion& conversion, CommandContext& context) {
   const Mesh mesh = read_mesh(conversion.mesh);
-  const SymmetryAnnotation annotation = read_any(conversion, mesh);
-  const Json input = Json::parse(read_file(conversion.input), nullptr, false);
-  const bool from_bop = !input.contains("format");
+  const auto [annotation, from_bop] = read_any(conversion, mesh);
   const std::string ending = lower_extension(conversion.output);
   Written written;
   if (ending == ".csv" || ending == ".npz") written = write_correspondences(conversion, mesh, annotation, context.run);

@@ -11,6 +11,12 @@
 
 namespace orbifit {
 
+/// Of the diagonal: in the end correspondences farther apart are none, and landmarks farther from their targets hardly
+/// count.
+inline constexpr double kLastReach = 0.04;
+/// Of the diagonal: Geman-McClure's scale in the end.
+inline constexpr double kLastRobust = 0.007;
+
 /// Of the diagonal: the direction noise that fits and alignments reckon with.
 inline constexpr double kDirectionNoise = 0.003;
 

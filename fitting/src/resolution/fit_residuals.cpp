@@ -10,9 +10,6 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kReach = 0.04;  // of the diagonal: what is farther is of something else
-constexpr double kFar = 0.007;   // of the diagonal: as the fit's last robust scale
-
 // How far in front of the surface a point is; negative behind it. What hardly counts is hardly far.
 double offset_of(const Correspondence& pair, const Mesh& fitted, const MatchSurface& surface,
                  const Eigen::Vector3d& point) {
@@ -44,20 +41,20 @@ FitResiduals fit_residuals(const FitInput& input, const PlacedScan& start, const
   const Mesh fitted{to_template(result.pose, result.fitted.vertices), input.mesh.faces, {}};
   const double size = diagonal(input.mesh.vertices);
   CorrespondenceOptions options;
-  options.max_distance = kReach * size;
+  options.max_distance = kLastReach * size;
   options.signed_normals = start.views->signed_normals;
   options.trim = 1;
   options.direction_noise = kDirectionNoise * size;
-  options.robust_scale = kFar * size;
+  options.robust_scale = kLastRobust * size;
   const MatchSurface surface(fitted);
   const std::vector<Correspondence> pairs =
       find_correspondences(surface, points, normals_to_template(result.pose, put.normals), options, context);
   std::vector<double> offsets(static_cast<std::size_t>(points.rows()), 0);
   FitResiduals residuals;
-  residuals.squared.assign(offsets.size(), kFar * kFar);
+  residuals.squared.assign(offsets.size(), kLastRobust * kLastRobust);
   for (const Correspondence& pair : pairs) {
     const auto point = static_cast<std::size_t>(pair.scan_point);
-    residuals.squared[point] = robust_error(pair.distance / size, kFar);
+    residuals.squared[point] = robust_error(pair.distance / size, kLastRobust);
     offsets[point] = offset_of(pair, fitted, surface, points.row(pair.scan_point)) / size;
   }
   residuals.shared = shared_part(pairs, offsets, points);

@@ -11,7 +11,7 @@ namespace orbifit {
 
 /// How far the points of a scan lie from a fitted surface: what another fit could still gain, and whether it did.
 struct FitResiduals {
-  std::vector<double> squared;  ///< of each point, robust: what is far counts as one at `kFar`; squared diagonals
+  std::vector<double> squared;  ///< of each point, robust: what is far counts as at kLastRobust; squared diagonals
   /// Of the squared residuals, the share that a point and the one nearest to it have in common: shape that is not
   /// fitted yet, and not noise, which differs from one to the next. In [-1, 1].
   double shared = 0;

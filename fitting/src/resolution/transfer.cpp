@@ -1,11 +1,12 @@
-#include <numeric>
+#include "resolution/transfer.h"
+
 #include <vector>
 
+#include "orbifit/model/errors.h"
 #include "orbifit/subspace/displacement_field.h"
 
 #include "basis/subspace_parts.h"
 #include "deformation/corotation.h"
-#include "resolution/refinement.h"
 #include "solver/normal_solver.h"
 
 namespace orbifit {
@@ -23,8 +24,9 @@ Sparse seed_columns(const SymmetricSampling& sampling, const Sparse& columns) {
   for (int orbit = 0; orbit < sampling.orbits(); ++orbit) {
     for (int c = 0; c < 3; ++c) {
       const Index row = 3 * Index{sampling.first_sample[static_cast<std::size_t>(orbit)]} + c;
-      for (decltype(all)::InnerIterator it(all, row); it; ++it)
+      for (decltype(all)::InnerIterator it(all, row); it; ++it) {
         entries.emplace_back(3 * orbit + c, it.col(), it.value());
+      }
     }
   }
   Sparse result(3 * Index{sampling.orbits()}, columns.cols());
@@ -53,7 +55,9 @@ VectorXd transferred(const Subspace& from, const SubspaceState& state, const Sub
   const VectorXd ridge = VectorXd::Constant(gram.cols(), kRidge * gram.diagonal().mean());
   gram = Sparse(gram.triangularView<Eigen::Lower>()) + Sparse(ridge.asDiagonal());
   NormalSolver solver;
-  solver.compute(gram, Eigen::MatrixXd(gram.cols(), 0));
+  if (!solver.compute(gram, Eigen::MatrixXd(gram.cols(), 0))) {
+    throw NoResultError("the coarse displacement cannot be written in the finer subspace");
+  }
   return solver.solve(side);
 }
 

@@ -42,6 +42,7 @@ FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch,
       stiffness_matrix_(restricted(subspace->basis.columns, energy_.matrix()).triangularView<Eigen::Lower>()),
       hold_matrix_(diagonal_matrix(VectorXd::Constant(unknowns(), kHoldStill * static_cast<double>(samples())))),
       rigid_(std::sqrt(kPreferPose) * (subspace->basis.columns.transpose() * rigid_modes(subspace->sampling.points))) {
+  if (reference_.rows() > 0) reference_pull_ = energy_.matrix() * reference_;
   hold_matrix_ += Sparse(contacts_.gram().triangularView<Eigen::Lower>());
 }
 
@@ -79,7 +80,7 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   normal.matrix += diagonal_matrix(diagonal);
   add_data(rows_, mesh_, step_, pairs, share, scan_points, pulls, context, normal);
   Points pull = energy_.pull();
-  if (reference_.rows() > 0) pull += energy_.matrix() * reference_;
+  if (reference_pull_.rows() > 0) pull += reference_pull_;
   normal.side.head(dof) += hold.stiffness * (subspace_->basis.columns.transpose() * stacked(pull));
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
   VectorXd contact_pull = VectorXd::Zero(dof);

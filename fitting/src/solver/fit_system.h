@@ -48,6 +48,7 @@ class FitSystem final : public DeformationSystem {
   Eigen::SparseMatrix<double> stiffness_matrix_;  // lower half
   Eigen::SparseMatrix<double> hold_matrix_;       // the contacts', and what holds coordinates that move nothing
   Eigen::MatrixXd rigid_;                         // what prefers the pose: its square is added
+  Points reference_pull_;                         // of the energy towards the reference, unturned; no rows: none
   NormalSolver solver_;                           // of the last system
 };
 

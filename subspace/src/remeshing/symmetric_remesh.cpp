@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "orbifit/model/errors.h"
@@ -179,12 +180,10 @@ class Remeshing {
       largest = std::max(largest, distance);
     }
     mean += sum / static_cast<double>(samples.points.rows()) / 2;
-    const std::vector<int> used = [&] {
-      std::vector<int> all(static_cast<std::size_t>(from.faces.rows()));
-      for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<int>(f);
-      return vertices_of_faces(from, all);
-    }();
-    for (const int v : used) largest = std::max(largest, index.nearest(from.vertices.row(v).transpose()).distance);
+    std::vector<int> faces(static_cast<std::size_t>(from.faces.rows()));
+    std::iota(faces.begin(), faces.end(), 0);
+    for (const int v : vertices_of_faces(from, faces))
+      largest = std::max(largest, index.nearest(from.vertices.row(v).transpose()).distance);
   }
 
   void measure() {

@@ -22,7 +22,6 @@ namespace {
 using Json = GltfFile::Json;
 using Eigen::Index;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 class GltfLookReader {
  public:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "orbifit/model/appearance.h"
 
 namespace orbifit {
+
+/// What a corner does not have.
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Readers: what a file's `content` tells about the mesh that was read from it. \throw InputError
 Appearance obj_look(const std::filesystem::path& file, std::string_view content, const Mesh& mesh);

@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string rest_of(std::string_view line, std::string_view keyword) {
   const std::size_t at = line.find(keyword) + keyword.size();

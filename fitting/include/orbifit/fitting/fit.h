@@ -50,13 +50,14 @@ struct FitOptions {
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
 
-/// A subspace that was tried, each finer than the one before (docs/method.md 7.1).
+/// A subspace that was tried, each finer than the one before (docs/method.md 7.1). Distances are root mean squares over
+/// points of the scan that were held out of this fit, not of the coarser one; fractions of the template's diagonal,
+/// what is far counting as at .7 %; 0 for the coarsest.
 struct ResolutionLevel {
   int samples = 0, degrees_of_freedom = 0;
-  /// Root mean square distance of points of the scan that were held out of the finer fits, fraction of the template's
-  /// diagonal; what is far counts as at a certain distance.
-  double held_out = 0;
-  bool kept = false;  ///< these lay nearer, by more than chance
+  double held_out_before = 0;  ///< from the coarser fit
+  double held_out = 0;         ///< from this one
+  bool kept = false;           ///< nearer by more than chance, or the coarsest
 };
 
 struct FitIteration {
@@ -94,8 +95,10 @@ struct FitResult {
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
   std::shared_ptr<const ConjugatedBasis> basis;
   int samples = 0, degrees_of_freedom = 0;
-  double condition = 0;                 ///< of the last linear system, where FitOptions::condition asked for it
-  std::vector<ResolutionLevel> levels;  ///< from coarse to fine; the last one that was kept is the result's
+  double condition = 0;  ///< of the last linear system, where FitOptions::condition asked for it
+  /// From coarse to fine; the last one that was kept is the result's. None where FitOptions::subspace says how fine it
+  /// is, or the coarsest fit failed.
+  std::vector<ResolutionLevel> levels;
   std::vector<FitIteration> iterations;
   int iterations_in_all = 0;  ///< with those from other placements, which were not kept
   bool converged = false;

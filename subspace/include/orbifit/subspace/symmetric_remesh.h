@@ -32,14 +32,14 @@ struct SymmetricRemeshItem {
 
 struct SymmetricRemesh {
   Mesh mesh;
-  SymmetryAnnotation
-      annotation;  ///< of `mesh`: what was kept; of continuous groups the finite one that the triangles have
+  /// Of `mesh`: what was kept; of continuous groups the finite one that the triangles have.
+  SymmetryAnnotation annotation;
   std::vector<int> source_face;     ///< #F of `mesh`: the face that it was cut from
   std::vector<Motion> motions;      ///< the identity first
   std::vector<int> motion_of_face;  ///< #F: which of the motions took the cut face to where it is
   std::vector<SymmetricRemeshItem> items;
-  double largest_distance = 0;  ///< between the old and the new surface
-  double mean_distance = 0;     ///< over both surfaces' area
+  double largest_distance = 0;  ///< between the given and the new surface
+  double mean_distance = 0;     ///< over both surfaces' area; both are fractions of the given mesh's diagonal
 };
 
 /// Judges the regions of whole components, before an annotation is made consistent: that leaves out what contradicts
@@ -54,11 +54,11 @@ void require_scores(const Mesh& mesh, const SymmetryAnnotation& annotation, cons
 ///
 /// Motions take components to components; of those that they relate the first is made anew and the others are its
 /// images. (Components that have no counterpart of their own are taken together with others of their regions, as one
-/// surface.) What takes one to itself is a finite group: it is cut
-/// along the walls of a Dirichlet domain of it, and the images of what is inside are welded along the walls by their
-/// numbers. Of some twenty domains the one is taken whose images are nearest to the surface: the best side, not a mean.
-/// At a mirror, cut vertices are their own images; elsewhere the curves along which the two sides meet get one
-/// another's vertices, and each place the mean of all that meet there.
+/// surface.) What takes one to itself is a finite group: it is cut along the walls of a Dirichlet domain of it
+/// (docs/method.md 5.1), and the images of what is inside are welded along the walls by their numbers. Of some twenty
+/// domains the one is taken whose images are nearest to the surface: the best side, not a mean. At a mirror, cut
+/// vertices are their own images; elsewhere the curves along which the two sides meet get one another's vertices, and
+/// each place the mean of all that meet there.
 ///
 /// A continuous group is kept as the finite one that the tessellation has, or else, where nothing else holds the same
 /// components, as one with rotations about as fine as its edges (a sphere as Ih).

@@ -1,9 +1,8 @@
-#include "resolution/refinement.h"
+#include "refinement.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -13,17 +12,18 @@
 #include "fit_systems.h"
 #include "fit_trial.h"
 #include "resolution/fit_residuals.h"
+#include "resolution/transfer.h"
 #include "solver/fit_system.h"
 
 namespace orbifit {
 
 namespace {
 
-constexpr double kFiner = 3;          // times the degrees of freedom, a level
-constexpr double kHeldOut = 0.1;      // of the scan
-constexpr double kSure = 2;           // standard errors of what held-out points gain
-constexpr int kMaxSamples = 10000;    // of which three times as many are taken
-constexpr double kWorthwhile = 0.05;  // of the squared residuals: what a finer fit could gain at most
+constexpr double kFiner = 3;             // times the degrees of freedom, a level
+constexpr double kHeldOut = 0.1;         // of the scan
+constexpr double kSure = 2;              // standard errors of what held-out points gain
+constexpr int kMaxSamples = 10000;       // of which three times as many are taken
+constexpr double kWorthRefining = 0.05;  // of the squared residuals: what a finer fit could gain at most
 
 std::vector<double> held_out(const std::vector<double>& of_points, const std::vector<char>& chosen) {
   std::vector<double> result;
@@ -67,18 +67,14 @@ FitResult finer_fit(const FitInput& input, const PlacedScan& start, const FitOpt
   return fit_from({coarse.pose, std::move(q), coarse.others}, options.levels, input, start, system, options, context);
 }
 
-}  // namespace
-
-namespace {
-
 // Every tenth patch of the scan, each of a width: depth cameras err alike at neighbouring points, so a point's own
 // neighbours do not tell shape from noise. As wide as finer samples are apart, such a fit can bridge it.
 std::vector<char> some_patches(const Points& points, double width, std::uint64_t seed) {
-  std::map<std::array<std::int64_t, 3>, char> chosen;
+  std::map<std::array<double, 3>, char> chosen;  // by cell
   Random random(seed, "held out");
   std::vector<char> result;
   for (const auto& point : points.rowwise()) {
-    const auto cell = [&](int c) { return static_cast<std::int64_t>(std::floor(point[c] / width)); };
+    const auto cell = [&](int c) { return std::floor(point[c] / width); };
     const auto [entry, added] = chosen.try_emplace({cell(0), cell(1), cell(2)}, char{0});
     if (added) entry->second = random.uniform(0, 1) < kHeldOut ? 1 : 0;
     result.push_back(entry->second);
@@ -89,11 +85,11 @@ std::vector<char> some_patches(const Points& points, double width, std::uint64_t
 void refine_from_start(const FitInput& input, const PlacedScan& start, const FitOptions& options,
                        const RunContext& context, FitResult& result) {
   FitResiduals now = fit_residuals(input, start, result, context);
-  result.levels = {{result.samples, result.degrees_of_freedom, root_mean(now.squared), true}};
+  result.levels = {{result.samples, result.degrees_of_freedom, 0, 0, true}};
   // Groups that turn are left as coarse as they are.
   if (result.subspace.mode() == GroupMode::moving) return;
   PlacedScan most = start;
-  for (int level = 0; level < options.refinements && now.shared > kWorthwhile && result.samples <= kMaxSamples;
+  for (int level = 0; level < options.refinements && now.shared > kWorthRefining && result.samples <= kMaxSamples;
        ++level) {
     const double width = finer_radius(result) * result.pose.scale;
     most.held_out = some_patches(start.scan.points, width, context.seed);
@@ -103,7 +99,7 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
     now = fit_residuals(input, start, found, context);
     const std::vector<double> after = held_out(now.squared, most.held_out);
     const bool better = smaller(before, after);
-    result.levels.push_back({found.samples, found.degrees_of_freedom, root_mean(after), better});
+    result.levels.push_back({found.samples, found.degrees_of_freedom, root_mean(before), root_mean(after), better});
     result.iterations_in_all += found.iterations_in_all;
     if (!better) return;
     found.levels = std::move(result.levels);
@@ -112,7 +108,6 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
     found.groups = std::move(result.groups);
     found.dropped = std::move(result.dropped);
     found.other_used = std::move(result.other_used);
-    found.landmarks = std::move(result.landmarks);
     result = std::move(found);
   }
 }

@@ -14,9 +14,4 @@ namespace orbifit {
 void refine(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
             FitResult& result);
 
-/// A state in the coordinates of another subspace of the same mesh and annotation, whose groups are at rest: the same
-/// displacement of its samples and of the groups, wherever that subspace contains it, else the nearest.
-Eigen::VectorXd transferred(const Subspace& from, const SubspaceState& state, const Subspace& to,
-                            const RunContext& context);
-
 }  // namespace orbifit
