@@ -1,8 +1,11 @@
 """Files, other packages' meshes, pictures, what notebooks show."""
 
 import base64
+import os
 import pathlib
 import re
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -75,6 +78,52 @@ def test_open3d_itself(mesh):
 def test_trimesh_itself(mesh):
     pytest.importorskip("trimesh")
     assert orbifit.Mesh.from_trimesh(mesh.to_trimesh()) == mesh
+
+
+class Trimesh:
+    """What trimesh makes of its arguments: its own kind of arrays, vertices merged and moved unless told not to."""
+
+    class Tracked(np.ndarray):
+        pass
+
+    def __init__(self, vertices, faces, process=True):
+        assert vertices.flags.writeable and faces.flags.writeable
+        self.vertices = (vertices if not process else np.unique(vertices, axis=0)).view(self.Tracked)
+        self.faces = faces.astype(np.int64).view(self.Tracked)
+
+
+def test_to_trimesh_keeps_the_order(mesh, monkeypatch):
+    monkeypatch.setitem(sys.modules, "trimesh", SimpleNamespace(Trimesh=Trimesh))
+    assert orbifit.Mesh.from_trimesh(mesh.to_trimesh()) == mesh == orbifit.Mesh.of(mesh.to_trimesh())
+
+
+def test_meshio_itself(mesh):
+    meshio = pytest.importorskip("meshio")
+    assert orbifit.Mesh.from_meshio(mesh.to_meshio()) == mesh
+    assert isinstance(mesh.to_meshio(), meshio.Mesh)
+
+
+def test_correspondences_of_the_program_are_read_by_numpy(mesh, annotation, tmp_path):
+    program = pathlib.Path(os.environ.get("ORBIFIT_BUILD", "")) / "apps" / "orbifit"
+    if not program.is_file():
+        pytest.skip("ORBIFIT_BUILD names no build folder")
+    mesh.save(tmp_path / "m.ply")
+    annotation.save(tmp_path / "a.json")
+    subprocess.run([program, "convert", tmp_path / "a.json", tmp_path / "c.npz", "--mesh", tmp_path / "m.ply", "--quiet"],
+                   check=True, stdout=subprocess.DEVNULL)
+    region = annotation.regions[0]
+    with np.load(tmp_path / "c.npz", allow_pickle=False) as found:
+        vertices, images, motions = found["vertices"], found["images"], found["motions"]
+        orbits, distances, elements = found["orbits"], found["distances"], found["elements"]
+    assert np.array_equal(elements, np.arange(region.order)) and np.allclose(motions, region.elements, atol=1e-9)
+    assert images.shape == distances.shape == (len(elements), len(vertices)) and orbits.shape == vertices.shape
+    points = mesh.vertices
+    for motion, image, distance in zip(motions, images, distances):
+        there = image >= 0
+        offs = points[vertices] @ motion[:, :3].T + motion[:, 3] - points[image]
+        assert there.all() and np.linalg.norm(offs, axis=1).max() < 1e-9 * mesh.diagonal
+        assert distance.max() < 1e-9
+    assert all(len(set(orbits[np.searchsorted(vertices, image[:50])] - orbits[:50])) == 1 for image in images)
 
 
 def test_pictures(mesh, annotation, tmp_path):

@@ -114,7 +114,8 @@ def test_fits_a_scan(mesh, annotation, subspace, lift):
     assert np.linalg.norm(fit.mesh.vertices - truth.vertices, axis=1).max() < 0.03 * truth.diagonal
     assert fit.seen.dtype == bool and fit.seen.shape == (len(mesh.vertices),) and not fit.seen.all()
     assert len(fit.history["rms"]) == fit.figures["iterations"]
-    again = orbifit.fit(mesh, [scan.points[::2], scan.points[1::2]], subspace=subspace, pose=np.eye(4), threads=1)
+    again = orbifit.fit(mesh, [scan.points[::2], scan.points[1::2]], subspace=subspace, pose=np.eye(4), threads=1,
+                        one_frame=True)
     assert again.converged and again.scan.points.shape == scan.points.shape
     with pytest.raises(orbifit.InputError):
         orbifit.fit(mesh, scan.points[:5], annotation)

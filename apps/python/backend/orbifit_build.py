@@ -47,6 +47,16 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     return name
 
 
+def prepare_metadata_for_build_wheel(metadata_directory: str, config_settings: Settings = None) -> str:
+    """Without this pip would build the wheel twice."""
+    folder = f"orbifit-{_version()}.dist-info"
+    for name, content in _info_files().items():
+        file = Path(metadata_directory) / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_bytes(content)
+    return folder
+
+
 def build_sdist(sdist_directory: str, config_settings: Settings = None) -> str:
     """The whole project: the package is a part of it."""
     base = f"orbifit-{_version()}"
@@ -98,6 +108,11 @@ def _metadata() -> str:
 
 def _package_files(package: Path) -> Dict[str, bytes]:
     files = {f"orbifit/{file.name}": file.read_bytes() for file in sorted(package.iterdir()) if file.is_file()}
+    return {**files, **_info_files()}
+
+
+def _info_files() -> Dict[str, bytes]:
+    files = {}
     info = f"orbifit-{_version()}.dist-info"
     files[f"{info}/METADATA"] = _metadata().encode()
     files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: orbifit\nRoot-Is-Purelib: false\nTag: {_tag()}\n".encode()

@@ -17,47 +17,45 @@ namespace {
 /// A deformer that several threads may use: solves at once, new handles alone.
 class KeptDeformer {
  public:
-  /// \param threads  the deformer keeps a context, so it is given one that outlives this call: of threads alone
-  KeptDeformer(SubspacePointer of, const DeformerOptions& options, int threads)
-      : of_(std::move(of)), deformer_(of_->subspace, *of_->mesh, options, context_of(threads)) {}
+  KeptDeformer(SubspacePointer of, const DeformerOptions& options, const RunContext& context)
+      : of_(std::move(of)), deformer_(of_->subspace, *of_->mesh, options, context), threads_(context.threads) {}
 
   void set_handles(const std::vector<Handle>& handles, double alpha) {
     if (handles.empty()) throw UsageError("handles is empty");
     if (!(alpha > 0)) throw UsageError("alpha is " + std::to_string(alpha) + "; it must be above 0");
-    const py::gil_scoped_release release;
-    const std::unique_lock lock(mutex_);
-    deformer_.set_handles(handles, alpha);
-    handles_ = handles;
+    run_released(arguments(), [&](RunContext&) {
+      const std::unique_lock lock(mutex_);
+      deformer_.set_handles(handles, alpha);
+      handles_ = handles;
+    });
   }
 
   Deformation solve(std::optional<std::vector<Motion>> motions, int iterations, const SubspaceState& start) {
     if (iterations < 1) throw UsageError("iterations is " + std::to_string(iterations) + "; it must be at least 1");
-    const py::gil_scoped_release release;
-    const std::shared_lock lock(mutex_);
-    if (handles_.empty()) throw UsageError("solve() without handles: call set_handles() first");
-    if (!motions) {
-      motions.emplace();
-      for (const Handle& handle : handles_) motions->push_back(handle.motion);
-    }
-    if (motions->size() != handles_.size()) {
-      throw UsageError("motions has " + std::to_string(motions->size()) + " of them; there are " +
-                       count_text(handles_.size(), "handle"));
-    }
-    return deformer_.solve(*motions, iterations, start);
+    return run(arguments(), [&](const RunContext& context) {
+      const std::shared_lock lock(mutex_);
+      if (handles_.empty()) throw UsageError("solve() without handles: call set_handles() first");
+      if (!motions) {
+        motions.emplace();
+        for (const Handle& handle : handles_) motions->push_back(handle.motion);
+      }
+      if (motions->size() != handles_.size()) {
+        throw UsageError("motions has " + std::to_string(motions->size()) + " of them; there are " +
+                         count_text(handles_.size(), "handle"));
+      }
+      return deformer_.solve(*motions, iterations, start, &context);
+    });
   }
 
   const SubspacePointer& of() const { return of_; }
   std::size_t contacts() const { return deformer_.contacts(); }
 
  private:
-  static RunContext context_of(int threads) {
-    RunContext context;
-    context.threads = threads;
-    return context;
-  }
+  RunArguments arguments() const { return {1, threads_, {}, Progress(py::none())}; }
 
   SubspacePointer of_;
-  Deformer deformer_;
+  Deformer deformer_;  // never asks the context that it keeps, which ends with the call that made it
+  int threads_;
   std::shared_mutex mutex_;
   std::vector<Handle> handles_;
 };
@@ -194,7 +192,7 @@ void define_deformer(py::module_& module) {
                        std::optional<int> threads) {
              const DeformerOptions options{laplacian_from(laplacian), contacts};
              return run({1, threads, {}, Progress(py::none())}, [&](RunContext& context) {
-               return std::make_shared<KeptDeformer>(subspace, options, context.threads);
+               return std::make_shared<KeptDeformer>(subspace, options, context);
              });
            }),
            py::arg("subspace"), py::kw_only(), py::arg("laplacian") = "graph", py::arg("contacts") = true,

@@ -62,6 +62,20 @@ py::list groups_of(const FitResult& result) {
   return groups;
 }
 
+py::list levels_of(const FitResult& result) {
+  py::list levels;
+  for (const ResolutionLevel& level : result.levels) {
+    py::dict entry;
+    entry["samples"] = level.samples;
+    entry["degrees_of_freedom"] = level.degrees_of_freedom;
+    entry["held_out_before"] = level.held_out_before;
+    entry["held_out"] = level.held_out;
+    entry["kept"] = level.kept;
+    levels.append(entry);
+  }
+  return levels;
+}
+
 using Class = py::class_<KeptFit, std::shared_ptr<KeptFit>>;
 
 void define_shapes(Class& fit) {
@@ -79,7 +93,20 @@ void define_shapes(Class& fit) {
           "template", [](const KeptFit& kept) { return std::const_pointer_cast<Mesh>(kept.mesh); }, "What was fitted.")
       .def_property_readonly(
           "scan", [](const KeptFit& kept) { return std::const_pointer_cast<PointCloud>(kept.scan); },
-          "What it was fitted to.")
+          "What it was fitted to: the scan, or all points of those that took part, in the frame of the first.")
+      .def_property_readonly(
+          "others",
+          [](const KeptFit& kept) {
+            std::vector<std::optional<DoubleArray>> motions;
+            for (std::size_t k = 0; k < kept.result.others.size(); ++k) {
+              const Motion& motion = kept.result.others[k];
+              motions.emplace_back();
+              if (kept.result.other_used[k] != 0) motions.back() = matrix_of({1, motion.linear, motion.translation});
+            }
+            return motions;
+          },
+          "(4, 4) each: of the scans but the first, their frames into that of the first; None for a scan in which the\n"
+          "shape was not found, which took no part.")
       .def_property_readonly(
           "pose", [](const KeptFit& kept) { return matrix_of(kept.result.pose); },
           "(4, 4): template to scan, a similarity.")
@@ -133,6 +160,11 @@ void define_fit_result(py::module_& module) {
       .def_property_readonly(
           "history", [](const KeptFit& kept) { return history_of(kept.result); },
           "Of each iteration, an array for each figure.")
+      .def_property_readonly(
+          "levels", [](const KeptFit& kept) { return levels_of(kept.result); },
+          "The subspaces that were tried, from coarse to fine, and what points held out of the fit say of them: root\n"
+          "mean square distances, fractions of the diagonal. One at most where `radius`, `samples` or `subspace` say how\n"
+          "fine it is.")
       .def_property_readonly(
           "groups", [](const KeptFit& kept) { return groups_of(kept.result); },
           "What the scan says of each region's group, where `judge_groups` asked for it.")

@@ -9,7 +9,7 @@ namespace orbifit::python {
 /// A fit and what it was made from, for pictures.
 struct KeptFit {
   MeshPointer mesh;
-  ScanPointer scan;
+  ScanPointer scan;  ///< of all scans that took part, in the frame of the first
   FitResult result;
 };
 

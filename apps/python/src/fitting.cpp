@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include "orbifit/apps/scan_union.h"
 #include "orbifit/detection/detect.h"
 #include "orbifit/fitting/fit.h"
 #include "orbifit/model/consistent_annotation.h"
@@ -32,9 +33,9 @@ std::vector<Landmark> landmarks_from(const LandmarkList& pairs, const Mesh& mesh
 
 struct Given {
   MeshPointer mesh;
-  ScanPointer scan;
-  AnnotationPointer annotation;  // null: to be detected
-  SubspacePointer subspace;      // null: to be built
+  std::vector<ScanPointer> scans;  // at least one
+  AnnotationPointer annotation;    // null: to be detected
+  SubspacePointer subspace;        // null: to be built
   Similarity pose;
   std::vector<Landmark> landmarks;
   std::vector<Handle> handles;
@@ -48,12 +49,17 @@ std::shared_ptr<KeptFit> fitted(const Given& given, const FitOptions& options, R
     annotation = given.annotation ? given.annotation->value : detect(*given.mesh, DetectOptions{}, context);
     annotation = made_consistent(*given.mesh, annotation, context);
   }
-  FitInput input{*given.mesh, annotation, *given.scan, given.pose, given.landmarks, given.handles};
+  const std::vector<const PointCloud*> scans = pointers_to(given.scans);
+  FitInput input{*given.mesh, annotation, *scans.front(), given.pose, given.landmarks, given.handles};
+  input.others.assign(scans.begin() + 1, scans.end());
   if (given.subspace) input.subspace = std::make_shared<const Subspace>(given.subspace->subspace);
   auto kept = std::make_shared<KeptFit>();
   kept->mesh = given.mesh;
-  kept->scan = given.scan;
   kept->result = fit(input, options, context);
+  kept->scan =
+      scans.size() == 1
+          ? given.scans.front()
+          : std::make_shared<const PointCloud>(scan_union(scans, kept->result.others, kept->result.other_used));
   return kept;
 }
 
@@ -61,7 +67,9 @@ constexpr const char* kFitDoc =
     "Deforms a template to a scan within its symmetric subspace.\n\n"
     "Args:\n"
     "    template: see :meth:`Mesh.of`.\n"
-    "    scans: see :meth:`PointCloud.of`; a list of scans of one object, in one frame.\n"
+    "    scans: see :meth:`PointCloud.of`; or a list of scans of one object, each in a frame of its own: they have "
+    "one\n"
+    "        shape and one scale together, and the result is in the frame of the first.\n"
     "    annotation: of the template; it is detected if not given.\n"
     "    subspace: of the template, where it is built already; `annotation` and the basis' options are its own "
     "then.\n"
@@ -76,7 +84,12 @@ constexpr const char* kFitDoc =
     "    inlier_distance: a point nearer than this fraction of the diagonal is explained.\n"
     "    contacts: parts of the template that touch stay in touch.\n"
     "    judge_groups: say which groups the scan has not; takes as long again.\n"
-    "    drop_unsupported: and leave those out.\n" ORBIFIT_RUN_DOC
+    "    drop_unsupported: and leave those out.\n"
+    "    one_frame: the scans have one frame, where they make up one scan.\n"
+    "    aligned: `pose`, or the template's own place where that is not given, is neither sought nor refined; the\n"
+    "        scans have one frame then.\n"
+    "    scale: of the template in the scan: 'any', or 'fixed', that of `pose`, or the template's "
+    "own.\n" ORBIFIT_RUN_DOC
     "\nReturns:\n"
     "    A fit, also one that does not explain the scan: its `converged` is False then.\n\n"
     "Raises:\n"
@@ -92,9 +105,12 @@ void define_fit(py::module_& module) {
          const std::optional<LandmarkList>& landmarks, const std::optional<py::iterable>& handles,
          const std::string& mode, std::optional<double> radius, std::optional<int> samples, double stiffness,
          int refinements, int scan_points, double inlier_distance, bool contacts, bool judge_groups,
-         bool drop_unsupported, std::uint64_t seed, std::optional<int> threads, std::optional<double> timeout,
-         const Progress& progress) {
-        Given given{mesh_from(mesh_like), scan_from(scans), annotation, subspace, {}, {}, {}};
+         bool drop_unsupported, bool one_frame, bool aligned, const std::string& scale, std::uint64_t seed,
+         std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
+        Given given{mesh_from(mesh_like), scans_from(scans), annotation, subspace, {}, {}, {}};
+        if (one_frame || aligned) given.scans = {one_scan(given.scans)};
+        if (scale != "any" && scale != "fixed")
+          throw UsageError("scale is '" + scale + "'; it must be 'any' or 'fixed'");
         if (subspace) require_fit(subspace->annotation->value, *given.mesh);
         if (annotation) require_fit(annotation->value, *given.mesh);
         if (pose) given.pose = similarity_from(*pose, "pose");
@@ -102,7 +118,9 @@ void define_fit(py::module_& module) {
         if (handles) given.handles = handles_from(*handles, *given.mesh);
         FitOptions options;
         options.subspace = subspace_options(mode, "orbit", radius, samples, {}, false, *given.mesh);
-        options.place = !pose && given.handles.empty();
+        options.place = !pose && !aligned && given.handles.empty();
+        options.align = !aligned;
+        options.fixed_scale = scale == "fixed";
         options.last_stiffness = stiffness;
         options.refinements = subspace ? 0 : refinements;
         options.scan_points = scan_points;
@@ -120,8 +138,9 @@ void define_fit(py::module_& module) {
       py::arg("samples") = py::none(), py::arg("stiffness") = defaults.last_stiffness,
       py::arg("refinements") = defaults.refinements, py::arg("scan_points") = defaults.scan_points,
       py::arg("inlier_distance") = defaults.inlier_distance, py::arg("contacts") = true,
-      py::arg("judge_groups") = false, py::arg("drop_unsupported") = false, seed_argument(), threads_argument(),
-      timeout_argument(), progress_argument(), kFitDoc);
+      py::arg("judge_groups") = false, py::arg("drop_unsupported") = false, py::arg("one_frame") = false,
+      py::arg("aligned") = false, py::arg("scale") = "any", seed_argument(), threads_argument(), timeout_argument(),
+      progress_argument(), kFitDoc);
 }
 
 }  // namespace

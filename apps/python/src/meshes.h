@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "orbifit/model/mesh.h"
 
@@ -24,6 +25,14 @@ MeshPointer mesh_from(const py::handle& mesh_or_vertices, const py::handle& face
 
 /// A scan of what stands for one: PointCloud, points, Open3D, a file; a list of those is one scan of them all.
 ScanPointer scan_from(const py::handle& scan);
+
+/// The same of a list or tuple of those, each by itself; there is at least one.
+std::vector<ScanPointer> scans_from(const py::handle& scans);
+
+/// All points of scans in one frame.
+ScanPointer one_scan(const std::vector<ScanPointer>& scans);
+
+std::vector<const PointCloud*> pointers_to(const std::vector<ScanPointer>& scans);
 
 void define_meshes(py::module_& module);
 void define_scans(py::module_& module);

@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, module) {
   define_errors(module);
   define_meshes(module);
   define_scans(module);
+  define_depth_images(module);
   define_regions(module);
   define_patterns(module);
   define_annotations(module);

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "orbifit/apps/scan_union.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/scan_io.h"
 
@@ -46,37 +47,6 @@ ScanPointer scan_from_arrays(const py::handle& points, const std::optional<Array
   return scan;
 }
 
-// Rows of all scans, or none where a scan has none.
-Points joined(const std::vector<ScanPointer>& scans, Points PointCloud::*member) {
-  Eigen::Index rows = 0;
-  for (const ScanPointer& scan : scans) {
-    if (((*scan).*member).rows() == 0) return Points(0, 3);
-    rows += scan->points.rows();
-  }
-  Points result(rows, 3);
-  Eigen::Index row = 0;
-  for (const ScanPointer& scan : scans) {
-    const Points& part = (*scan).*member;
-    const Eigen::Index count = scan->points.rows();
-    if (part.rows() == 1) {
-      result.middleRows(row, count).rowwise() = part.row(0);
-    } else {
-      result.middleRows(row, count) = part;
-    }
-    row += count;
-  }
-  return result;
-}
-
-ScanPointer joined(const std::vector<ScanPointer>& scans) {
-  auto result = std::make_shared<PointCloud>();
-  result->points = joined(scans, &PointCloud::points);
-  result->normals = joined(scans, &PointCloud::normals);
-  result->viewpoints = joined(scans, &PointCloud::viewpoints);
-  for (const ScanPointer& scan : scans) result->dropped += scan->dropped;
-  return result;
-}
-
 py::object as_array(const Points& points) {
   if (points.rows() == 0) return py::none();
   return DoubleArray({points.rows(), Eigen::Index{3}}, points.data());
@@ -111,7 +81,7 @@ void define_point_cloud(py::module_& module) {
           "of", [](const ScanLike& scan) { return std::const_pointer_cast<PointCloud>(scan_from(scan)); },
           py::arg("scan"),
           "The scan of whatever stands for one: a :class:`PointCloud` itself, (n, 3) points, a point cloud of Open3D "
-          "or trimesh, a file; a list of those is one scan of all their points.")
+          "or trimesh, a file; a list of those, which have one frame, is one scan of all their points.")
       .def_property_readonly(
           "points", [](const py::object& self) { return view_of(self.cast<const PointCloud&>().points, self); },
           "(n, 3) float64, read-only.")
@@ -144,7 +114,36 @@ void define_point_cloud(py::module_& module) {
           }));
 }
 
+bool is_list_of_scans(const py::handle& scan) {
+  if (!py::isinstance<py::list>(scan) && !py::isinstance<py::tuple>(scan)) return false;
+  if (py::len(scan) == 0) return false;
+  const py::array whole = py::array::ensure(scan);
+  if (!whole) PyErr_Clear();
+  return !whole || whole.dtype().kind() == 'O' || whole.ndim() != 2;
+}
+
 }  // namespace
+
+std::vector<ScanPointer> scans_from(const py::handle& scans) {
+  if (!is_list_of_scans(scans)) return {scan_from(scans)};
+  // A list may hold itself.
+  if (Py_EnterRecursiveCall(" in a list of scans") != 0) throw py::error_already_set();
+  const std::unique_ptr<void, void (*)(void*)> leave(scans.ptr(), [](void*) { Py_LeaveRecursiveCall(); });
+  std::vector<ScanPointer> result;
+  for (const py::handle item : py::reinterpret_borrow<py::object>(scans)) result.push_back(scan_from(item));
+  return result;
+}
+
+ScanPointer one_scan(const std::vector<ScanPointer>& scans) {
+  if (scans.size() == 1) return scans.front();
+  return std::make_shared<PointCloud>(scan_union(pointers_to(scans)));
+}
+
+std::vector<const PointCloud*> pointers_to(const std::vector<ScanPointer>& scans) {
+  std::vector<const PointCloud*> pointers;
+  for (const ScanPointer& scan : scans) pointers.push_back(scan.get());
+  return pointers;
+}
 
 ScanPointer scan_from(const py::handle& scan) {
   if (py::isinstance<PointCloud>(scan)) return scan.cast<std::shared_ptr<PointCloud>>();
@@ -156,16 +155,7 @@ ScanPointer scan_from(const py::handle& scan) {
     return scan_from_arrays(scan.attr("points"), has_normals ? given(scan.attr("normals")) : std::nullopt, {});
   }
   if (py::hasattr(scan, "vertices")) return scan_from_arrays(scan.attr("vertices"), {}, {});  // trimesh
-  if (py::isinstance<py::list>(scan) && py::len(scan) > 0) {
-    const auto list = py::reinterpret_borrow<py::list>(scan);
-    const py::array whole = py::array::ensure(scan);
-    if (!whole) PyErr_Clear();
-    if (!whole || whole.dtype().kind() == 'O' || whole.ndim() != 2) {
-      std::vector<ScanPointer> scans;
-      for (const py::handle item : list) scans.push_back(scan_from(item));
-      return joined(scans);
-    }
-  }
+  if (is_list_of_scans(scan)) return one_scan(scans_from(scan));
   return scan_from_arrays(scan, {}, {});
 }
 

@@ -6,6 +6,7 @@ namespace orbifit::python {
 
 void define_checks(pybind11::module_& module);
 void define_datasets(pybind11::module_& module);
+void define_depth_images(pybind11::module_& module);
 void define_deformer(pybind11::module_& module);
 void define_detection(pybind11::module_& module);
 void define_fitting(pybind11::module_& module);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "orbifit/apps/scan_union.h"
 #include "orbifit/fitting/depth_image.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/motion.h"
@@ -15,41 +16,10 @@ namespace orbifit::commands {
 
 namespace {
 
-Points stacked(const Points& upper, const Points& lower) {
-  Points result(upper.rows() + lower.rows(), 3);
-  result << upper, lower;
-  return result;
-}
-
-bool known_for_each(const Points& rows, const PointCloud& scan) {
-  return rows.rows() == scan.points.rows();
-}
-
-PointCloud moved(const PointCloud& scan, const Motion& motion) {
-  const auto move = [&](const Points& points) -> Points {
-    return (points * motion.linear.transpose()).rowwise() + motion.translation.transpose();
-  };
-  PointCloud result;
-  result.points = move(scan.points);
-  if (known_for_each(scan.normals, scan)) result.normals = scan.normals * motion.linear.transpose();
-  if (scan.viewpoints.rows() > 0) result.viewpoints = move(scan.viewpoints);
-  result.dropped = scan.dropped;
-  return result;
-}
-
-// Normals and viewpoints stay known where they are of both.
-void append(const PointCloud& more, PointCloud& all) {
-  const auto of_each = [](const PointCloud& scan) -> Points {
-    return scan.viewpoints.rows() == 1 ? Points(scan.viewpoints.replicate(scan.points.rows(), 1)) : scan.viewpoints;
-  };
-  const Points own = of_each(all);
-  const Points theirs = of_each(more);
-  const bool normals = known_for_each(all.normals, all) && known_for_each(more.normals, more);
-  const bool viewpoints = known_for_each(own, all) && known_for_each(theirs, more);
-  all.normals = normals ? stacked(all.normals, more.normals) : Points(0, 3);
-  all.viewpoints = viewpoints ? stacked(own, theirs) : Points(0, 3);
-  all.points = stacked(all.points, more.points);
-  all.dropped += more.dropped;
+std::vector<const PointCloud*> pointers_to(const std::vector<PointCloud>& scans) {
+  std::vector<const PointCloud*> pointers;
+  for (const PointCloud& scan : scans) pointers.push_back(&scan);
+  return pointers;
 }
 
 void check_depth_options(const ScanArguments& arguments, std::size_t images, std::size_t extrinsics) {
@@ -132,17 +102,11 @@ std::vector<PointCloud> read_scans(const ScanArguments& arguments, bool one_fram
     }
   }
   if (!one_frame && !arguments.one_frame && cameras.empty()) return scans;
-  for (std::size_t i = 1; i < scans.size(); ++i) append(scans[i], scans.front());
-  scans.resize(1);
-  return scans;
+  return {scan_union(pointers_to(scans))};
 }
 
 PointCloud joined_scans(const std::vector<PointCloud>& scans, const FitResult& result) {
-  PointCloud all = scans.front();
-  for (std::size_t i = 1; i < scans.size(); ++i) {
-    if (result.other_used[i - 1] != 0) append(moved(scans[i], result.others[i - 1]), all);
-  }
-  return all;
+  return scan_union(pointers_to(scans), result.others, result.other_used);
 }
 
 }  // namespace orbifit::commands

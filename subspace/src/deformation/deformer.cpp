@@ -76,7 +76,8 @@ struct Deformer::Implementation {
     stiffness += joined;
   }
 
-  Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const;
+  Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start,
+                    const RunContext& asked) const;
 };
 
 Deformer::Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options,
@@ -109,20 +110,22 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   if (!own.factor.factorise(system)) throw NoResultError("the handles' system could not be factorised");
 }
 
-Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start) const {
+Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start,
+                            const RunContext* context) const {
   if (motions.size() != implementation_->handles.handles()) {
     throw UsageError("there are " + std::to_string(implementation_->handles.handles()) + " handles but " +
                      std::to_string(motions.size()) + " motions");
   }
+  const RunContext& asked = context != nullptr ? *context : implementation_->context;
   if (implementation_->moving) {
     return implementation_->moving->solve(implementation_->handles, implementation_->alpha, motions, iterations, start,
-                                          implementation_->context);
+                                          asked);
   }
-  return implementation_->solve(motions, iterations, start);
+  return implementation_->solve(motions, iterations, start, asked);
 }
 
 Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, int iterations,
-                                            const SubspaceState& start) const {
+                                            const SubspaceState& start, const RunContext& asked) const {
   const Eigen::Index freedom = subspace.degrees_of_freedom();
   const Eigen::VectorXd targets = handles.targets(motions);
   const Eigen::VectorXd handle_pull = alpha * handles.pull(targets, freedom);
@@ -135,7 +138,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
   Eigen::VectorXd side(freedom);
   const auto turned = [&](int sample) { return quotient.rotation_of(sample, rotations); };
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    context.check();
+    asked.check();
     // Equation (4), right, with the Laplace coordinates turned.
     quotient.pull(rotations, side);
     side += handle_pull;

@@ -49,7 +49,7 @@ struct DeformerOptions {
 class Deformer {
  public:
   /// \param subspace and mesh outlive the deformer
-  /// \param context  solve() asks it as well whether to stop; a copy is kept
+  /// \param context  solve() asks it as well whether to stop, unless given another one; a copy is kept
   Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options = {},
            const RunContext& context = RunContext{});
   ~Deformer();
@@ -64,7 +64,9 @@ class Deformer {
   /// Where the handles shall go: one motion for each, in the order of set_handles(). O(DoF^2) an iteration; in mode
   /// moving, where the groups turn as they must and the basis with them, O(samples * DoF^2).
   /// \param start state to start from (its rotations are used), or none for the rest pose
-  Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start = {}) const;
+  /// \param context  asked before each iteration whether to stop; null: the one that the deformer keeps
+  Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start = {},
+                    const RunContext* context = nullptr) const;
 
   /// How many joints between parts that touch at rest are kept touching.
   std::size_t contacts() const;
