@@ -87,13 +87,15 @@ SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, Gr
   return best;
 }
 
-void add_atoms(const SubspaceParts& subspace, ConjugatedBasis& basis) {
+void add_atoms(const SubspaceParts& subspace, ConjugatedBasis& basis, const RunContext& context) {
+  constexpr Eigen::Index kAtomsBetweenChecks = 1024;  // a few milliseconds
   const auto count = static_cast<Eigen::Index>(subspace.lift.atoms.size());
   const bool floating = subspace.mode != GroupMode::fixed;
   const Eigen::SparseMatrix<double, Eigen::RowMajor> rows(basis.columns);
   std::vector<Eigen::Triplet<double>> entries;
   basis.atom_offset = Eigen::VectorXd::Zero(3 * count);
   for (Eigen::Index a = 0; a < count; ++a) {
+    if (a % kAtomsBetweenChecks == 0) context.check();
     const LiftAtom& atom = subspace.lift.atoms[static_cast<std::size_t>(a)];
     const AtomMap map =
         atom_map(atom, subspace.sampling, *subspace.regions, basis.transports, floating, basis.rotations);
@@ -172,13 +174,13 @@ bool keeps_freedom(const Subspace& subspace, const std::vector<Matrix3d>& rotati
 
 ConjugatedBasis conjugated_basis(const Subspace& subspace, const std::vector<Matrix3d>& rotations) {
   ConjugatedBasis basis = basis_without_atoms(*subspace, rotations);
-  add_atoms(*subspace, basis);
+  add_atoms(*subspace, basis, RunContext{});
   return basis;
 }
 
 void complete_rest_basis(SubspaceParts& subspace) {
   add_transports(subspace, {}, subspace.basis);
-  add_atoms(subspace, subspace.basis);
+  add_atoms(subspace, subspace.basis, RunContext{});
 }
 
 Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, const SubspaceOptions& options,
@@ -207,7 +209,7 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   subspace.basis = basis_without_atoms(subspace, {});
   subspace.lift =
       orbit_lift(subspace.sampling, *subspace.regions, *words, subspace.basis, subspace.orbits, averaged, context);
-  add_atoms(subspace, subspace.basis);
+  add_atoms(subspace, subspace.basis, context);
   context.progress("lift", 1);
   return Subspace(parts);
 }

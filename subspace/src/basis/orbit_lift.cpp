@@ -315,6 +315,7 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
 
   // In blocks: terms on all threads, atoms numbered in order on one, so that the numbers never depend on the threads.
   constexpr std::size_t kBlock = 16384;
+  constexpr std::size_t kRowsBetweenChecks = 256;  // a few milliseconds
   std::vector<std::vector<RawTerm>> terms;
   RowSums sums;
   Row row;
@@ -325,9 +326,13 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
     terms.resize(size);
     parallel_for(context, size, [&](std::size_t from, std::size_t to) {
       PlainLift::Scratch scratch;
-      for (std::size_t i = from; i < to; ++i) orbits.of(begin + i, scratch, terms[i]);
+      for (std::size_t i = from; i < to; ++i) {
+        if (i % kRowsBetweenChecks == 0) context.check();
+        orbits.of(begin + i, scratch, terms[i]);
+      }
     });
     for (std::size_t i = 0; i < size; ++i) {
+      if (i % kRowsBetweenChecks == 0) context.check();
       sums.sum(terms[i], table, row);
       quantise(row, table.atoms());
       block[(begin + i) % OrbitLift::kLanes] = row;
