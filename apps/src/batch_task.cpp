@@ -38,9 +38,11 @@ struct TaskOptions {
 };
 const std::array<TaskOptions, 4> kTasks{
     TaskOptions{"detect", {"tolerance", "time-budget", "max-seconds", "samples", "simplify-above-faces", "all"}},
-    TaskOptions{"fit",
-                {"aligned", "viewpoint", "scale", "detail", "without", "auto-relax", "drop-unsupported", "no-contacts",
-                 "stiffness", "scan-points", "max-residual", "mode", "lift", "radius", "samples", "sharp-features"}},
+    TaskOptions{
+        "fit",
+        {"aligned",      "viewpoint", "one-frame",  "intrinsics",       "depth-scale", "scale",         "refinements",
+         "detail",       "without",   "auto-relax", "drop-unsupported", "no-contacts", "stiffness",     "scan-points",
+         "max-residual", "mode",      "lift",       "radius",           "samples",     "sharp-features"}},
     TaskOptions{"symmetrize", {"without", "remesh", "min-score"}}, TaskOptions{"info", {}}};
 
 constexpr std::string_view kResult = "item.json";

@@ -105,6 +105,28 @@ wait $first || code=$?
 [ ! -e both/.work-1 ] || fail "something is left"
 ! pgrep -f "^$orbifit batch models --task detect --out both" || fail "a process is left"
 
+echo "== a clock that jumps"
+faketime=$(find /usr/lib -name libfaketime.so.1 2>/dev/null | head -n 1)
+if [ -n "$faketime" ]; then
+  echo "+0" >clock
+  # The time of day alone: nobody can set the clock that counts since the start.
+  jumping=(env "LD_PRELOAD=$faketime" "FAKETIME_TIMESTAMP_FILE=$folder/clock" FAKETIME_NO_CACHE=1 FAKETIME_DONT_FAKE_MONOTONIC=1)
+  "${jumping[@]}" "$orbifit" batch models --task info --out jumped --item-timeout 100 --jobs 2 --quiet >/dev/null 2>&1 &
+  batch_under_jumps=$!
+  while kill -0 $batch_under_jumps 2>/dev/null; do
+    for jump in +10y -10y +200s; do echo "$jump" >clock && sleep 0.03; done
+  done
+  wait $batch_under_jumps || fail "the clock jumped: $(cat jumped/results-1.jsonl)"
+  diff <(records whole) <(records jumped) || fail "other records after the clock jumped"
+  diff <(files whole) <(files jumped) || fail "other files after the clock jumped"
+  ! grep -E '"seconds":(-|[0-9]{2})' jumped/results-1.jsonl || fail "times that include jumps"
+  echo "-20y" >clock
+  expect 0 "${jumping[@]}" "$orbifit" batch models --task info --out jumped
+  grep -q "24 done before" said || fail "$(cat said)"
+else
+  echo "the clock does not jump: libfaketime is not installed"
+fi
+
 echo "== disks and folders that refuse"
 (ulimit -f 6 && expect 3 batch limited) || fail "limit on files"
 grep -q "cannot be written" said || fail "$(cat said)"
