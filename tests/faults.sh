@@ -53,11 +53,11 @@ judge() {
   case $kind:$code in
     *:0) diff -rq whole out >/dev/null || reason="success, but outputs differ" ;;
     memory:1 | disk:3 | input:3 | output:3 | signal:130) ;;
-    signal:143) ;; # before the program has begun, the system ends it
+    signal:143) ;; # before the program has begun the system ends it, without a word
     *) reason="exit code $code" ;;
   esac
   if ((code != 0)); then
-    ((code == 143)) || [[ $(tail -n 1 err) == "orbifit: "* ]] || reason+=" without a message at the end"
+    [[ $kind == signal && ! -s err ]] || [[ $(tail -n 1 err) == "orbifit: "* ]] || reason+=" without a message at the end"
     for file in $(find out -mindepth 1 -type f -o -mindepth 1 -name '.*'); do
       cmp -s "$file" "whole/${file#out/}" || reason+=" leaves $file"
     done
