@@ -9,8 +9,8 @@ namespace orbifit {
 
 namespace {
 
-// What an entry of a sparse factor costs in a solve, in entries of a dense one, which come in order: measured on Laplace
-// matrices of 200 to 2000 unknowns.
+// What an entry of a sparse factor costs in a solve, in entries of a dense one, which come in order: measured on
+// Laplace matrices of 200 to 2000 unknowns.
 constexpr double kSparseCost = 4;
 
 }  // namespace

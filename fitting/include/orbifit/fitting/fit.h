@@ -94,7 +94,7 @@ struct FitResult {
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
   std::shared_ptr<const ConjugatedBasis> basis;
   int samples = 0, degrees_of_freedom = 0;
-  double condition = 0;          ///< of the last linear system, where FitOptions::condition asked for it
+  double condition = 0;                 ///< of the last linear system, where FitOptions::condition asked for it
   std::vector<ResolutionLevel> levels;  ///< from coarse to fine; the last one that was kept is the result's
   std::vector<FitIteration> iterations;
   int iterations_in_all = 0;  ///< with those from other placements, which were not kept

@@ -42,8 +42,8 @@ struct SymmetricRemesh {
   double mean_distance = 0;     ///< over both surfaces' area
 };
 
-/// Judges the regions of whole components, before an annotation is made consistent: that leaves out what contradicts the
-/// shape, where one that asks for it wants to be told.
+/// Judges the regions of whole components, before an annotation is made consistent: that leaves out what contradicts
+/// the shape, where one that asks for it wants to be told.
 /// \throw NoResultError naming a region whose score is below `min_score`
 void require_scores(const Mesh& mesh, const SymmetryAnnotation& annotation, const SymmetricRemeshOptions& options,
                     const RunContext& context);
