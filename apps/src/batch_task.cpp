@@ -233,10 +233,12 @@ class Doing {
                         {"diagonal", diagonal(mesh.vertices)},
                         {"shape", shape}};
     if (!task_.thumbnails) return;
+    const bool symmetrized = task_.name == "symmetrize" && outcome_.status == Status::ok;
+    const Mesh shown = task_.name == "fit" ? read_mesh(file("item+fitted.ply"))
+                       : symmetrized       ? read_mesh(file("item+symmetric.ply"))
+                                           : mesh;
     SymmetryAnnotation annotation = empty_annotation(mesh, kTolerance);
-    if (task_.name == "detect") annotation = read_annotation(file(kResult), mesh);
-    if (task_.name == "symmetrize" && outcome_.status == Status::ok) annotation = read_annotation(file(kResult), mesh);
-    const Mesh shown = task_.name == "fit" ? read_mesh(file("item+fitted.ply")) : mesh;
+    if (task_.name == "detect" || symmetrized) annotation = read_annotation(file(kResult), shown);
     if (task_.name == "fit") annotation = read_annotation(file("item+annotation.json"), shown);
     write_png(file("item+thumbnail.png"), thumbnail(shown, annotation, task_.up, run_));
   }

@@ -64,6 +64,12 @@ void check_output(const fs::path& output, const std::vector<std::string>& ending
   }
 }
 
+void write_with_look(const std::filesystem::path& output, const Mesh& mesh, const Appearance& look,
+                     const RunContext& run) {
+  for (const std::string& problem : look.warnings) run.message("warning: " + problem);
+  for (const std::string& problem : write_mesh(output, mesh, look)) run.message("warning: " + problem);
+}
+
 void write_edited(const std::filesystem::path& output, const std::filesystem::path& source, const Mesh& edited,
                   const RunContext& run) {
   for (const std::string& problem : write_edited_mesh(output, source, edited)) run.message("warning: " + problem);

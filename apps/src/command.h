@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "orbifit/model/annotation.h"
+#include "orbifit/model/appearance.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
@@ -54,6 +55,11 @@ struct Command {
 ///        InputError when the folder is missing or cannot be written to
 void check_output(const std::filesystem::path& output, const std::vector<std::string>& endings = {},
                   const std::vector<std::filesystem::path>& inputs = {});
+
+/// Writes a mesh with its look, as far as the format has it (appearance.h). What is missing or lost is told as
+/// warnings.
+void write_with_look(const std::filesystem::path& output, const Mesh& mesh, const Appearance& look,
+                     const RunContext& run);
 
 /// Writes an edited mesh and keeps what else its source holds: see write_edited_mesh(). What could not be kept is told
 /// as warnings.

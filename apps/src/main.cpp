@@ -38,7 +38,8 @@ constexpr std::array kCommands{
             commands::check},
     Command{"symmetrize", "Move a mesh to the nearest one whose symmetries are exact.",
             "orbifit symmetrize scanned.ply scanned.json -o symmetric.ply\n"
-            "orbifit symmetrize chair.obj chair.json -o exact.obj --annotation-out exact.json",
+            "orbifit symmetrize chair.obj chair.json -o exact.obj --annotation-out exact.json\n"
+            "orbifit symmetrize gear.obj gear.json -o new.obj --remesh --annotation-out new.json",
             commands::symmetrize},
     Command{"subspace", "Build the subspace of a mesh's symmetric deformations and describe it.",
             "orbifit subspace chair.obj chair.json\n"
@@ -75,7 +76,9 @@ constexpr std::array kCommands{
     Command{"convert", "Convert a mesh or a scan to another format.",
             "orbifit convert chair.glb chair.obj\n"
             "orbifit convert scan.pcd scan.ply\n"
-            "orbifit convert chair.ply chair_points.ply --points",
+            "orbifit convert chair.ply chair_points.ply --points\n"
+            "orbifit convert chair.json pairs.csv --mesh chair.obj --element 1\n"
+            "orbifit convert chair.json models_info.json --mesh obj_000001.ply",
             commands::convert},
     Command{"render", "Draw a picture of a mesh, its regions, or a scan over it.",
             "orbifit render chair.obj -o chair.png\n"

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -66,6 +67,40 @@ TEST_F(OrbifitSymmetrize, RefusesWhatItCannotUse) {
   EXPECT_EQ(program_.run("symmetrize rough.ply cube.json -o exact.xyz").code, 2);
   EXPECT_EQ(program_.run("symmetrize rough.ply cube.json -o cube.json").code, 2);
   EXPECT_EQ(program_.run("symmetrize rough.ply cube.json -o exact.ply --annotation-out exact.txt").code, 2);
+}
+
+TEST_F(OrbifitSymmetrize, RemeshesSoThatTrianglesMapOntoTriangles) {
+  const ProgramResult result =
+      program_.run("symmetrize rough.ply cube.json -o new.ply --remesh --annotation-out new.json --report moved.json");
+  ASSERT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(result.output.find("vertices map onto vertices"), std::string::npos) << result.output;
+  const ProgramResult checked = program_.run("check new.ply new.json --max-residual 1e-12 --json");
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_EQ(json::parse(checked.output)["vertices_onto_vertices"], true);
+  std::ifstream stream(file("moved.json"));
+  const json report = json::parse(stream);
+  EXPECT_GT(report["largest_movement"], 1e-4);
+  EXPECT_GE(report["largest_movement"], report["mean_movement"]);
+  EXPECT_EQ(report["regions"][0]["kept_as"], "Oh");
+  EXPECT_EQ(json::parse(program_.run("info new.ply --json").output)["watertight"], true);
+  EXPECT_EQ(program_.run("symmetrize rough.ply cube.json -o again.ply --remesh --threads 2").code, 0);
+  EXPECT_EQ(read_mesh(file("again.ply")).vertices, read_mesh(file("new.ply")).vertices);
+}
+
+TEST_F(OrbifitSymmetrize, RefusesToForceASymmetry) {
+  Mesh other = rough_;
+  other.vertices.col(2) *= 1.3;
+  write_mesh(file("other.ply"), other);
+  SymmetryAnnotation annotation = cube_annotation(rough_);
+  annotation.mesh_diagonal = diagonal(other.vertices);
+  write_annotation(file("other.json"), annotation);
+  const ProgramResult refused = program_.run("symmetrize other.ply other.json -o x.ply --remesh --min-score 0.95");
+  EXPECT_EQ(refused.code, 1) << refused.errors;
+  EXPECT_NE(refused.errors.find("95 %"), std::string::npos) << refused.errors;
+  EXPECT_FALSE(std::filesystem::exists(file("x.ply")));
+  EXPECT_EQ(program_.run("symmetrize other.ply other.json -o x.ply --min-score 0.5").code, 2);
+  EXPECT_EQ(program_.run("symmetrize other.ply other.json -o x.ply --remesh --min-score 2").code, 2);
+  EXPECT_EQ(program_.run("symmetrize other.ply other.json -o x.ply --remesh --report other.json").code, 2);
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ const missed = Math.hypot(reached[0] - goal[0], reached[1] - goal[1]);
 check(missed < 3, `a drag takes the handle to ${missed.toFixed(2)} pixels from the cursor`);
 const dragged = await shown();
 check(largestDifference(before, dragged) > 0.01 * size, "the mesh follows");
-const residual = await ask(() => globalThis.orbifit.editor.residual);
+const residual = await ask(() => globalThis.orbifit.editor.residuals.symmetric);
 check(residual < 1e-6, `residual of what is shown: ${residual.toExponential(1)} of the diagonal`);
 // Those that follow: far more vertices than the handle has, on all sides.
 let followers = 0;
@@ -252,7 +252,7 @@ await page.keyboard.press("Escape");
 // Comparison.
 await page.click("[data-do=compare]");
 await settled();
-const sides = await ask(() => ({ own: globalThis.orbifit.editor.residual, free: globalThis.orbifit.editor.freeResidual }));
+const sides = await ask(() => ({ own: globalThis.orbifit.editor.residuals.symmetric, free: globalThis.orbifit.editor.residuals.free }));
 check(sides.own < 1e-6 && sides.free > 1e-4, `compare: ${sides.own.toExponential(1)} with symmetries, ${sides.free.toExponential(1)} without`);
 await picture("compare");
 await page.click("[data-do=compare]");
@@ -428,9 +428,9 @@ orbifit("convert", "scan.ply", "scan.xyz", "--quiet");
 await drop("scan.xyz", readFileSync(join(folder, "scan.xyz"), "utf8"));
 await settled();
 await page.click("[data-do=fit]");
-await page.waitForFunction(() => globalThis.orbifit.editor.fitReport !== null, null, { timeout: 120000 });
+await page.waitForFunction(() => globalThis.orbifit.editor.fitting.report !== null, null, { timeout: 120000 });
 await settled();
-const fit = await ask(() => ({ report: globalThis.orbifit.editor.fitReport, steps: globalThis.orbifit.editor.fitSteps }));
+const fit = await ask(() => ({ report: globalThis.orbifit.editor.fitting.report, steps: globalThis.orbifit.editor.fitting.steps }));
 check(fit.report.converged && fit.steps.length > 10 && fit.steps.at(-1).rms < fit.steps[0].rms,
       `the fit converges, seen in ${fit.steps.length} steps: rms ${fit.steps[0].rms.toExponential(1)} to ${fit.report.rms.toExponential(1)}`);
 await picture("fit");

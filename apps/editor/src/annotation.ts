@@ -23,8 +23,14 @@ export interface Annotation {
   [key: string]: unknown;
 }
 
-export const isAnnotation = (value: unknown): value is Annotation =>
+const isAnnotation = (value: unknown): value is Annotation =>
   typeof value === "object" && value !== null && (value as Annotation).format === "symmetry-annotation";
+
+export function annotationFrom(text: string): Annotation {
+  const value: unknown = JSON.parse(text);
+  if (!isAnnotation(value)) throw new Error("no symmetry annotation");
+  return value;
+}
 
 export const emptyAnnotation = (vertices: number, faces: number, diagonal: number): Annotation => ({
   format: "symmetry-annotation", version: 1, mesh: { vertices, faces, diagonal }, tolerance: 0.005, regions: [],

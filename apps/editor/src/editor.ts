@@ -1,34 +1,18 @@
 // What is edited, and everything that can be done to it. The interface (panel.ts, input.ts) calls this and listens.
-import {
-  elementsOf, emptyAnnotation, extentOf, faceCount, isAnnotation, without, type Annotation, type Element, type Extent,
-  type Region
-} from "./annotation";
-import {
-  Core, ResidualKind, Side, usualSampling, type Info, type Pick, type RegionResidual, type Sampling, type SolveRecord
-} from "./core";
+import { emptyAnnotation, without, type Annotation, type Region } from "./annotation";
+import { Bases } from "./bases";
+import { Core, Side, usualSampling, type Info, type Pick, type Sampling, type SolveRecord } from "./core";
 import type { Background } from "./data";
-import { moved, toJson, writeMotion, type Handle } from "./handles";
+import { moved, toJson, writeMotion } from "./handles";
 import { add, length, sub, times, type Vec3 } from "./math";
+import { RegionMarks } from "./region-marks";
+import { Residuals } from "./residuals";
+import { ScanFit } from "./scan-fit";
+import { SymmetricShape } from "./symmetric-shape";
+import { UndoHistory, type Snapshot } from "./undo-history";
 import type { View } from "./view";
 
 export const modes = ["fixed", "floating", "moving"] as const;
-
-/** What undo takes back. */
-export interface Snapshot {
-  handles: Handle[];
-  alpha: number;
-  iterations: number;
-  mode: number;
-  off: number[]; // ids of regions
-  blend: number; // 0: the mesh as it is ... 1: the exactly symmetric one; not 0 without that one
-  annotation: Annotation; // shared between snapshots where it is the same
-}
-
-/** Rms and largest residual of a region, fractions of the diagonal, of the mesh as it is and of the symmetric one. */
-export interface SymmetryChange { id: number; before: [number, number]; after: [number, number] }
-export interface FitReport { converged: boolean; rms: number; stopped_because: string; inlier_ratio: number }
-
-interface Basis { bytes: Uint8Array; annotation: string }
 
 export class Editor {
   info!: Info;
@@ -41,15 +25,14 @@ export class Editor {
   comparing = false;
   busy = "";
   readonly record: SolveRecord = { solve: 0, lift: 0, show: 0, handleError: 0 };
-  residual = 0; // worst region's largest, of the deformation that was measured last
-  freeResidual = 0;
-  fitSteps: { step: number; rms: number }[] = [];
-  fitted = false;
+  readonly history = new UndoHistory();
+  readonly marks = new RegionMarks(this);
+  readonly residuals = new Residuals(this);
+  readonly symmetric = new SymmetricShape(this);
+  readonly fitting = new ScanFit(this);
 
   private meshData: Uint8Array = new Uint8Array();
-  private undone: Snapshot[] = [];
-  private done: Snapshot[] = [];
-  private bases = new Map<string, Basis>();
+  private readonly bases = new Bases(this);
   private kept: number[] = []; // ids of the regions in the core's order
   private motions = new Float64Array(0);
   private centroids: Vec3[] = [];
@@ -60,8 +43,6 @@ export class Editor {
   private rebuilding = 0;
   private dragging = false;
   private iterationTook = 0; // ms, of both sides
-  private extents = new Map<string, { elements: Element[]; extent: Extent }>();
-  private symmetricOf = ""; // the regions that the core has the symmetric shape of
   onChange: () => void = () => {};
   onSolved: () => void = () => {}; // the vertices or what is measured of them changed, nothing else
   onError: (message: string) => void = () => {};
@@ -87,14 +68,11 @@ export class Editor {
     this.sourceName = name;
     this.meshData = data;
     this.info = this.core.info();
-    this.done = [];
-    this.undone = [];
+    this.history.clear();
     this.bases.clear();
-    this.extents.clear();
     this.sampling = usualSampling;
-    this.symmetricOf = "";
-    this.symmetryReport = [];
-    this.fitted = false;
+    this.symmetric.forget();
+    this.symmetric.report = [];
     this.comparing = false;
     this.view.setSplit(false);
     const taken = annotation ?? emptyAnnotation(this.info.vertices, this.info.faces, this.info.diagonal);
@@ -102,12 +80,9 @@ export class Editor {
     this.selected = -1;
     if (basis) this.bases.set(this.basisKey(), { bytes: basis, annotation: JSON.stringify(taken) });
     this.view.setMesh(this.core);
-    this.scan = null;
-    this.fitReport = null;
-    this.fitSteps = [];
-    this.view.showScan(null);
+    this.fitting.forget();
     this.view.showOrbit(null);
-    this.view.showElements("", () => [], this.info);
+    this.marks.clear();
     this.view.frame();
     this.setBusy("reading the basis");
     // The mesh is seen first: what follows a frame's callbacks directly still comes before it is shown.
@@ -122,7 +97,8 @@ export class Editor {
   private async reopen(): Promise<void> {
     if (!this.meshData.length) return;
     this.core.readMesh(this.meshName, this.meshData);
-    this.shownKey = this.symmetricOf = "";
+    this.shownKey = "";
+    this.symmetric.forget();
     await this.restored();
   }
 
@@ -138,38 +114,6 @@ export class Editor {
   coreNumber(id: number): number { return this.kept.indexOf(id); }
   idOf(number: number): number { return this.kept[number] ?? -1; }
 
-  shape(region: Region): { elements: Element[]; extent: Extent } {
-    const key = `${region.id} ${faceCount(region)} ${region.group} ${region.centre.join()}`;
-    let known = this.extents.get(key);
-    if (!known) {
-      const corner = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-      known = { elements: elementsOf(region),
-                extent: extentOf(region, face => corner.map(weights => this.core.restPoint(face, weights))) };
-      this.extents.set(key, known);
-    }
-    return known;
-  }
-
-  /** Draws planes and axes of some regions. */
-  showRegions(ids: readonly number[]): void {
-    const turn = this.state.handles.length ? JSON.stringify(this.state.handles) : "";
-    this.view.showElements(ids.length ? ids.join() + turn : "", () => ids.flatMap(id => {
-      const region = this.regions.find(other => other.id === id);
-      if (!region) return [];
-      const carried = new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
-      const number = this.coreNumber(id);
-      if (number >= 0) this.core.carried(number, carried);
-      return [{ ...this.shape(region), carried }];
-    }), this.info);
-  }
-
-  markRegion(id: number): void {
-    const number = id < 0 ? -1 : this.coreNumber(id);
-    this.core.markRegion(number);
-    this.view.marksChanged();
-    this.showRegions(id < 0 ? [] : [id]);
-  }
-
   // Changes and undo ----------------------------------------------------------------------------------------------
 
   snapshot(): Snapshot {
@@ -178,9 +122,7 @@ export class Editor {
 
   /** Remembers what is there, for undo. */
   remember(snapshot = this.snapshot()): void {
-    this.done.push(snapshot);
-    if (this.done.length > 200) this.done.shift();
-    this.undone = [];
+    this.history.remember(snapshot);
   }
 
   /** A change of anything, which undo takes back. */
@@ -188,20 +130,16 @@ export class Editor {
     this.remember();
     edit(this.state);
     if (await this.restored()) return;
-    this.state = this.done.pop()!; // there is no basis of what was asked for
+    this.state = this.history.forget(); // there is no basis of what was asked for
     this.shownKey = "";
     await this.restored();
   }
 
-  async undo(): Promise<void> { await this.swap(this.done, this.undone); }
-  async redo(): Promise<void> { await this.swap(this.undone, this.done); }
-  get canUndo(): boolean { return this.done.length > 0; }
-  get canRedo(): boolean { return this.undone.length > 0; }
+  async undo(): Promise<void> { await this.goTo(this.history.undo(() => this.snapshot())); }
+  async redo(): Promise<void> { await this.goTo(this.history.redo(() => this.snapshot())); }
 
-  private async swap(from: Snapshot[], to: Snapshot[]): Promise<void> {
-    const snapshot = from.pop();
+  private async goTo(snapshot: Snapshot | undefined): Promise<void> {
     if (!snapshot) return;
-    to.push(this.snapshot());
     this.state = snapshot;
     await this.restored();
   }
@@ -210,17 +148,17 @@ export class Editor {
   private async restored(): Promise<boolean> {
     if (this.selected >= this.state.handles.length) this.selected = -1;
     const known = await this.takeBasis();
-    if (this.state.blend > 0) await this.takeSymmetric();
+    if (this.state.blend > 0) await this.symmetric.take();
     this.refresh();
     return known;
   }
 
   // The basis -----------------------------------------------------------------------------------------------------
 
-  private active(): Annotation { return without(this.state.annotation, new Set(this.state.off)); }
+  active(): Annotation { return without(this.state.annotation, new Set(this.state.off)); }
 
   private annotationKeys = new Map<Annotation, number>();
-  private regionsKey(): string {
+  regionsKey(): string {
     const { annotation, off } = this.state;
     if (!this.annotationKeys.has(annotation)) this.annotationKeys.set(annotation, this.annotationKeys.size);
     return `${this.annotationKeys.get(annotation)} ${[...off].sort((a, b) => a - b).join()}`;
@@ -238,10 +176,7 @@ export class Editor {
     if (!basis) {
       this.setBusy("rebuilding the basis");
       try {
-        const answer = await this.background.run(
-          { kind: "basis", annotation: JSON.stringify(this.active()), mode: this.state.mode, sampling: this.sampling });
-        basis = { bytes: answer.basis, annotation: answer.annotation };
-        this.bases.set(key, basis);
+        basis = await this.bases.build(key, JSON.stringify(this.active()), this.state.mode, this.sampling);
       } catch (error) {
         if (turn === this.rebuilding) this.setBusy("");
         this.failed(error);
@@ -273,22 +208,17 @@ export class Editor {
     const { vertices, faces, diagonal, samples } = this.info;
     const sampling = { ...usualSampling, samples: Math.max(4, samples ?? 0) };
     const key = `free ${this.state.mode} ${sampling.samples}`;
-    let basis = this.bases.get(key);
-    if (!basis) {
-      const annotation = JSON.stringify(emptyAnnotation(vertices, faces, diagonal));
-      const answer = await this.background.run({ kind: "basis", annotation, mode: this.state.mode, sampling });
-      basis = { bytes: answer.basis, annotation };
-      this.bases.set(key, basis);
-    }
+    const annotation = JSON.stringify(emptyAnnotation(vertices, faces, diagonal));
+    const basis = this.bases.get(key) ?? await this.bases.build(key, annotation, this.state.mode, sampling);
     this.core.compare(basis.bytes);
   }
 
-  private failed(error: unknown): void {
+  failed(error: unknown): void {
     const message = error instanceof Error ? error.message : String(error);
     if (message !== "stopped") this.onError(message);
   }
 
-  private setBusy(what: string): void {
+  setBusy(what: string): void {
     this.busy = what;
     this.onChange();
   }
@@ -329,7 +259,6 @@ export class Editor {
   private refresh(): void {
     this.handlesStale = true;
     this.stale = true;
-    this.fitted = false;
     this.view.draw();
     this.onChange();
   }
@@ -406,7 +335,7 @@ export class Editor {
     }
     this.view.positionsChanged(Side.symmetric);
     if (this.comparing) this.view.positionsChanged(Side.free);
-    this.measureSoon();
+    this.residuals.measureSoon();
     this.onSolved();
   }
 
@@ -419,38 +348,8 @@ export class Editor {
     return Math.max(1, Math.min(iterations, Math.floor(frame / this.iterationTook)));
   }
 
-  private measuring = 0; // a timer's
-  private measured = 0; // when
-  private measuringTook = 0; // ms
-  /** Measures now, where that takes a tenth of the time at most, and in any case once nothing has moved for a while. */
-  private measureSoon(): void {
-    clearTimeout(this.measuring);
-    this.measuring = 0;
-    const cheap = this.measuringTook < 8 && performance.now() - this.measured > 10 * this.measuringTook;
-    if (cheap && this.measured > 0) this.measure();
-    else this.measuring = window.setTimeout(this.measureNow, 120);
-  }
-
   /** Whether the residuals are those of what is shown. */
-  get isMeasured(): boolean { return this.measuring === 0 && !this.stale; }
-
-  private readonly measureNow = (): void => {
-    try {
-      this.measure();
-    } catch (error) {
-      this.failed(error);
-    }
-  };
-  private measure(): void {
-    this.measuring = 0;
-    const worst = (list: RegionResidual[]): number => list.reduce((most, entry) => Math.max(most, entry.max), 0);
-    const start = performance.now();
-    this.residual = worst(this.core.residuals(ResidualKind.deformation));
-    this.freeResidual = this.comparing ? worst(this.core.residuals(ResidualKind.free)) : 0;
-    this.measured = performance.now();
-    this.measuringTook = this.measured - start;
-    this.onSolved();
-  }
+  get isMeasured(): boolean { return this.residuals.areMeasured && !this.stale; }
 
   async setComparing(on: boolean): Promise<void> {
     if (on === this.comparing || this.busy) return;
@@ -474,11 +373,10 @@ export class Editor {
 
   // Symmetrise ----------------------------------------------------------------------------------------------------
 
-  symmetryReport: SymmetryChange[] = [];
   /** Shows what lies between the mesh as it is (0) and the exactly symmetric one (1). */
   async setBlend(share: number): Promise<void> {
     this.state.blend = share;
-    if (share > 0 && !(await this.takeSymmetric())) return;
+    if (share > 0 && !(await this.symmetric.take())) return;
     this.stale = true;
     this.showHandles();
     this.solveNow(); // the table of residuals is that of what is shown
@@ -486,41 +384,10 @@ export class Editor {
     this.onChange();
   }
 
-  private symmetricComes: Promise<boolean> | null = null;
-  /** \return whether the core has the symmetric shape of the regions that are on; the blend is 0 where it has not */
-  private async takeSymmetric(): Promise<boolean> {
-    if (this.symmetricOf === this.regionsKey()) return true;
-    this.symmetricComes ??= this.findSymmetric();
-    const known = await this.symmetricComes;
-    this.symmetricComes = null;
-    if (!known) this.state.blend = 0;
-    return known;
-  }
-  private async findSymmetric(): Promise<boolean> {
-    const key = this.regionsKey();
-    this.setBusy("looking for the symmetric shape");
-    try {
-      const answer = await this.background.run({ kind: "symmetrize", annotation: JSON.stringify(this.active()) });
-      this.core.setSymmetric(answer.vertices);
-      this.symmetryReport = (JSON.parse(answer.report) as { regions: SymmetryChange[] }).regions;
-      this.symmetricOf = key;
-      return key === this.regionsKey();
-    } catch (error) {
-      this.failed(error);
-      return false;
-    } finally {
-      this.setBusy("");
-    }
-  }
-
-  shapeResiduals(): Map<number, RegionResidual> {
-    return new Map(this.core.residuals(ResidualKind.shape).map((entry, number) => [this.idOf(number), entry]));
-  }
-
   /** Makes the shape that the slider shows the mesh that is edited. */
   async keepBlend(): Promise<void> {
     const { annotation, mode, blend } = this.state;
-    if (blend === 0 || this.symmetricOf !== this.regionsKey()) return;
+    if (blend === 0 || !this.symmetric.isKnown) return;
     this.core.keepBlend(blend);
     const name = this.meshName.replace(/\.[^.]*$/, "") + "_symmetric.ply";
     const mesh = this.core.writeMesh("ply", true);
@@ -528,61 +395,5 @@ export class Editor {
     (changed.mesh as { diagonal: number }).diagonal = this.core.info().diagonal;
     this.shownKey = "";
     await this.open(name, mesh, changed, null, mode);
-  }
-
-  // Fit -----------------------------------------------------------------------------------------------------------
-
-  scan: { name: string; data: Uint8Array; points: number } | null = null;
-  fitReport: FitReport | null = null;
-
-  openScan(name: string, data: Uint8Array): void {
-    const points = this.core.readScan(name, data);
-    this.scan = { name, data, points: points.length / 3 };
-    this.fitReport = null;
-    this.fitSteps = [];
-    this.view.showScan(points);
-    this.onChange();
-  }
-
-  /** The mesh is then again what the handles make of it. */
-  closeScan(): void {
-    this.scan = null;
-    this.fitReport = null;
-    this.fitSteps = [];
-    this.view.showScan(null);
-    this.handlesChanged();
-  }
-
-  async fit(place: boolean): Promise<void> {
-    if (!this.scan || this.busy) return;
-    this.fitSteps = [];
-    this.fitReport = null;
-    this.setBusy("fitting");
-    try {
-      const answer = await this.background.run(
-        { kind: "fit", annotation: JSON.stringify(this.active()), scanName: this.scan.name, scan: this.scan.data, place },
-        step => {
-          if (step.kind !== "fit-step") return;
-          this.core.show(step.vertices);
-          this.view.positionsChanged(Side.symmetric);
-          this.fitSteps.push({ step: step.step, rms: step.rms });
-          this.onChange();
-        });
-      this.core.show(answer.vertices);
-      this.view.positionsChanged(Side.symmetric);
-      this.fitReport = JSON.parse(answer.report) as FitReport;
-      this.fitted = true;
-    } catch (error) {
-      this.failed(error);
-    } finally {
-      this.setBusy("");
-    }
-  }
-
-  get originalMesh(): Uint8Array { return this.meshData; }
-  readAnnotationText(text: string): Annotation {
-    const value: unknown = JSON.parse(text);
-    if (!isAnnotation(value)) throw new Error("no symmetry annotation");
-    return value;
   }
 }

@@ -2,8 +2,9 @@
 import { Quaternion as ThreeQuaternion, Vector3 } from "three";
 
 import type { Pick } from "./core";
-import type { Editor, Snapshot } from "./editor";
+import type { Editor } from "./editor";
 import { add, sub, times, type Vec3 } from "./math";
+import type { Snapshot } from "./undo-history";
 
 const reach = 14; // pixels from a handle's dot
 const fingerReach = 28;
@@ -133,7 +134,7 @@ export class Input {
     const { editor } = this;
     editor.view.showOrbit(editor.core.orbit(pick, editor.radius * editor.info.diagonal));
     editor.view.marksChanged();
-    editor.showRegions(editor.core.regionsOf(pick.face).map(number => editor.idOf(number)));
+    editor.marks.show(editor.core.regionsOf(pick.face).map(number => editor.idOf(number)));
   }
 
   private clear(): void {
@@ -142,7 +143,7 @@ export class Input {
     this.editor.core.clearOrbit();
     this.editor.view.showOrbit(null);
     this.editor.view.marksChanged();
-    this.editor.showRegions([]);
+    this.editor.marks.show([]);
   }
 
   private leave(): void {

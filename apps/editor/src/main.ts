@@ -1,5 +1,5 @@
 // Puts the page together.
-import { without, type Annotation } from "./annotation";
+import { annotationFrom, without, type Annotation } from "./annotation";
 import { Core, CoreError, tooLarge, type Sampling } from "./core";
 import { Background, coreBytes, download, embedded } from "./data";
 import { Editor, modes } from "./editor";
@@ -56,7 +56,7 @@ async function openFiles(editor: Editor, files: File[]): Promise<void> {
     const text = new TextDecoder().decode(data);
     try {
       const value = JSON.parse(text) as { format?: string; handles?: unknown };
-      if (value.format === "symmetry-annotation") annotation = editor.readAnnotationText(text);
+      if (value.format === "symmetry-annotation") annotation = annotationFrom(text);
       else if (value.handles) replay = text;
       else throw new Error("neither an annotation nor handles");
     } catch (error) {
@@ -72,7 +72,7 @@ async function openFiles(editor: Editor, files: File[]): Promise<void> {
     if (!annotation) showMessage("The mesh came without its annotation: it moves as one free surface. `orbifit detect` finds its symmetries; drop the annotation here.");
   } else if (annotation) await editor.openAnnotation(annotation);
   if (scan) {
-    editor.openScan(scan.name, scan.data);
+    editor.fitting.open(scan.name, scan.data);
     (element("fit-section") as HTMLDetailsElement).open = true;
   }
   if (replay) {
@@ -103,8 +103,8 @@ function actions(editor: Editor, input: Input, view: View): Record<string, () =>
       without(editor.state.annotation, new Set(editor.state.off))) + "\n", "application/json"),
     reset: () => editor.change(state => { state.handles = []; }), replay: chooseFiles, open: chooseFiles,
     "open-scan": chooseFiles, "keep-blend": () => editor.keepBlend(),
-    fit: () => editor.fit(element<HTMLInputElement>("place").checked), "stop-fit": () => editor.background.stop(),
-    "clear-scan": () => editor.closeScan(),
+    fit: () => editor.fitting.run(element<HTMLInputElement>("place").checked), "stop-fit": () => editor.background.stop(),
+    "clear-scan": () => editor.fitting.close(),
     "save-obj": save("obj"), "save-ply": save("ply"), "save-glb": save("glb"),
     "save-handles": () => download("handles.json", editor.handlesJson(), "application/json")
   };
@@ -178,7 +178,7 @@ async function start(): Promise<void> {
   const annotation = embedded("annotation");
   const basis = embedded("basis");
   await editor.open(mesh.name, mesh.data,
-                    annotation && editor.readAnnotationText(new TextDecoder().decode(annotation.data)), basis?.data ?? null,
+                    annotation && annotationFrom(new TextDecoder().decode(annotation.data)), basis?.data ?? null,
                     Math.max(0, modes.indexOf((basis?.name ?? "floating") as (typeof modes)[number])));
   editor.sourceName = mesh.source;
   const sampling = embedded("sampling");

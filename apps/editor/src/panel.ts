@@ -105,13 +105,13 @@ export class Panel {
     element("command").textContent =
       `orbifit deform ${editor.sourceName} annotation.json --handles handles.json --mode ${modes[state.mode]}${samplingWords(editor)} -o edited.ply`;
     const button = (name: string): HTMLButtonElement => document.querySelector(`[data-do=${name}]`)!;
-    button("undo").disabled = !editor.canUndo;
-    button("redo").disabled = !editor.canRedo;
+    button("undo").disabled = !editor.history.canUndo;
+    button("redo").disabled = !editor.history.canRedo;
     button("remove").disabled = editor.selected < 0;
     button("compare").classList.toggle("on", editor.comparing);
-    button("fit").disabled = !editor.scan || editor.busy !== "";
+    button("fit").disabled = !editor.fitting.scan || editor.busy !== "";
     button("stop-fit").disabled = editor.busy !== "fitting";
-    button("clear-scan").disabled = !editor.scan;
+    button("clear-scan").disabled = !editor.fitting.scan;
     button("keep-blend").disabled = state.blend === 0;
     this.readout();
     this.regionList();
@@ -152,7 +152,7 @@ export class Panel {
     if (blend > 0) {
       parts.push(`<b>${Math.round(100 * blend)} %</b> of the way to the symmetric mesh; handles act on the mesh as it is`);
     } else if (handles.length) {
-      parts.push(`residual <b>${share(editor.residual)}</b>`);
+      parts.push(`residual <b>${share(editor.residuals.symmetric)}</b>`);
       parts.push(`solve <b>${solve.toFixed(1)}</b> + lift <b>${lift.toFixed(1)}</b> ms`);
       const frames = this.framesOfLastSecond();
       if (frames > 1) parts.push(`<b>${frames}</b> frames/s`);
@@ -163,8 +163,8 @@ export class Panel {
     const hint = handles.length === 1 && blend === 0 ? "<br>One handle alone moves all of it; pin another place (<kbd>P</kbd>)." : "";
     element("readout").innerHTML = parts.join(" &nbsp;·&nbsp; ") + hint;
     for (const id of ["divider", "label-left", "label-right"]) element(id).hidden = !editor.comparing;
-    element("label-left-residual").textContent = share(editor.residual);
-    element("label-right-residual").textContent = share(editor.freeResidual);
+    element("label-left-residual").textContent = share(editor.residuals.symmetric);
+    element("label-right-residual").textContent = share(editor.residuals.free);
   }
 
   private regionList(): void {
@@ -224,8 +224,8 @@ export class Panel {
       state.annotation = without(state.annotation, new Set([region.id]));
       state.off = state.off.filter(id => id !== region.id);
     }));
-    row.addEventListener("mouseenter", () => editor.markRegion(region.id));
-    row.addEventListener("mouseleave", () => editor.markRegion(-1));
+    row.addEventListener("mouseenter", () => editor.marks.mark(region.id));
+    row.addEventListener("mouseleave", () => editor.marks.mark(-1));
     row.append(box, group, name, value, remove);
     return row;
   }
@@ -263,12 +263,12 @@ export class Panel {
   private blendTable(): void {
     const { editor } = this;
     const table = element("blend-table");
-    if (!editor.symmetryReport.length) {
+    if (!editor.symmetric.report.length) {
       table.textContent = "";
       return;
     }
-    const now = editor.state.blend > 0 || !editor.state.handles.length ? editor.shapeResiduals() : new Map();
-    const rows = editor.symmetryReport.map(entry => {
+    const now = editor.state.blend > 0 || !editor.state.handles.length ? editor.symmetric.residuals() : new Map();
+    const rows = editor.symmetric.report.map(entry => {
       const region = editor.regions.find(other => other.id === entry.id);
       if (!region) return "";
       const shown = now.get(entry.id);
@@ -281,17 +281,17 @@ export class Panel {
 
   private fit(): void {
     const { editor } = this;
-    element("fit-none").hidden = editor.scan !== null;
-    element("fit-text").hidden = editor.scan === null;
-    document.getElementById("fit-curve")!.toggleAttribute("hidden", editor.fitSteps.length < 2);
-    if (!editor.scan) return;
-    const report = editor.fitReport;
-    const last = editor.fitSteps.at(-1);
-    element("fit-text").textContent = `${editor.scan.name}: ${editor.scan.points.toLocaleString("en")} points. ` +
+    element("fit-none").hidden = editor.fitting.scan !== null;
+    element("fit-text").hidden = editor.fitting.scan === null;
+    document.getElementById("fit-curve")!.toggleAttribute("hidden", editor.fitting.steps.length < 2);
+    if (!editor.fitting.scan) return;
+    const report = editor.fitting.report;
+    const last = editor.fitting.steps.at(-1);
+    element("fit-text").textContent = `${editor.fitting.scan.name}: ${editor.fitting.scan.points.toLocaleString("en")} points. ` +
       (report ? `${report.converged ? "Fitted" : "Not converged"}: ${report.stopped_because}; ${share(report.rms)} rms, ${Math.round(100 * report.inlier_ratio)} % of the points within 1 %.`
         : last ? `Step ${last.step + 1}: ${share(last.rms)} rms.` : "");
     const curve = document.getElementById("fit-curve")! as unknown as SVGSVGElement;
-    const logs = editor.fitSteps.map(step => Math.log(Math.max(1e-6, step.rms)));
+    const logs = editor.fitting.steps.map(step => Math.log(Math.max(1e-6, step.rms)));
     const low = Math.min(...logs), high = Math.max(...logs, low + 1e-6);
     curve.querySelector("polyline")!.setAttribute("points", logs.map((value, i) =>
       `${240 * i / Math.max(1, logs.length - 1)},${4 + 52 * (high - value) / (high - low)}`).join(" "));

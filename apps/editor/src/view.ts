@@ -8,46 +8,10 @@ import type { Core } from "./core";
 import { Side } from "./core";
 import type { Element, Extent } from "./annotation";
 import type { Vec3 } from "./math";
+import { fragmentShader, vertexShader } from "./shader";
+import { addElement, dotTexture } from "./shapes";
 
 export interface Theme { back: string; mesh: string; orbit: string; region: string; handle: string; pin: string; scan: string }
-
-const vertexShader = `
-attribute vec4 marks;
-varying vec3 vNormal;
-varying vec3 vView;
-varying vec4 vMarks;
-void main() {
-  vNormal = normalMatrix * normal;
-  vMarks = marks;
-  vec4 view = modelViewMatrix * vec4(position, 1.0);
-  vView = -view.xyz;
-  gl_Position = projectionMatrix * view;
-}`;
-const fragmentShader = `
-uniform vec3 base, orbitColour, regionColour, handleColour, pinColour;
-uniform float regionShare;
-varying vec3 vNormal;
-varying vec3 vView;
-varying vec4 vMarks;
-void main() {
-  vec3 view = normalize(vView);
-  vec3 normal = dot(vNormal, vNormal) > 0.0 ? normalize(vNormal) : view;
-  bool back = dot(normal, view) < 0.0;
-  if (back) normal = -normal;
-  vec3 colour = base;
-  colour = mix(colour, regionColour, regionShare * smoothstep(0.4, 0.6, vMarks.y) * 0.75);
-  colour = mix(colour, pinColour, smoothstep(0.4, 0.6, vMarks.w) * 0.8);
-  colour = mix(colour, handleColour, smoothstep(0.4, 0.6, vMarks.z) * 0.55);
-  colour = mix(colour, orbitColour, smoothstep(0.4, 0.6, vMarks.x) * 0.85);
-  float key = max(dot(normal, normalize(vec3(0.45, 0.7, 0.75))), 0.0);
-  float fill = max(dot(normal, normalize(vec3(-0.8, 0.1, 0.4))), 0.0);
-  float sky = 0.5 + 0.5 * normal.y;
-  float rim = pow(1.0 - max(dot(normal, view), 0.0), 3.0);
-  float shine = pow(max(dot(reflect(-normalize(vec3(0.45, 0.7, 0.75)), normal), view), 0.0), 28.0);
-  vec3 light = colour * (0.30 + 0.62 * key + 0.18 * fill + 0.16 * sky) + vec3(0.10 * shine + 0.06 * rim);
-  if (back) light *= 0.8;
-  gl_FragColor = vec4(pow(light, vec3(1.0 / 2.2)), 1.0);
-}`;
 
 /** A colour in the shader's linear space. */
 const linear = (colour: string): THREE.Color => new THREE.Color(colour);
@@ -215,6 +179,7 @@ export class View {
     const toDisplay = new THREE.Matrix4().makeScale(1 / frame.diagonal, 1 / frame.diagonal, 1 / frame.diagonal)
       .multiply(new THREE.Matrix4().makeTranslation(-frame.centre[0], -frame.centre[1], -frame.centre[2]));
     const shown = key ? list() : [];
+    const colour = new THREE.Color().setStyle(this.theme.region, THREE.LinearSRGBColorSpace);
     const regions = shown.length; // the more sheets lie over one another, the fainter each is
     for (const { elements, extent, carried } of shown) {
       const group = new THREE.Group();
@@ -223,46 +188,11 @@ export class View {
       group.matrix.set(m[0]!, m[1]!, m[2]!, m[3]!, m[4]!, m[5]!, m[6]!, m[7]!, m[8]!, m[9]!, m[10]!, m[11]!, 0, 0, 0, 1)
         .premultiply(toDisplay);
       const planes = elements.filter(element => element.kind === "plane").length;
-      for (const element of elements) this.addElement(group, element, extent, Math.min(0.1, 0.2 / (planes * regions)));
+      const opacity = Math.min(0.1, 0.2 / (planes * regions));
+      for (const element of elements) addElement(group, element, extent, colour, opacity);
       this.overlay.add(group);
     }
     this.draw();
-  }
-
-  private addElement(group: THREE.Group, element: Element, extent: Extent, opacity: number): void {
-    const normal = new THREE.Vector3(...element.direction);
-    const centre = new THREE.Vector3(...extent.centre);
-    const point = new THREE.Vector3(...element.point);
-    const radius = 1.12 * extent.radius;
-    const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
-    const colour = new THREE.Color().setStyle(this.theme.region, THREE.LinearSRGBColorSpace);
-    if (element.kind === "plane") {
-      centre.addScaledVector(normal, normal.dot(point) - normal.dot(centre));
-      const disc = new THREE.CircleGeometry(radius, 64);
-      const sheet = new THREE.Mesh(disc, new THREE.MeshBasicMaterial(
-        { color: colour, transparent: true, opacity, side: THREE.DoubleSide, depthWrite: false }));
-      const rim = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(
-        Array.from({ length: 96 }, (_, i) => new THREE.Vector3(radius * Math.cos(i * Math.PI / 48),
-                                                               radius * Math.sin(i * Math.PI / 48), 0))),
-                                     new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.8 }));
-      for (const object of [sheet, rim]) {
-        object.quaternion.copy(turn);
-        object.position.copy(centre);
-        group.add(object);
-      }
-    } else if (element.kind === "axis") {
-      const middle = point.clone().addScaledVector(normal, normal.dot(centre) - normal.dot(point));
-      const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.006 * radius, 0.006 * radius, 2.3 * radius, 10),
-                                 new THREE.MeshBasicMaterial({ color: colour }));
-      rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
-      rod.position.copy(middle);
-      group.add(rod);
-    } else {
-      const dot = new THREE.Mesh(new THREE.SphereGeometry(0.03 * radius, 16, 12),
-                                 new THREE.MeshBasicMaterial({ color: colour }));
-      dot.position.copy(point);
-      group.add(dot);
-    }
   }
 
   private readonly dots: THREE.Sprite[] = [];
@@ -402,22 +332,4 @@ export class View {
     renderer.render(this.freeScene, this.camera);
     renderer.setScissorTest(false);
   }
-}
-
-let texture: THREE.Texture | undefined;
-/** A disc with a ring. */
-function dotTexture(): THREE.Texture {
-  if (texture) return texture;
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = 64;
-  const context = canvas.getContext("2d")!;
-  context.beginPath();
-  context.arc(32, 32, 28, 0, 2 * Math.PI);
-  context.fillStyle = "#ffffff";
-  context.fill();
-  context.lineWidth = 5;
-  context.strokeStyle = "rgba(0,0,0,0.55)";
-  context.stroke();
-  texture = new THREE.CanvasTexture(canvas);
-  return texture;
 }

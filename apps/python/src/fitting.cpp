@@ -57,6 +57,32 @@ std::shared_ptr<KeptFit> fitted(const Given& given, const FitOptions& options, R
   return kept;
 }
 
+constexpr const char* kFitDoc =
+    "Deforms a template to a scan within its symmetric subspace.\n\n"
+    "Args:\n"
+    "    template: see :meth:`Mesh.of`.\n"
+    "    scans: see :meth:`PointCloud.of`; a list of scans of one object, in one frame.\n"
+    "    annotation: of the template; it is detected if not given.\n"
+    "    subspace: of the template, where it is built already; `annotation` and the basis' options are its own "
+    "then.\n"
+    "    pose: where the template is in the scan, roughly, (4, 4) or (3, 4), a similarity; found if not given.\n"
+    "    landmarks: (vertex, target) pairs, targets in the scan's frame; they give the pose.\n"
+    "    handles: of :class:`Handle`, their motions in the template's frame.\n"
+    "    mode, radius, samples: of the basis, see :class:`Subspace`.\n"
+    "    stiffness: of the last iterations; less follows the scan more closely.\n"
+    "    refinements: how often the basis may be made finer, by three times the degrees of freedom, where the scan\n"
+    "        asks for it; not where `subspace`, `radius` or `samples` say how fine it is.\n"
+    "    scan_points: how many of the scan's points are used.\n"
+    "    inlier_distance: a point nearer than this fraction of the diagonal is explained.\n"
+    "    contacts: parts of the template that touch stay in touch.\n"
+    "    judge_groups: say which groups the scan has not; takes as long again.\n"
+    "    drop_unsupported: and leave those out.\n" ORBIFIT_RUN_DOC
+    "\nReturns:\n"
+    "    A fit, also one that does not explain the scan: its `converged` is False then.\n\n"
+    "Raises:\n"
+    "    InputError: fewer than 10 points, an annotation of another mesh.\n"
+    "    UsageError: an option out of range.";
+
 void define_fit(py::module_& module) {
   const FitOptions defaults;
   module.def(
@@ -95,31 +121,7 @@ void define_fit(py::module_& module) {
       py::arg("refinements") = defaults.refinements, py::arg("scan_points") = defaults.scan_points,
       py::arg("inlier_distance") = defaults.inlier_distance, py::arg("contacts") = true,
       py::arg("judge_groups") = false, py::arg("drop_unsupported") = false, seed_argument(), threads_argument(),
-      timeout_argument(), progress_argument(),
-      "Deforms a template to a scan within its symmetric subspace.\n\n"
-      "Args:\n"
-      "    template: see :meth:`Mesh.of`.\n"
-      "    scans: see :meth:`PointCloud.of`; a list of scans of one object, in one frame.\n"
-      "    annotation: of the template; it is detected if not given.\n"
-      "    subspace: of the template, where it is built already; `annotation` and the basis' options are its own "
-      "then.\n"
-      "    pose: where the template is in the scan, roughly, (4, 4) or (3, 4), a similarity; found if not given.\n"
-      "    landmarks: (vertex, target) pairs, targets in the scan's frame; they give the pose.\n"
-      "    handles: of :class:`Handle`, their motions in the template's frame.\n"
-      "    mode, radius, samples: of the basis, see :class:`Subspace`.\n"
-      "    stiffness: of the last iterations; less follows the scan more closely.\n"
-      "    refinements: how often the basis may be made finer, by three times the degrees of freedom, where the scan\n"
-      "        asks for it; not where `subspace`, `radius` or `samples` say how fine it is.\n"
-      "    scan_points: how many of the scan's points are used.\n"
-      "    inlier_distance: a point nearer than this fraction of the diagonal is explained.\n"
-      "    contacts: parts of the template that touch stay in touch.\n"
-      "    judge_groups: say which groups the scan has not; takes as long again.\n"
-      "    drop_unsupported: and leave those out.\n" ORBIFIT_RUN_DOC
-      "\nReturns:\n"
-      "    A fit, also one that does not explain the scan: its `converged` is False then.\n\n"
-      "Raises:\n"
-      "    InputError: fewer than 10 points, an annotation of another mesh.\n"
-      "    UsageError: an option out of range.");
+      timeout_argument(), progress_argument(), kFitDoc);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
+#include "../file_content.h"
 #include "../residual_json.h"
 
 namespace orbifit::commands {
@@ -154,7 +155,13 @@ CommandBody check(CLI::App& app) {
     const SymmetryReport report = symmetry_residual(mesh, annotation, has_deformed ? &deformed : nullptr,
                                                     parse_mode(arguments->mode), context.run);
     const double worst = worst_residual(report, has_deformed);
-    print(context, context.json ? to_json(report, has_deformed, worst).dump(2) + "\n" : to_text(report, has_deformed));
+    if (context.json) {
+      nlohmann::ordered_json json = to_json(report, has_deformed, worst);
+      json["content"] = file_content(arguments->mesh, mesh);
+      print(context, json.dump(2) + "\n");
+    } else {
+      print(context, to_text(report, has_deformed));
+    }
     if (!limited || worst <= arguments->max_residual) return kDone;
     context.run.message("the residual " + short_number(worst) + " (" + percent(worst) +
                         " of the diagonal) is above the limit " + short_number(arguments->max_residual) + " (" +

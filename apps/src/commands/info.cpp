@@ -6,6 +6,7 @@
 #include "orbifit/model/mesh_io.h"
 
 #include "../commands.h"
+#include "../file_content.h"
 #include "geometry/topology.h"
 
 namespace orbifit::commands {
@@ -77,7 +78,13 @@ CommandBody info(CLI::App& app) {
     const Mesh mesh = read_mesh(*file);
     context.run.check();
     const MeshReport report = inspect(mesh);
-    print(context, context.json ? to_json(*file, mesh, report).dump(2) + "\n" : to_text(*file, mesh, report));
+    if (context.json) {
+      nlohmann::ordered_json json = to_json(*file, mesh, report);
+      json["content"] = file_content(*file, mesh);
+      print(context, json.dump(2) + "\n");
+    } else {
+      print(context, to_text(*file, mesh, report));
+    }
     return kDone;
   };
 }

@@ -83,6 +83,52 @@ double largest_blot(const SurfacePatch& patch, const std::vector<std::size_t>& f
   return static_cast<double>(largest) / static_cast<double>(seen);
 }
 
+// What the samples tested so far say.
+struct Tested {
+  Tested(std::size_t samples, std::size_t motions) : kept(samples, 1), thrown(samples, 0), kept_by_motion(motions, 0) {}
+
+  // Share of the samples that all motions keep.
+  double joint() const {
+    return static_cast<double>(std::count(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(done), 1)) /
+           static_cast<double>(done);
+  }
+
+  std::size_t done = 0;
+  std::vector<char> kept, thrown;  // by all motions; far off by some
+  std::vector<std::size_t> kept_by_motion;
+};
+
+// Tests the samples from those done up to `end`.
+void test_block(const SurfacePatch& patch, const std::vector<Motion>& motions, double tolerance,
+                const std::vector<std::size_t>& chosen, std::size_t end, const RunContext& context, Tested& tested) {
+  constexpr std::size_t kWorthThreads = 300;  // queries
+  const std::size_t count = end - tested.done;
+  std::vector<char> hits(count * motions.size(), 0);
+  const auto test = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const std::size_t at = tested.done + i;
+      for (std::size_t m = 0; m < motions.size(); ++m) {
+        const bool hit = keeps(patch, motions[m], chosen[at], tolerance);
+        hits[i * motions.size() + m] = hit ? 1 : 0;
+        if (hit) continue;
+        tested.kept[at] = 0;
+        if (tested.thrown[at] == 0 && !keeps(patch, motions[m], chosen[at], kFarOff * tolerance)) tested.thrown[at] = 1;
+      }
+    }
+  };
+  if (hits.size() < kWorthThreads) {
+    test(0, count);
+  } else {
+    parallel_for(context, count, test);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t m = 0; m < motions.size(); ++m) {
+      tested.kept_by_motion[m] += hits[i * motions.size() + m] != 0 ? 1U : 0U;
+    }
+  }
+  tested.done = end;
+}
+
 }  // namespace
 
 std::vector<Motion> judged_motions(const PointGroup& group, const GroupFrame& frame, const Vector3d& centre) {
@@ -126,61 +172,28 @@ std::vector<Motion> judged_motions(const PointGroup& group, const GroupFrame& fr
 
 Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motions, double tolerance, int samples,
                     double give_up_below, const RunContext& context) {
-  Verification result;
   const std::vector<std::size_t> chosen = spread(patch.at_crease.size(), samples);
-  std::vector<char> kept(chosen.size(), 1);
-  std::vector<char> thrown(chosen.size(), 0);
-  std::vector<std::size_t> kept_by_motion(motions.size(), 0);
+  Tested tested(chosen.size(), motions.size());
   // Blocks of growing size, so that a hopeless case ends after few queries, whatever the number of threads.
-  constexpr std::size_t kWorthThreads = 300;  // queries
-  std::size_t done = 0;
   std::size_t block = give_up_below > 0 ? 64 : chosen.size();
-  std::vector<char> hits;
-  while (done < chosen.size()) {
-    const std::size_t end = std::min(chosen.size(), done + block);
-    const std::size_t count = end - done;
-    hits.assign(count * motions.size(), 0);
-    const auto test = [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i) {
-        const std::size_t sample = chosen[done + i];
-        for (std::size_t m = 0; m < motions.size(); ++m) {
-          const bool hit = keeps(patch, motions[m], sample, tolerance);
-          hits[i * motions.size() + m] = hit ? 1 : 0;
-          if (hit) continue;
-          kept[done + i] = 0;
-          if (thrown[done + i] == 0 && !keeps(patch, motions[m], sample, kFarOff * tolerance)) thrown[done + i] = 1;
-        }
-      }
-    };
-    if (hits.size() < kWorthThreads) {
-      test(0, count);
-    } else {
-      parallel_for(context, count, test);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t m = 0; m < motions.size(); ++m) {
-        kept_by_motion[m] += hits[i * motions.size() + m] != 0 ? 1U : 0U;
-      }
-    }
-    done = end;
+  while (tested.done < chosen.size()) {
+    test_block(patch, motions, tolerance, chosen, std::min(chosen.size(), tested.done + block), context, tested);
     block *= 2;
-    const double joint =
-        static_cast<double>(std::count(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(done), 1)) /
-        static_cast<double>(done);
     // Two standard deviations of slack: a sample of 64 must not turn a good motion away.
-    const double slack = 2 * std::sqrt(give_up_below * (1 - give_up_below) / static_cast<double>(done));
-    if (done < chosen.size() && joint < give_up_below - slack) break;
+    const double slack = 2 * std::sqrt(give_up_below * (1 - give_up_below) / static_cast<double>(tested.done));
+    if (tested.done < chosen.size() && tested.joint() < give_up_below - slack) break;
   }
   context.check();
+  Verification result;
+  const std::size_t done = tested.done;
   result.complete = done == chosen.size();
-  kept.resize(done);
   if (done == 0) return result;
   std::vector<std::size_t> far_off;
   for (std::size_t i = 0; i < done; ++i) {
-    if (thrown[i] != 0) far_off.push_back(chosen[i]);
+    if (tested.thrown[i] != 0) far_off.push_back(chosen[i]);
   }
-  result.joint = static_cast<double>(std::ranges::count(kept, 1)) / static_cast<double>(done);
-  for (const std::size_t count : kept_by_motion) {
+  result.joint = tested.joint();
+  for (const std::size_t count : tested.kept_by_motion) {
     result.worst = std::min(result.worst, static_cast<double>(count) / static_cast<double>(done));
   }
   result.cluster = far_off.size() * 4 > done ? 1 : largest_blot(patch, far_off, done);
@@ -189,7 +202,7 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
     result.part = worst_part(patch, motions, kFarOff * tolerance);
   }
   result.kept.assign(patch.at_crease.size(), 0);
-  for (std::size_t i = 0; i < done; ++i) result.kept[chosen[i]] = kept[i];
+  for (std::size_t i = 0; i < done; ++i) result.kept[chosen[i]] = tested.kept[i];
   return result;
 }
 

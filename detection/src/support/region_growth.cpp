@@ -35,6 +35,40 @@ bool rotates_all(const PointGroup& group) {
 constexpr int kMaxElements = 150;
 constexpr std::size_t kMaxMasks = 12;
 
+// Of the components `in`, those that are left, ascending, when what has an image outside has been taken out until
+// nothing has. \param images  by component: those it must have, -1 for nowhere; none of what stays in any case
+std::vector<int> closed_under(const std::vector<std::vector<int>>& images, std::vector<char> in) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t c = 0; c < in.size(); ++c) {
+      if (in[c] == 0) continue;
+      if (std::ranges::all_of(images[c], [&](int t) { return t >= 0 && in[static_cast<std::size_t>(t)] != 0; })) {
+        continue;
+      }
+      in[c] = 0;
+      changed = true;
+    }
+  }
+  std::vector<int> result;
+  for (std::size_t c = 0; c < in.size(); ++c) {
+    if (in[c] != 0) result.push_back(static_cast<int>(c));
+  }
+  return result;
+}
+
+// The sets of elements that have an image of some component, each set once. Of the identity alone: none.
+std::vector<std::vector<char>> distinct_masks(const std::vector<std::vector<int>>& images) {
+  std::vector<std::vector<char>> distinct;
+  for (const std::vector<int>& of_component : images) {
+    std::vector<char> mask(of_component.size());
+    std::ranges::transform(of_component, mask.begin(), [](int image) { return image >= 0 ? 1 : 0; });
+    if (std::ranges::count(mask, 1) > 1 && std::ranges::find(distinct, mask) == distinct.end()) {
+      distinct.push_back(std::move(mask));
+    }
+  }
+  return distinct;
+}
+
 }  // namespace
 
 GroupElements::GroupElements(const GroupPlacement& placement) : placement_(placement) {
@@ -197,20 +231,23 @@ std::vector<int> ComponentMover::permuted_among(const std::vector<int>& among, c
     images[c] = std::move(targets);
     in[c] = 1;
   }
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t c = 0; c < count; ++c) {
-      if (in[c] == 0 || images[c].empty()) continue;
-      if (std::ranges::all_of(images[c], [&](int t) { return in[static_cast<std::size_t>(t)] != 0; })) continue;
-      in[c] = 0;
-      changed = true;
+  return closed_under(images, std::move(in));
+}
+
+std::vector<std::vector<int>> ComponentMover::element_images(const std::vector<Matrix3d>& linear,
+                                                             const GroupPlacement& placement,
+                                                             const std::vector<char>& in_seed) const {
+  std::vector<std::vector<int>> images(in_seed.size());
+  for (std::size_t c = 0; c < images.size(); ++c) {
+    context_.check();
+    if (in_seed[c] != 0) continue;
+    const double reach = reach_of(c, placement.group);
+    images[c].push_back(static_cast<int>(c));
+    for (std::size_t g = 1; g < linear.size(); ++g) {
+      images[c].push_back(image(c, Motion::about(linear[g], placement.centre), reach, kKeptShare));
     }
   }
-  std::vector<int> result;
-  for (std::size_t c = 0; c < count; ++c) {
-    if (in[c] != 0) result.push_back(static_cast<int>(c));
-  }
-  return result;
+  return images;
 }
 
 std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacement& placement,
@@ -218,65 +255,28 @@ std::vector<SubgroupRegion> ComponentMover::subgroup_regions(const GroupPlacemen
   std::vector<SubgroupRegion> result;
   if (placement.group.continuous() || placement.group.order() < 4 || placement.group.order() > kMaxElements)
     return result;
-  std::vector<Matrix3d> linear = elements(placement.group, placement.frame);
-  const std::size_t order = linear.size();
+  const std::vector<Matrix3d> linear = elements(placement.group, placement.frame);
   const std::size_t count = survey_.moments.size();
   std::vector<char> in_seed(count, 0);
   for (const int c : seed) in_seed[static_cast<std::size_t>(c)] = 1;
-
-  // images[c][g]: where element g carries c, -1 for nowhere. What is in the seed stays in it.
-  std::vector<std::vector<int>> images(count);
-  std::vector<std::vector<char>> distinct;
-  for (std::size_t c = 0; c < count; ++c) {
-    context_.check();
-    if (in_seed[c] != 0) continue;
-    const double reach = reach_of(c, placement.group);
-    images[c].assign(order, -1);
-    images[c][0] = static_cast<int>(c);
-    std::vector<char> mask(order, 0);
-    mask[0] = 1;
-    bool moved = false;
-    for (std::size_t g = 1; g < order; ++g) {
-      images[c][g] = image(c, Motion::about(linear[g], placement.centre), reach, kKeptShare);
-      mask[g] = images[c][g] >= 0 ? 1 : 0;
-      moved = moved || mask[g] != 0;
-    }
-    if (moved && std::ranges::find(distinct, mask) == distinct.end()) distinct.push_back(mask);
-  }
+  const std::vector<std::vector<int>> images = element_images(linear, placement, in_seed);
+  const std::vector<std::vector<char>> distinct = distinct_masks(images);
   if (distinct.empty() || distinct.size() > kMaxMasks) return result;
 
   for (const std::vector<char>& members : subgroups_within(linear, distinct)) {
-    std::vector<char> in(count, 0);
-    for (std::size_t c = 0; c < count; ++c) {
-      in[c] = in_seed[c];
-      if (images[c].empty()) continue;
-      in[c] = 1;
-      for (std::size_t g = 0; g < order; ++g) {
-        if (members[g] != 0 && images[c][g] < 0) in[c] = 0;
-      }
-    }
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (std::size_t c = 0; c < count; ++c) {
-        if (in[c] == 0 || images[c].empty()) continue;
-        for (std::size_t g = 0; g < order; ++g) {
-          if (members[g] == 0 || in[static_cast<std::size_t>(images[c][g])] != 0) continue;
-          in[c] = 0;
-          changed = true;
-          break;
-        }
-      }
-    }
     std::vector<Matrix3d> kept;
-    for (std::size_t g = 0; g < order; ++g) {
-      if (members[g] != 0) kept.push_back(linear[g]);
+    std::vector<std::vector<int>> images_by_members(count);
+    for (std::size_t g = 0; g < linear.size(); ++g) {
+      if (members[g] == 0) continue;
+      kept.push_back(linear[g]);
+      for (std::size_t c = 0; c < count; ++c) {
+        if (in_seed[c] == 0) images_by_members[c].push_back(images[c][g]);
+      }
     }
     const std::optional<ClassifiedGroup> known = classify(kept);
     if (!known) continue;
-    SubgroupRegion region{{known->group, known->frame, placement.centre}, {}};
-    for (std::size_t c = 0; c < count; ++c) {
-      if (in[c] != 0) region.components.push_back(static_cast<int>(c));
-    }
+    SubgroupRegion region{{known->group, known->frame, placement.centre},
+                          closed_under(images_by_members, std::vector<char>(count, 1))};
     if (region.components.size() > seed.size()) result.push_back(std::move(region));
   }
   return result;

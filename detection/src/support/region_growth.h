@@ -47,6 +47,9 @@ class ComponentMover {
   int image(std::size_t component, const Motion& motion, double reach, double least_share) const;
   // Whether the motion carries the component onto the other by what is known of their class, to half the reach.
   bool carries(std::size_t component, std::size_t target, const Motion& motion, double reach) const;
+  // Where the elements of a group carry each component, -1 for nowhere. None of the seed's, which stay in it.
+  std::vector<std::vector<int>> element_images(const std::vector<Eigen::Matrix3d>& linear,
+                                               const GroupPlacement& placement, const std::vector<char>& in_seed) const;
   double reach_of(std::size_t component, const PointGroup& group) const;
   SurfaceSamples samples_of(std::size_t component) const;
 

@@ -243,17 +243,74 @@ struct RawTerm {
   int word;
 };
 
+// The terms of representatives' lifts, each the mean over the points of its orbit, taken back.
+class OrbitTerms {
+ public:
+  OrbitTerms(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
+             const std::vector<int>& stood_for, const VertexOrbits& vertices, bool averaged)
+      : words_(words),
+        stood_for_(stood_for),
+        vertices_(vertices),
+        plain_(sampling, regions, averaged),
+        places_(regions, words) {}
+
+  // \param terms  those of representative r
+  void of(std::size_t r, PlainLift::Scratch& scratch, std::vector<RawTerm>& terms) const {
+    terms.clear();
+    const Vector3d position = vertices_.positions.row(static_cast<Eigen::Index>(r)).transpose();
+    const std::int64_t points = vertices_.first_point[r + 1] - vertices_.first_point[r];
+    PlainLift::begin_orbit(scratch);
+    for (std::int64_t k = 0; k < points; ++k) {
+      const auto at = static_cast<std::size_t>(vertices_.first_point[r] + k);
+      if (stood_for_[at] == 0) continue;
+      const int word = vertices_.point_words[at];
+      const PlainLift::Origin origin{position, places_.of(word)};
+      plain_.terms(words_.motion(word)(position), vertices_.point_sets[at], scratch, static_cast<std::size_t>(k),
+                   &origin);
+      for (LiftTerm term : scratch.terms) {
+        term.weight *= static_cast<double>(stood_for_[at]) / static_cast<double>(points);
+        terms.push_back({term, word});
+      }
+    }
+  }
+
+ private:
+  const GroupWords& words_;
+  const std::vector<int>& stood_for_;
+  const VertexOrbits& vertices_;
+  PlainLift plain_;
+  PlacesBefore places_;
+};
+
+// Rows of terms that are summed by atom.
+class RowSums {
+ public:
+  void sum(const std::vector<RawTerm>& terms, AtomTable& table, Row& row) {
+    row.clear();
+    for (const RawTerm& raw : terms) {
+      const auto atom = static_cast<std::size_t>(table.number(raw.term, raw.word));
+      if (sums_.size() <= atom) sums_.resize(atom + 256, 0);
+      if (sums_[atom] == 0) row.emplace_back(static_cast<int>(atom), 0);
+      sums_[atom] += raw.term.weight;
+    }
+    for (auto& [atom, weight] : row) weight = std::exchange(sums_[static_cast<std::size_t>(atom)], 0);
+    std::ranges::sort(row);
+  }
+
+ private:
+  std::vector<double> sums_;  // by atom, 0 between rows
+};
+
 }  // namespace
 
 OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
                      const SymmetricBasis& basis, const VertexOrbits& vertices, bool averaged,
                      const RunContext& context) {
-  const PlainLift plain(sampling, regions, averaged);
   if (averaged) regions.prepare();
-  const PlacesBefore places(regions, words);
   AtomTable table(sampling, regions, words, basis);
   std::vector<int> stood_for(vertices.point_words.size(), 1);
   if (averaged) stood_for = points_stood_for(sampling, regions, words, table.carriers(), vertices);
+  const OrbitTerms orbits(sampling, regions, words, stood_for, vertices, averaged);
   OrbitLift lift;
   const auto count = static_cast<std::size_t>(vertices.representatives());
   lift.first.reserve(count / OrbitLift::kLanes + 2);
@@ -262,8 +319,8 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
   // In blocks: terms on all threads, atoms numbered in order on one, so that the numbers never depend on the threads.
   constexpr std::size_t kBlock = 16384;
   std::vector<std::vector<RawTerm>> terms;
+  RowSums sums;
   Row row;
-  std::vector<double> sums;
   Block block;
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     context.progress("lift", static_cast<double>(begin) / static_cast<double>(count));
@@ -271,36 +328,10 @@ OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions
     terms.resize(size);
     parallel_for(context, size, [&](std::size_t from, std::size_t to) {
       PlainLift::Scratch scratch;
-      for (std::size_t i = from; i < to; ++i) {
-        terms[i].clear();
-        const std::size_t r = begin + i;
-        const Vector3d position = vertices.positions.row(static_cast<Eigen::Index>(r)).transpose();
-        const std::int64_t points = vertices.first_point[r + 1] - vertices.first_point[r];
-        PlainLift::begin_orbit(scratch);
-        for (std::int64_t k = 0; k < points; ++k) {
-          const auto at = static_cast<std::size_t>(vertices.first_point[r] + k);
-          if (stood_for[at] == 0) continue;
-          const int word = vertices.point_words[at];
-          const PlainLift::Origin origin{position, places.of(word)};
-          plain.terms(words.motion(word)(position), vertices.point_sets[at], scratch, static_cast<std::size_t>(k),
-                      &origin);
-          for (LiftTerm term : scratch.terms) {
-            term.weight *= static_cast<double>(stood_for[at]) / static_cast<double>(points);
-            terms[i].push_back({term, word});
-          }
-        }
-      }
+      for (std::size_t i = from; i < to; ++i) orbits.of(begin + i, scratch, terms[i]);
     });
     for (std::size_t i = 0; i < size; ++i) {
-      row.clear();
-      for (const RawTerm& raw : terms[i]) {
-        const auto atom = static_cast<std::size_t>(table.number(raw.term, raw.word));
-        if (sums.size() <= atom) sums.resize(atom + 256, 0);
-        if (sums[atom] == 0) row.emplace_back(static_cast<int>(atom), 0);
-        sums[atom] += raw.term.weight;
-      }
-      for (auto& [atom, weight] : row) weight = std::exchange(sums[static_cast<std::size_t>(atom)], 0);
-      std::ranges::sort(row);
+      sums.sum(terms[i], table, row);
       quantise(row, table.atoms());
       block[(begin + i) % OrbitLift::kLanes] = row;
       if ((begin + i + 1) % OrbitLift::kLanes == 0 || begin + i + 1 == count) append_block(block, lift);

@@ -211,6 +211,95 @@ std::vector<Eigen::Index> independent(const Eigen::SparseMatrix<double>& effect)
   return chosen;
 }
 
+// Of each orbit the pairs of words that must take its seed to one place, each pair once.
+std::vector<std::vector<WordPair>> word_pairs(const SymmetricSampling& sampling) {
+  std::vector<std::vector<WordPair>> pairs(static_cast<std::size_t>(sampling.orbits()));
+  for (const auto& [orbit, left, right] : sampling.constraints) {
+    pairs[static_cast<std::size_t>(orbit)].push_back({left, right});
+  }
+  for (std::vector<WordPair>& each : pairs) {
+    std::ranges::sort(each);
+    each.erase(std::unique(each.begin(), each.end()), each.end());
+  }
+  return pairs;
+}
+
+// What each orbit leaves free of its seed. What orbits and points elsewhere ask of carriers goes to the system.
+std::vector<SeedSpace> seed_spaces(const SymmetricSampling& sampling, const CarriedTransports& transports,
+                                   const std::vector<BoundPoint>& elsewhere, CarrierSystem& system) {
+  const std::vector<std::vector<WordPair>> pairs = word_pairs(sampling);
+  std::set<std::vector<WordPair>> known;
+  std::vector<SeedSpace> seeds(pairs.size());
+  for (std::size_t orbit = 0; orbit < pairs.size(); ++orbit) {
+    const Vector3d position = sampling.points.row(sampling.first_sample[orbit]).transpose();
+    const Constraints constraints = constraints_of(pairs[orbit], transports, position);
+    seeds[orbit] = solve_seed(constraints);
+    system.add(constraints, seeds[orbit], !known.insert(pairs[orbit]).second);
+  }
+  for (const BoundPoint& point : elsewhere) {
+    const Constraints constraints = constraints_of(point.words, transports, point.position);
+    system.add(constraints, solve_seed(constraints), !known.insert(point.words).second);
+  }
+  return seeds;
+}
+
+// A block's entries above a size.
+void add_entries(const MatrixXd& block, Eigen::Index row, Eigen::Index column, double size,
+                 std::vector<Eigen::Triplet<double>>& entries) {
+  for (Eigen::Index j = 0; j < block.cols(); ++j) {
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      if (std::abs(block(i, j)) > size) entries.emplace_back(row + i, column + j, block(i, j));
+    }
+  }
+}
+
+// What the carriers do to a sample: B_k + O_k bound. \return of their allowed directions, 3#S by as many; what their
+// offsets do goes to the basis
+Eigen::SparseMatrix<double> carried_effect(const SymmetricSampling& sampling, const CarriedTransports& transports,
+                                           const std::vector<SeedSpace>& seeds, const MatrixXd& allowed,
+                                           SymmetricBasis& basis) {
+  constexpr double kCrumb = 1e-14;
+  const Eigen::Index count = sampling.points.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  basis.offset.resize(3 * count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto sample = static_cast<std::size_t>(k);
+    const auto orbit = static_cast<std::size_t>(sampling.orbit_of_sample[sample]);
+    const SeedSpace& seed = seeds[orbit];
+    const Transport& transport = transports.samples[sample];
+    Carried bound;
+    for (std::size_t i = 0; i < seed.carriers.size(); ++i) {
+      bound.emplace_back(seed.carriers[i], seed.bound.middleCols<3>(3 * static_cast<Eigen::Index>(i)));
+    }
+    const Vector3d start = sampling.points.row(sampling.first_sample[orbit]).transpose();
+    basis.offset.segment<3>(3 * k) = transport.frame * seed.offset;
+    if (transports.turned()) {
+      basis.offset.segment<3>(3 * k) += moved_by(transport, transports.rest_samples[sample], start);
+    }
+    for (const auto& [carrier, matrix] : carried_sum(transport.carried, transport.frame, bound)) {
+      basis.offset.segment<3>(3 * k) += matrix * basis.carried_offset.segment<3>(3 * carrier);
+      add_entries(matrix * allowed.middleRows<3>(3 * carrier), 3 * k, 0, kCrumb, entries);
+    }
+  }
+  Eigen::SparseMatrix<double> effect(3 * count, allowed.cols());
+  effect.setFromTriplets(entries.begin(), entries.end());
+  return effect;
+}
+
+// The basis' columns: first the free directions of each orbit's seed. \return how many
+Eigen::Index add_seeds(const SymmetricSampling& sampling, const CarriedTransports& transports,
+                       const std::vector<SeedSpace>& seeds, std::vector<Eigen::Triplet<double>>& entries) {
+  Eigen::Index column = 0;
+  for (std::size_t orbit = 0; orbit < seeds.size(); ++orbit) {
+    const MatrixXd& free = seeds[orbit].free;
+    for (int k = sampling.first_sample[orbit]; k < sampling.first_sample[orbit + 1]; ++k) {
+      add_entries(transports.samples[static_cast<std::size_t>(k)].frame * free, 3 * k, column, 0, entries);
+    }
+    column += free.cols();
+  }
+  return column;
+}
+
 }  // namespace
 
 Binding binding_of(const std::vector<WordPair>& pairs, const CarriedTransports& transports) {
@@ -229,89 +318,28 @@ Binding binding_of(const std::vector<WordPair>& pairs, const CarriedTransports& 
 
 SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, const CarriedTransports& transports, int carriers,
                                const std::vector<BoundPoint>& elsewhere) {
-  const auto orbits = static_cast<std::size_t>(sampling.orbits());
-  std::vector<std::vector<WordPair>> pairs(orbits);
-  for (const auto& [orbit, left, right] : sampling.constraints) {
-    pairs[static_cast<std::size_t>(orbit)].push_back({left, right});
-  }
   CarrierSystem system(carriers);
-  std::set<std::vector<WordPair>> known;
-  std::vector<SeedSpace> seeds(orbits);
-  for (std::size_t orbit = 0; orbit < orbits; ++orbit) {
-    std::ranges::sort(pairs[orbit]);
-    pairs[orbit].erase(std::unique(pairs[orbit].begin(), pairs[orbit].end()), pairs[orbit].end());
-    const Vector3d position = sampling.points.row(sampling.first_sample[orbit]).transpose();
-    const Constraints constraints = constraints_of(pairs[orbit], transports, position);
-    seeds[orbit] = solve_seed(constraints);
-    system.add(constraints, seeds[orbit], !known.insert(pairs[orbit]).second);
-  }
-  for (const BoundPoint& point : elsewhere) {
-    const Constraints constraints = constraints_of(point.words, transports, point.position);
-    system.add(constraints, solve_seed(constraints), !known.insert(point.words).second);
-  }
-
-  // What the carriers do to a sample: B_k + O_k bound. Directions that move no sample are no freedom.
+  const std::vector<SeedSpace> seeds = seed_spaces(sampling, transports, elsewhere, system);
   const MatrixXd allowed = system.free();
-  std::vector<Eigen::Triplet<double>> entries;
   SymmetricBasis basis;
-  const Eigen::Index count = sampling.points.rows();
-  basis.offset.resize(3 * count);
   basis.carried_offset = system.particular();
   basis.conflict = system.conflict(basis.carried_offset);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const auto sample = static_cast<std::size_t>(k);
-    const auto orbit = static_cast<std::size_t>(sampling.orbit_of_sample[sample]);
-    const SeedSpace& seed = seeds[orbit];
-    const Transport& transport = transports.samples[sample];
-    Carried bound;
-    for (std::size_t i = 0; i < seed.carriers.size(); ++i) {
-      bound.emplace_back(seed.carriers[i], seed.bound.middleCols<3>(3 * static_cast<Eigen::Index>(i)));
-    }
-    const Vector3d start = sampling.points.row(sampling.first_sample[orbit]).transpose();
-    basis.offset.segment<3>(3 * k) = transport.frame * seed.offset;
-    if (transports.turned()) {
-      basis.offset.segment<3>(3 * k) += moved_by(transport, transports.rest_samples[sample], start);
-    }
-    for (const auto& [carrier, matrix] : carried_sum(transport.carried, transport.frame, bound)) {
-      basis.offset.segment<3>(3 * k) += matrix * basis.carried_offset.segment<3>(3 * carrier);
-      const MatrixXd block = matrix * allowed.middleRows<3>(3 * carrier);
-      for (Eigen::Index j = 0; j < block.cols(); ++j) {
-        for (Eigen::Index i = 0; i < 3; ++i) {
-          if (std::abs(block(i, j)) > 1e-14) entries.emplace_back(3 * k + i, j, block(i, j));
-        }
-      }
-    }
-  }
-  Eigen::SparseMatrix<double> effect(3 * count, allowed.cols());
-  effect.setFromTriplets(entries.begin(), entries.end());
-  const std::vector<Eigen::Index> moving = independent(effect);
+  const Eigen::SparseMatrix<double> effect = carried_effect(sampling, transports, seeds, allowed, basis);
+  const std::vector<Eigen::Index> moving = independent(effect);  // what moves no sample is no freedom
 
-  entries.clear();
-  Eigen::Index column = 0;
-  for (std::size_t orbit = 0; orbit < orbits; ++orbit) {
-    const MatrixXd& free = seeds[orbit].free;
-    for (int k = sampling.first_sample[orbit]; k < sampling.first_sample[orbit + 1]; ++k) {
-      const MatrixXd block = transports.samples[static_cast<std::size_t>(k)].frame * free;
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        for (Eigen::Index j = 0; j < free.cols(); ++j) {
-          if (block(i, j) != 0) entries.emplace_back(3 * k + i, column + j, block(i, j));
-        }
-      }
-    }
-    column += free.cols();
-  }
-  for (std::size_t j = 0; j < moving.size(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(effect, moving[j]); entry; ++entry) {
-      entries.emplace_back(entry.row(), column + static_cast<Eigen::Index>(j), entry.value());
-    }
-  }
-  const Eigen::Index freedom = column + static_cast<Eigen::Index>(moving.size());
-  basis.columns.resize(3 * count, freedom);
-  basis.columns.setFromTriplets(entries.begin(), entries.end());
+  std::vector<Eigen::Triplet<double>> entries;
+  const Eigen::Index of_seeds = add_seeds(sampling, transports, seeds, entries);
+  const Eigen::Index freedom = of_seeds + static_cast<Eigen::Index>(moving.size());
   basis.carried = MatrixXd::Zero(3 * carriers, freedom);
   for (std::size_t j = 0; j < moving.size(); ++j) {
-    basis.carried.col(column + static_cast<Eigen::Index>(j)) = allowed.col(moving[j]);
+    const Eigen::Index column = of_seeds + static_cast<Eigen::Index>(j);
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(effect, moving[j]); entry; ++entry) {
+      entries.emplace_back(entry.row(), column, entry.value());
+    }
+    basis.carried.col(column) = allowed.col(moving[j]);
   }
+  basis.columns.resize(effect.rows(), freedom);
+  basis.columns.setFromTriplets(entries.begin(), entries.end());
   return basis;
 }
 

@@ -1,17 +1,16 @@
 #include "deformation/moving_solve.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <utility>
 
-#include <Eigen/Cholesky>
+#include <Eigen/SVD>
 
-#include "orbifit/model/errors.h"
-
-#include "base/dense.h"
 #include "basis/lift.h"
 #include "basis/subspace_parts.h"
+#include "deformation/sample_energy.h"
 
 namespace orbifit {
 
@@ -20,108 +19,168 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kHoldCoordinates = 1e-10;  // of the mean of the diagonal, on coordinates
-constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of the largest
-constexpr double kMaxTurn = 0.35;           // radians in one iteration
-constexpr double kConflict = 1e-12;         // of the diagonal
-
-using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-// A (x) I_3.
-SparseRows thrice(const SparseRows& scalar) {
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(3 * static_cast<std::size_t>(scalar.nonZeros()));
-  for (Eigen::Index row = 0; row < scalar.rows(); ++row) {
-    for (SparseRows::InnerIterator entry(scalar, row); entry; ++entry) {
-      for (Eigen::Index c = 0; c < 3; ++c) entries.emplace_back(3 * row + c, 3 * entry.col() + c, entry.value());
-    }
-  }
-  SparseRows result(3 * scalar.rows(), 3 * scalar.cols());
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
-
-// Adds the lower half of rows^T rows. A row touches few coordinates: those of the samples near its own.
-void add_lower_gram(const SparseRows& rows, Eigen::Ref<MatrixXd> gram) {
-  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
-    for (SparseRows::InnerIterator a(rows, row); a; ++a) {
-      for (SparseRows::InnerIterator b = a; b; ++b) gram(b.col(), a.col()) += a.value() * b.value();
-    }
-  }
-}
-
-// How displacements start to change as the groups turn: of the samples, of the Laplace coordinates asked for, and of
-// the handles' points about the samples that they follow.
-struct Turning {
-  MatrixXd samples, along, arms;
-};
-
-// The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset.
-class SampleEnergy {
- public:
-  SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights,
-               double alpha)
-      : laplacian_(thrice(corotation.laplacian)), points_(thrice(points)) {
-    weights_.resize(points_.rows());
-    for (Eigen::Index i = 0; i < weights_.size(); ++i)
-      weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
-    points_ = weights_.asDiagonal() * points_;
-  }
-
-  struct Solution {
-    VectorXd z;
-    double energy = 0;
-  };
-
-  // The last unknowns are turns.
-  Solution solve(const SparseRows& columns, const Turning& turning, const VectorXd& offset, const VectorXd& laplace,
-                 const VectorXd& targets, const ContactRows& contacts) const {
-    const Eigen::Index rest = columns.cols();
-    const Eigen::Index turns = turning.samples.cols();
-    const Part parts[] = {
-        {laplacian_ * columns, laplacian_ * turning.samples - turning.along, laplace - laplacian_ * offset},
-        {points_ * columns, points_ * turning.samples + weights_.asDiagonal() * turning.arms,
-         weights_.cwiseProduct(targets) - points_ * offset},
-        {contacts.rows.leftCols(rest).sparseView(), contacts.rows.rightCols(turns), contacts.right}};
-    MatrixXd normal = MatrixXd::Zero(rest + turns, rest + turns);
-    VectorXd side = VectorXd::Zero(rest + turns);
-    VectorXd own;  // however firm contacts are, what holds the unknowns is measured by the rest
-    for (const Part& part : parts) {
-      if (&part == &parts[2]) own = normal.diagonal();
-      add_lower_gram(part.rows, normal.topLeftCorner(rest, rest));
-      normal.bottomLeftCorner(turns, rest) += part.turns.transpose() * part.rows;
-      normal.bottomRightCorner(turns, turns) += part.turns.transpose() * part.turns;
-      side.head(rest) += part.rows.transpose() * part.right;
-      side.tail(turns) += part.turns.transpose() * part.right;
-    }
-    if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * own.head(rest).mean();
-    if (turns > 0) {
-      const double largest = own.tail(turns).maxCoeff();
-      normal.diagonal().tail(turns) += kHoldTurns * (own.tail(turns).array() + largest + 1e-300).matrix();
-    }
-    const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
-    Solution solution;
-    solution.z = factor.solve(side);
-    if (!solution.z.allFinite()) throw NoResultError("the handles' system could not be factorised");
-    for (const Part& part : parts) {
-      solution.energy +=
-          (part.rows * solution.z.head(rest) + part.turns * solution.z.tail(turns) - part.right).squaredNorm();
-    }
-    return solution;
-  }
-
- private:
-  struct Part {
-    SparseRows rows;
-    MatrixXd turns;
-    VectorXd right;
-  };
-
-  SparseRows laplacian_, points_;  // by coordinates, the points weighted
-  VectorXd weights_;
-};
+constexpr double kMaxTurn = 0.35;    // radians in one iteration
+constexpr double kConflict = 1e-12;  // of the diagonal
 
 }  // namespace
+
+// One solve on its way: how the groups stand, the state with them, and the samples' local rotations.
+class MovingSolve::Run {
+ public:
+  Run(const MovingSolve& of, const HandleRows& handles, double alpha, const std::vector<Motion>& motions,
+      const RunContext& context);
+
+  // Goes on from `start` where that has a basis of its own, or has the groups turn as the handles do all in all.
+  void begin(const SubspaceState& start);
+  void iterate();
+  Deformation finish();
+
+ private:
+  void turn_groups(const Points& before, const VectorXd& wanted);
+  void accept(const ConjugatedRegions::Turns& next, std::shared_ptr<const ConjugatedBasis> basis);
+  void follow(const Points& before, const VectorXd& wanted);
+  Points turned_coordinates() const;
+  ContactRows contact_rows(const SmallTurns* small) const;
+  Points lifted() const;
+  int region_of(std::size_t sample) const;
+
+  const MovingSolve& of_;
+  const Subspace& subspace_;
+  const Corotation& corotation_;
+  const ConjugatedRegions& regions_;
+  const HandleRows& handles_;
+  const RunContext& context_;
+  LiftWeights spread_;  // handles' points by samples
+  SampleEnergy energy_;
+  VectorXd targets_;
+  Turning still_;  // no way of turning
+  ConjugatedRegions::Turns turns_;
+  std::vector<Eigen::Matrix3d> local_;  // by sample
+  Deformation result_;
+  SubspaceState& state_ = result_.state;
+};
+
+MovingSolve::Run::Run(const MovingSolve& of, const HandleRows& handles, double alpha,
+                      const std::vector<Motion>& motions, const RunContext& context)
+    : of_(of),
+      subspace_(of.subspace_),
+      corotation_(of.corotation_),
+      regions_(of.regions_),
+      handles_(handles),
+      context_(context),
+      spread_(lift_weights(handles.rest(), corotation_.rest, subspace_->sampling.radius, RunContext{})),
+      energy_(corotation_, spread_, handles.weights(), alpha),
+      targets_(handles.targets(motions)),
+      turns_(regions_.rest()),
+      local_(static_cast<std::size_t>(corotation_.rest.rows()), Eigen::Matrix3d::Identity()) {
+  const Eigen::Index coordinates = corotation_.rest.size();
+  still_ = {MatrixXd(coordinates, 0), MatrixXd(coordinates, 0), MatrixXd(targets_.size(), 0)};
+}
+
+void MovingSolve::Run::begin(const SubspaceState& start) {
+  if (start.basis && start.q.size() == start.basis->columns.cols()) {
+    turns_ = regions_.turns_of(start.basis->rotations);
+    state_ = start;
+    local_ = local_rotations(corotation_, corotation_.rest + sample_displacements(subspace_, state_), local_);
+    return;
+  }
+  turns_ = of_.first_turns(handles_, targets_);
+  const auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns_)));
+  state_ = {VectorXd::Zero(basis->columns.cols()), basis};
+  if (start.q.size() == state_.q.size()) state_.q = start.q;
+  for (std::size_t k = 0; k < local_.size(); ++k) {
+    const int region = region_of(k);
+    if (region >= 0) local_[k] = basis->rotations[static_cast<std::size_t>(region)];
+  }
+  follow(sample_displacements(subspace_, state_), targets_);
+}
+
+void MovingSolve::Run::iterate() {
+  const Points before = sample_displacements(subspace_, state_);
+  // Where the lift differs from mere Gaussians about the samples, the handles' targets make up for it.
+  const VectorXd wanted = targets_ - stacked(lifted()) + VectorXd(applied(spread_, stacked(before)));
+  if (regions_.freedom() > 0) turn_groups(before, wanted);
+  follow(before, wanted);
+}
+
+// Coordinates and groups together, to first order; of that the groups' turns are kept, where they contradict nothing.
+void MovingSolve::Run::turn_groups(const Points& before, const VectorXd& wanted) {
+  const Points turned_delta = turned_coordinates();
+  const MatrixXd turning = regions_.columns(turns_, corotation_.rest + before, region_centres(subspace_, state_));
+  // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
+  const Turning all{turning, regions_.columns(turns_, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
+                    regions_.arms(turns_, spread_, handles_.rest() - spread_ * corotation_.rest)};
+  const SmallTurns small{regions_, turns_, turning};
+  const VectorXd both = energy_
+                            .solve(state_.basis->columns, all, state_.basis->offset,
+                                   stacked(turned_delta - corotation_.delta), wanted, contact_rows(&small))
+                            .z;
+  VectorXd angles = both.tail(turning.cols());
+  const double largest = angles.cwiseAbs().maxCoeff();
+  context_.check();
+  if (largest > kMaxTurn) angles *= kMaxTurn / largest;
+  const ConjugatedRegions::Turns next = regions_.turned(turns_, angles);
+  auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(next)));
+  if (basis->conflict <= kConflict * subspace_->diagonal) accept(next, std::move(basis));
+}
+
+void MovingSolve::Run::accept(const ConjugatedRegions::Turns& next, std::shared_ptr<const ConjugatedBasis> basis) {
+  for (std::size_t k = 0; k < local_.size(); ++k) {
+    const int region = region_of(k);
+    if (region < 0) continue;
+    const auto r = static_cast<std::size_t>(region);
+    local_[k] = basis->rotations[r] * state_.basis->rotations[r].transpose() * local_[k];
+  }
+  turns_ = next;
+  state_.basis = std::move(basis);
+}
+
+// The best coordinates for groups that stand as they do, and the local rotations to them.
+void MovingSolve::Run::follow(const Points& before, const VectorXd& wanted) {
+  context_.check();
+  const auto solution = energy_.solve(state_.basis->columns, still_, state_.basis->offset,
+                                      stacked(turned_coordinates() - corotation_.delta), wanted, contact_rows(nullptr));
+  state_.q = solution.z;
+  result_.energy = solution.energy;
+  const Points after = sample_displacements(subspace_, state_);
+  result_.last_change = (after - before).rowwise().norm().maxCoeff();
+  local_ = local_rotations(corotation_, corotation_.rest + after, local_);
+}
+
+Deformation MovingSolve::Run::finish() {
+  const VectorXd missed = stacked(lifted()) - targets_;
+  double squares = 0;
+  for (Eigen::Index i = 0; i < missed.size(); ++i) {
+    squares += handles_.weights()[static_cast<std::size_t>(i / 3)] * missed[i] * missed[i];
+  }
+  result_.handle_error = std::sqrt(squares / handles_.total_weight());
+  return std::move(result_);
+}
+
+Points MovingSolve::Run::turned_coordinates() const {
+  Points turned(corotation_.delta.rows(), 3);
+  for (Eigen::Index k = 0; k < turned.rows(); ++k) {
+    turned.row(k) = (local_[static_cast<std::size_t>(k)] * corotation_.delta.row(k).transpose()).transpose();
+  }
+  return turned;
+}
+
+ContactRows MovingSolve::Run::contact_rows(const SmallTurns* small) const {
+  if (of_.contacts_.empty()) {
+    return {MatrixXd(0, state_.q.size() + (small != nullptr ? small->columns.cols() : 0)), VectorXd(0)};
+  }
+  return contact_rows_at(of_.contacts_, of_.contact_weight_, subspace_, state_, vertex_displacements(subspace_, state_),
+                         local_, small);
+}
+
+// Displacements of the handles' points.
+Points MovingSolve::Run::lifted() const {
+  return vertex_displacements(subspace_, state_)(handles_.vertices(), Eigen::all);
+}
+
+int MovingSolve::Run::region_of(std::size_t sample) const {
+  return innermost_region(*subspace_->regions, subspace_->sampling.sets[sample]);
+}
 
 MovingSolve::MovingSolve(const Subspace& subspace, const Corotation& corotation, std::vector<Contact> contacts,
                          double contact_weight, const RunContext& context)
@@ -152,102 +211,13 @@ ConjugatedRegions::Turns MovingSolve::first_turns(const HandleRows& handles, con
 
 Deformation MovingSolve::solve(const HandleRows& handles, double alpha, const std::vector<Motion>& motions,
                                int iterations, const SubspaceState& start, const RunContext& context) const {
-  const Points& rest = corotation_.rest;
-  const LiftWeights spread = lift_weights(handles.rest(), rest, subspace_->sampling.radius, RunContext{});
-  const SampleEnergy energy(corotation_, spread, handles.weights(), alpha);
-  const VectorXd targets = handles.targets(motions);
-
-  ConjugatedRegions::Turns turns = regions_.rest();
-  std::vector<Eigen::Matrix3d> local(static_cast<std::size_t>(rest.rows()), Eigen::Matrix3d::Identity());
-  const auto turned_coordinates = [&](const std::vector<Eigen::Matrix3d>& by) {
-    Points turned(rest.rows(), 3);
-    for (Eigen::Index k = 0; k < rest.rows(); ++k) {
-      turned.row(k) = (by[static_cast<std::size_t>(k)] * corotation_.delta.row(k).transpose()).transpose();
-    }
-    return turned;
-  };
-  Deformation result;
-  SubspaceState& state = result.state;
-  const bool fresh = !(start.basis && start.q.size() == start.basis->columns.cols());
-  if (!fresh) {
-    turns = regions_.turns_of(start.basis->rotations);
-    state = start;
-    local = local_rotations(corotation_, rest + sample_displacements(subspace_, state), local);
-  } else {
-    turns = first_turns(handles, targets);
-    const auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns)));
-    state = {VectorXd::Zero(basis->columns.cols()), basis};
-    if (start.q.size() == state.q.size()) state.q = start.q;
-    for (std::size_t k = 0; k < local.size(); ++k) {
-      const int region = innermost_region(*subspace_->regions, subspace_->sampling.sets[k]);
-      if (region >= 0) local[k] = basis->rotations[static_cast<std::size_t>(region)];
-    }
-  }
-  const auto contact_rows = [&](const SmallTurns* small) {
-    if (contacts_.empty()) {
-      return ContactRows{MatrixXd(0, state.q.size() + (small != nullptr ? small->columns.cols() : 0)), VectorXd(0)};
-    }
-    return contact_rows_at(contacts_, contact_weight_, subspace_, state, vertex_displacements(subspace_, state), local,
-                           small);
-  };
-  const Turning still{MatrixXd(3 * rest.rows(), 0), MatrixXd(3 * rest.rows(), 0), MatrixXd(targets.size(), 0)};
-  // The best coordinates for groups that stand as they do, and the local rotations to them.
-  const auto follow = [&](const Points& before, const VectorXd& wanted, const Points& turned_delta) {
-    context.check();
-    const auto solution = energy.solve(state.basis->columns, still, state.basis->offset,
-                                       stacked(turned_delta - corotation_.delta), wanted, contact_rows(nullptr));
-    state.q = solution.z;
-    result.energy = solution.energy;
-    const Points after = sample_displacements(subspace_, state);
-    result.last_change = (after - before).rowwise().norm().maxCoeff();
-    local = local_rotations(corotation_, rest + after, local);
-  };
-  if (fresh) follow(sample_displacements(subspace_, state), targets, turned_coordinates(local));
+  Run run(*this, handles, alpha, motions, context);
+  run.begin(start);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     context.progress("iterations", static_cast<double>(iteration) / iterations);
-    const Points before = sample_displacements(subspace_, state);
-    // Where the lift differs from mere Gaussians about the samples, the handles' targets make up for it.
-    const Points lifted = vertex_displacements(subspace_, state)(handles.vertices(), Eigen::all);
-    const VectorXd wanted = targets - stacked(lifted) + VectorXd(applied(spread, stacked(before)));
-    Points turned_delta = turned_coordinates(local);
-    if (regions_.freedom() > 0) {
-      const MatrixXd turning = regions_.columns(turns, rest + before, region_centres(subspace_, state));
-      // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
-      const Turning all{turning, regions_.columns(turns, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
-                        regions_.arms(turns, spread, handles.rest() - spread * rest)};
-      const VectorXd laplace = stacked(turned_delta - corotation_.delta);
-      const SmallTurns small{regions_, turns, turning};
-      const VectorXd both =
-          energy.solve(state.basis->columns, all, state.basis->offset, laplace, wanted, contact_rows(&small)).z;
-      VectorXd angles = both.tail(turning.cols());
-      const double largest = angles.cwiseAbs().maxCoeff();
-      context.check();
-      if (largest > kMaxTurn) angles *= kMaxTurn / largest;
-      const ConjugatedRegions::Turns next = regions_.turned(turns, angles);
-      auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(next)));
-      if (basis->conflict <= kConflict * subspace_->diagonal) {
-        for (Eigen::Index k = 0; k < rest.rows(); ++k) {
-          const auto sample = static_cast<std::size_t>(k);
-          const int region = innermost_region(*subspace_->regions, subspace_->sampling.sets[sample]);
-          if (region < 0) continue;
-          const auto r = static_cast<std::size_t>(region);
-          local[sample] = basis->rotations[r] * state.basis->rotations[r].transpose() * local[sample];
-        }
-        turned_delta = turned_coordinates(local);
-        turns = next;
-        state.basis = std::move(basis);
-      }
-    }
-    follow(before, wanted, turned_delta);
+    run.iterate();
   }
-  const Points lifted = vertex_displacements(subspace_, state)(handles.vertices(), Eigen::all);
-  const VectorXd missed = stacked(lifted) - targets;
-  double squares = 0;
-  for (Eigen::Index i = 0; i < missed.size(); ++i) {
-    squares += handles.weights()[static_cast<std::size_t>(i / 3)] * missed[i] * missed[i];
-  }
-  result.handle_error = std::sqrt(squares / handles.total_weight());
-  return result;
+  return run.finish();
 }
 
 }  // namespace orbifit

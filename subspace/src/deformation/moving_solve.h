@@ -25,6 +25,8 @@ class MovingSolve {
                     const SubspaceState& start, const RunContext& context) const;
 
  private:
+  class Run;
+
   ConjugatedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
 
   const Subspace& subspace_;

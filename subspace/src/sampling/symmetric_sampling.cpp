@@ -213,6 +213,83 @@ void append(SymmetricSampling& sampling, const Orbit& orbit, const RegionMap& re
   sampling.first_sample.push_back(static_cast<int>(points.size()));
 }
 
+// Orbits taken one after another, each where no disc of those before lies.
+class OrbitSampler {
+ public:
+  // \param largest  of the radii
+  OrbitSampler(const Mesh& mesh, const RegionMap& regions, const AbuttingPlaces& borders, GroupWords& words,
+               const SamplingOptions& options, double largest, const RunContext& context)
+      : regions_(regions), borders_(borders), words_(words), options_(options), grid_(largest, regions) {
+    closure_.doublet = kDoubletSamples * diagonal(mesh.vertices);
+    closure_.context = &context;
+    sampling_.radius = options.radius;
+    sampling_.first_sample.push_back(0);
+  }
+
+  void take(const Candidate& candidate, double radius) {
+    if (candidate.border && unclosed_.contains(candidate.set)) return;
+    if (grid_.covered(candidate.position, candidate.set, radius)) return;
+    Orbit orbit;
+    try {
+      orbit = closed_orbit(candidate, radius);
+    } catch (const InputError&) {  // groups that close on either side of a border need not do so on it
+      if (!candidate.border) throw;
+      unclosed_.insert(candidate.set);
+      return;
+    }
+    const std::size_t before = points_.size();
+    append(sampling_, orbit, regions_, radius, points_, radii_);
+    if (points_.size() > static_cast<std::size_t>(options_.most_samples)) {
+      throw InputError(
+          "", "radius " + short_text(options_.radius),
+          "more than " + std::to_string(options_.most_samples) + " samples are needed; take a larger radius");
+    }
+    // The candidate counts as covered even where its orbit moved off by almost r.
+    grid_.insert(candidate.position, candidate.set, radius);
+    for (std::size_t k = before; k < points_.size(); ++k) grid_.insert(points_[k], sampling_.sets[k], radius);
+  }
+
+  SymmetricSampling finish() {
+    sampling_.points.resize(static_cast<Eigen::Index>(points_.size()), 3);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      sampling_.points.row(static_cast<Eigen::Index>(i)) = points_[i];
+    }
+    sampling_.radii = Eigen::Map<const Eigen::VectorXd>(radii_.data(), static_cast<Eigen::Index>(radii_.size()));
+    return std::move(sampling_);
+  }
+
+ private:
+  // The candidate's orbit, or that of the nearby point that its stabilisers fix.
+  Orbit closed_orbit(const Candidate& candidate, double radius) {
+    ClosureOptions closure = closure_;
+    closure.snap = kCrowded * radius;
+    double off_border = kOnBorder * radius;
+    if (candidate.border) {
+      closure.set_at = [&](const Vector3d& image, int carried) { return borders_.set_at(image, carried, off_border); };
+    }
+    Orbit orbit = orbit_of(candidate.position, candidate.set, regions_, words_, closure);
+    if (orbit.stabilisers.empty()) return orbit;
+    const Vector3d start = orbit.points.front().position;
+    const Vector3d fixed = fixed_point(start, orbit.stabilisers);
+    // Motions without a common fixed point nearby crowd the seed by accident; it stays where it is.
+    if (!((fixed - start).norm() < radius)) return orbit;
+    off_border += (fixed - start).norm();
+    closure.snap = 0;
+    return orbit_of(fixed, orbit.points.front().set, regions_, words_, closure);
+  }
+
+  const RegionMap& regions_;
+  const AbuttingPlaces& borders_;
+  GroupWords& words_;
+  const SamplingOptions& options_;
+  ClosureOptions closure_;
+  SymmetricSampling sampling_;
+  std::vector<Vector3d> points_;
+  std::vector<double> radii_;
+  DiscGrid grid_;
+  std::set<int> unclosed_;  // sets of borders
+};
+
 }  // namespace
 
 SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& regions, GroupWords& words,
@@ -226,66 +303,15 @@ SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOpti
   const double least = field ? options.radius_field.minCoeff() : options.radius;
   const double largest = field ? options.radius_field.maxCoeff() : options.radius;
   const std::vector<Candidate> candidates = draw_candidates(mesh_, regions_, borders_, options, least, context);
-
-  SymmetricSampling sampling;
-  sampling.radius = options.radius;
-  sampling.first_sample.push_back(0);
-  std::vector<Vector3d> points;
-  std::vector<double> radii;
-  DiscGrid grid(largest, regions_);
-  ClosureOptions closure;
-  closure.doublet = kDoubletSamples * diagonal(mesh_.vertices);
-  closure.context = &context;
-  std::set<int> unclosed;  // sets of borders
+  OrbitSampler sampler(mesh_, regions_, borders_, words, options, largest, context);
   std::size_t done = 0;
   for (const Candidate& candidate : candidates) {
     if (++done % 256 == 0) context.progress("sampling", double(done) / static_cast<double>(candidates.size()));
-    const int set = candidate.set;
-    if (candidate.border && unclosed.contains(set)) continue;
     double radius = options.radius;
     if (field) radius = options.radius_field(mesh_.faces.row(candidate.face).transpose()).mean();
-    if (grid.covered(candidate.position, set, radius)) continue;
-    closure.snap = kCrowded * radius;
-    closure.set_at = nullptr;
-    double off_border = kOnBorder * radius;
-    if (candidate.border) {
-      closure.set_at = [&](const Vector3d& image, int carried) { return borders_.set_at(image, carried, off_border); };
-    }
-    const auto follow = [&] {
-      Orbit orbit = orbit_of(candidate.position, set, regions_, words, closure);
-      if (orbit.stabilisers.empty()) return orbit;
-      const Vector3d start = orbit.points.front().position;
-      const Vector3d fixed = fixed_point(start, orbit.stabilisers);
-      // Motions without a common fixed point nearby crowd the seed by accident; it stays where it is.
-      if (!((fixed - start).norm() < radius)) return orbit;
-      off_border += (fixed - start).norm();
-      ClosureOptions exact = closure;
-      exact.snap = 0;
-      return orbit_of(fixed, orbit.points.front().set, regions_, words, exact);
-    };
-    Orbit orbit;
-    try {
-      orbit = follow();
-    } catch (const InputError&) {  // groups that close on either side of a border need not do so on it
-      if (!candidate.border) throw;
-      unclosed.insert(set);
-      continue;
-    }
-    const std::size_t before = points.size();
-    append(sampling, orbit, regions_, radius, points, radii);
-    if (points.size() > static_cast<std::size_t>(options.most_samples)) {
-      throw InputError(
-          "", "radius " + short_text(options.radius),
-          "more than " + std::to_string(options.most_samples) + " samples are needed; take a larger radius");
-    }
-    // The candidate counts as covered even where its orbit moved off by almost r.
-    grid.insert(candidate.position, set, radius);
-    for (std::size_t k = before; k < points.size(); ++k) grid.insert(points[k], sampling.sets[k], radius);
+    sampler.take(candidate, radius);
   }
-  sampling.points.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) sampling.points.row(static_cast<Eigen::Index>(i)) = points[i];
-  sampling.radii = Eigen::Map<const Eigen::VectorXd>(radii.data(), static_cast<Eigen::Index>(radii.size()));
-  return sampling;
+  return sampler.finish();
 }
 
 std::vector<Transport> sample_transports(const SymmetricSampling& sampling, const RegionMap& regions,

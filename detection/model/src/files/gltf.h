@@ -34,6 +34,9 @@ std::size_t component_size(std::int64_t type);  ///< bytes; 0 for an unknown typ
 /// A number of a buffer; normalised integers (KHR_mesh_quantization) stand for fractions.
 double load_component(const char* bytes, std::int64_t type, bool normalised);
 
+/// A GLB of a JSON text and its binary data. \param file  for messages \throw InputError where it had more than 4 GB
+std::string glb_container(const std::filesystem::path& file, std::string json, std::string data);
+
 std::optional<std::string> decode_base64(std::string_view text);
 std::string decode_percent(std::string_view text);
 

@@ -1,3 +1,4 @@
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -11,6 +12,25 @@
 namespace orbifit {
 
 using namespace gltf;
+
+std::string gltf::glb_container(const std::filesystem::path& file, std::string json, std::string data) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  data.resize((data.size() + 3) / 4 * 4, '\0');
+  const std::size_t total = 12 + 8 + json.size() + 8 + data.size();
+  if (total > 0xFFFFFFFFU) throw InputError(file.string(), "", "cannot hold a mesh of more than 4 GB");
+  std::string bytes;
+  bytes.reserve(total);
+  store(bytes, kMagic);
+  store(bytes, std::uint32_t{2});
+  store(bytes, static_cast<std::uint32_t>(total));
+  store(bytes, static_cast<std::uint32_t>(json.size()));
+  store(bytes, kJsonChunk);
+  bytes += json;
+  store(bytes, static_cast<std::uint32_t>(data.size()));
+  store(bytes, kBinChunk);
+  bytes += data;
+  return bytes;
+}
 
 std::string glb_bytes(const std::filesystem::path& file, const Mesh& mesh) {
   std::string data;
@@ -44,23 +64,7 @@ std::string glb_bytes(const std::filesystem::path& file, const Mesh& mesh) {
       {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", 34962}},
       {{"buffer", 0}, {"byteOffset", position_bytes}, {"byteLength", index_bytes}, {"target", 34963}}};
   root["buffers"] = {{{"byteLength", data.size()}}};
-  std::string text = root.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-
-  const std::size_t total = 12 + 8 + text.size() + 8 + data.size();
-  if (total > 0xFFFFFFFFU) throw InputError(file.string(), "", "cannot hold a mesh of more than 4 GB");
-  std::string bytes;
-  bytes.reserve(total);
-  store(bytes, kMagic);
-  store(bytes, std::uint32_t{2});
-  store(bytes, static_cast<std::uint32_t>(total));
-  store(bytes, static_cast<std::uint32_t>(text.size()));
-  store(bytes, kJsonChunk);
-  bytes += text;
-  store(bytes, static_cast<std::uint32_t>(data.size()));
-  store(bytes, kBinChunk);
-  bytes += data;
-  return bytes;
+  return glb_container(file, root.dump(), std::move(data));
 }
 
 }  // namespace orbifit

@@ -107,7 +107,7 @@ GltfFile::Place GltfFile::place(std::int64_t accessor, int components) const {
 GltfAttribute GltfFile::attribute(std::int64_t accessor) {
   GltfAttribute result;
   const Json& entry = root_["accessors"][static_cast<std::size_t>(accessor)];
-  result.components = entry["type"] == "VEC4" ? 4 : 3;
+  result.components = entry["type"] == "VEC4" ? 4 : entry["type"] == "VEC2" ? 2 : 3;
   const Place from = place(accessor, result.components);
   const std::string& bytes = buffer(from.buffer);
   const std::size_t row = static_cast<std::size_t>(result.components) * component_size(from.type);
@@ -121,6 +121,24 @@ GltfAttribute GltfFile::attribute(std::int64_t accessor) {
     }
   }
   return result;
+}
+
+std::string_view GltfFile::view(std::int64_t number) {
+  const std::string where = "bufferViews[" + std::to_string(number) + "]";
+  const std::size_t count = root_.contains("bufferViews") ? root_["bufferViews"].size() : 0;
+  if (number < 0 || number >= static_cast<std::int64_t>(count)) throw InputError(file_.string(), where, "is missing");
+  const Json& view = root_["bufferViews"][static_cast<std::size_t>(number)];
+  const auto from = view.value("buffer", std::int64_t{-1});
+  if (from < 0 || from >= static_cast<std::int64_t>(buffers_.size())) {
+    throw InputError(file_.string(), where, "names no buffer");
+  }
+  const std::string_view bytes = buffer(from);
+  const auto offset = view.value("byteOffset", std::size_t{0});
+  const auto length = view.value("byteLength", std::size_t{0});
+  if (offset > bytes.size() || length > bytes.size() - offset) {
+    throw InputError(file_.string(), where, "reaches beyond its buffer");
+  }
+  return bytes.substr(offset, length);
 }
 
 std::optional<std::vector<std::int64_t>> GltfFile::corners(const Json& primitive) {

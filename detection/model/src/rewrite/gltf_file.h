@@ -30,6 +30,9 @@ class GltfFile {
 
   GltfAttribute attribute(std::int64_t accessor);
 
+  /// The bytes of a buffer view, such as an image. \throw InputError
+  std::string_view view(std::int64_t number);
+
   /// Corners of a primitive, or nothing where its vertices follow one another.
   std::optional<std::vector<std::int64_t>> corners(const Json& primitive);
 

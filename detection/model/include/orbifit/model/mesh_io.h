@@ -36,7 +36,7 @@ void write_mesh(const std::filesystem::path& file, const Mesh& mesh,
 /// - A file whose vertices have not moved comes out byte for byte.
 /// - Files that the mesh names (material libraries and their textures, buffers and images) are copied beside the output
 ///   where they are not there already; those outside of the source's folder are not.
-/// Of another format the mesh alone is written: see write_mesh().
+/// Of another format the mesh is written with the look that both know (appearance.h).
 /// \return what could not be kept or copied, a line each
 /// \throw InputError when a file cannot be read or written, cannot hold a coordinate, or `source` has other counts
 std::vector<std::string> write_edited_mesh(const std::filesystem::path& file, const std::filesystem::path& source,

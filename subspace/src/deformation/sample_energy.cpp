@@ -1,0 +1,91 @@
+#include "deformation/sample_energy.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "orbifit/model/errors.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using SparseRows = SampleEnergy::SparseRows;
+
+constexpr double kHoldCoordinates = 1e-10;  // of the mean of the diagonal, on coordinates
+constexpr double kHoldTurns = 1e-6;         // of a turn's own stiffness, and of the largest
+
+// A (x) I_3.
+SparseRows thrice(const SparseRows& scalar) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(3 * static_cast<std::size_t>(scalar.nonZeros()));
+  for (Eigen::Index row = 0; row < scalar.rows(); ++row) {
+    for (SparseRows::InnerIterator entry(scalar, row); entry; ++entry) {
+      for (Eigen::Index c = 0; c < 3; ++c) entries.emplace_back(3 * row + c, 3 * entry.col() + c, entry.value());
+    }
+  }
+  SparseRows result(3 * scalar.rows(), 3 * scalar.cols());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+// Adds the lower half of rows^T rows. A row touches few coordinates: those of the samples near its own.
+void add_lower_gram(const SparseRows& rows, Eigen::Ref<MatrixXd> gram) {
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    for (SparseRows::InnerIterator a(rows, row); a; ++a) {
+      for (SparseRows::InnerIterator b = a; b; ++b) gram(b.col(), a.col()) += a.value() * b.value();
+    }
+  }
+}
+
+}  // namespace
+
+SampleEnergy::SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights,
+                           double alpha)
+    : laplacian_(thrice(corotation.laplacian)), points_(thrice(points)) {
+  weights_.resize(points_.rows());
+  for (Eigen::Index i = 0; i < weights_.size(); ++i)
+    weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
+  points_ = weights_.asDiagonal() * points_;
+}
+
+SampleEnergy::Solution SampleEnergy::solve(const SparseRows& columns, const Turning& turning, const VectorXd& offset,
+                                           const VectorXd& laplace, const VectorXd& targets,
+                                           const ContactRows& contacts) const {
+  const Eigen::Index rest = columns.cols();
+  const Eigen::Index turns = turning.samples.cols();
+  const Part parts[] = {
+      {laplacian_ * columns, laplacian_ * turning.samples - turning.along, laplace - laplacian_ * offset},
+      {points_ * columns, points_ * turning.samples + weights_.asDiagonal() * turning.arms,
+       weights_.cwiseProduct(targets) - points_ * offset},
+      {contacts.rows.leftCols(rest).sparseView(), contacts.rows.rightCols(turns), contacts.right}};
+  MatrixXd normal = MatrixXd::Zero(rest + turns, rest + turns);
+  VectorXd side = VectorXd::Zero(rest + turns);
+  VectorXd own;  // however firm contacts are, what holds the unknowns is measured by the rest
+  for (const Part& part : parts) {
+    if (&part == &parts[2]) own = normal.diagonal();
+    add_lower_gram(part.rows, normal.topLeftCorner(rest, rest));
+    normal.bottomLeftCorner(turns, rest) += part.turns.transpose() * part.rows;
+    normal.bottomRightCorner(turns, turns) += part.turns.transpose() * part.turns;
+    side.head(rest) += part.rows.transpose() * part.right;
+    side.tail(turns) += part.turns.transpose() * part.right;
+  }
+  if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * own.head(rest).mean();
+  if (turns > 0) {
+    const double largest = own.tail(turns).maxCoeff();
+    normal.diagonal().tail(turns) += kHoldTurns * (own.tail(turns).array() + largest + 1e-300).matrix();
+  }
+  const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
+  Solution solution;
+  solution.z = factor.solve(side);
+  if (!solution.z.allFinite()) throw NoResultError("the handles' system could not be factorised");
+  for (const Part& part : parts) {
+    solution.energy +=
+        (part.rows * solution.z.head(rest) + part.turns * solution.z.tail(turns) - part.right).squaredNorm();
+  }
+  return solution;
+}
+
+}  // namespace orbifit
