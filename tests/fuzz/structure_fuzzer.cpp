@@ -1,5 +1,5 @@
-// A fuzzer (libFuzzer) of what bytes are made into: FUZZED_FUNCTION, of the header FUZZED_HEADER. Whatever it throws ends
-// the fuzzer as a crash does.
+// A fuzzer (libFuzzer) of what bytes are made into: FUZZED_FUNCTION, of the header FUZZED_HEADER. Whatever it throws
+// ends the fuzzer as a crash does.
 #include <cstddef>
 #include <cstdint>
 
