@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the readers' fuzzers with clang and runs each of them: `tests/fuzz.sh SECONDS [FUZZER ...]`, from anywhere; SECONDS
-# is for all together, FUZZER such as obj or basis (all without). Seeds are the files of bad input. What a fuzzer learns
+# Builds the fuzzers with clang and runs each of them: `tests/fuzz.sh SECONDS [FUZZER ...]`, from anywhere; SECONDS
+# is for all together, FUZZER such as obj or basis (all without). Seeds are the files of bad input and of tests/fuzz/corpus. What a fuzzer learns
 # stays in build/fuzz/corpus, what it finds goes to build/fuzz/found; ends with 1 then. Not part of CI.
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
 
@@ -22,7 +22,7 @@ each=$((seconds * jobs / $#))
 run_fuzzer() {
   local corpus=$build/corpus/$1 log=$build/found/$1.log
   mkdir -p "$corpus" "$build/seeds/$1"
-  cp -n "$build"/seeds/${pattern[$1]:-$1}_* "$build/seeds/$1/" 2>/dev/null || true
+  cp -n "$build"/seeds/${pattern[$1]:-$1}_* "$root/tests/fuzz/corpus/$1"/* "$build/seeds/$1/" 2>/dev/null || true
   if nice "$build/tests/fuzz/fuzz_$1" "$corpus" "$build/seeds/$1" -max_total_time="$each" -max_len=65536 -timeout=20 \
     -rss_limit_mb=2048 -malloc_limit_mb=512 -artifact_prefix="$build/found/$1-" -print_final_stats=1 >"$log" 2>&1; then
     echo "$1: $(sed -n 's/stat::number_of_executed_units: *//p' "$log") executions, $(grep -o 'cov: [0-9]*' "$log" | tail -n 1)"

@@ -1,22 +1,24 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+
+#include "last_words.h"
 
 namespace orbifit {
 
-/// While it lives, this process may take so many bytes of memory beside what it had mapped before.
+/// While it lives, this process may take so many bytes of memory beside what it had mapped before; it ends with these
+/// words where more is asked for.
 class MemoryLimit {
  public:
-  /// \param last what is to be done where more is asked for, on the thread that asks and without its stack unwound (an
-  ///        exception may be lost in a library on its way); returns the exit code with which the process then ends,
-  ///        unfinished files removed
-  MemoryLimit(std::uint64_t bytes, std::function<int()> last);
+  MemoryLimit(std::uint64_t bytes, LastWords words);
   ~MemoryLimit();
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;
   MemoryLimit(MemoryLimit&&) = delete;
   MemoryLimit& operator=(MemoryLimit&&) = delete;
+
+ private:
+  EndWithoutMemory end_;
 };
 
 }  // namespace orbifit

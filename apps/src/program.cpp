@@ -16,13 +16,12 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <poll.h>
-#include <unistd.h>
 
 #include "orbifit/model/errors.h"
 
 #include "console.h"
 #include "interruption.h"
+#include "last_words.h"
 #include "memory_limit.h"
 #include "other_program.h"
 #include "picture_options.h"
@@ -137,15 +136,9 @@ int fail(Console& console, bool json, const std::string& text, int code) {
   return code;
 }
 
-// The same while another thread works, which may be within the standard streams and hold their locks.
-int fail_at_once(bool json, const std::string& text, int code) {
-  const auto write = [](int descriptor, const std::string& what) {
-    pollfd ready{descriptor, POLLOUT, 0};
-    if (::poll(&ready, 1, 0) == 1) static_cast<void>(::write(descriptor, what.data(), what.size()) == 0);
-  };
-  write(STDERR_FILENO, (::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") + ("orbifit: " + text + "\n"));
-  if (json) write(STDOUT_FILENO, error_object(text, code));
-  return code;
+// The same for a process that must end at once.
+LastWords last_words(const std::string& text, int code, std::function<bool()> wants_object) {
+  return {"orbifit: " + text + "\n", error_object(text, code), std::move(wants_object), code};
 }
 
 constexpr const char* kOutOfMemory = "not enough memory";
@@ -163,15 +156,14 @@ int run(const CommandBody& body, const CommonOptions& options, const GivenOption
     return orbifit::fail(console, wants_object(), text, code);
   };
   const std::string timeout_text = "stopped after " + short_number(options.timeout) + " s (--timeout)";
+  const EndWithoutMemory end(last_words(kOutOfMemory, kNoResult, wants_object));
   try {
     context = make_context(options, given, console);
     std::optional<MemoryLimit> limit;
-    if (options.memory > 0) {
-      limit.emplace(options.memory, [&] { return fail_at_once(wants_object(), kAboveMaxMemory, kTimeout); });
-    }
+    if (options.memory > 0) limit.emplace(options.memory, last_words(kAboveMaxMemory, kTimeout, wants_object));
     const StopGuard guard(context.run, [&](StopReason reason) {
       const bool timeout = reason == StopReason::timeout;
-      return fail_at_once(wants_object(), timeout ? timeout_text : "interrupted", timeout ? kTimeout : kInterrupted);
+      return say(last_words(timeout ? timeout_text : "interrupted", timeout ? kTimeout : kInterrupted, wants_object));
     });
     return body(context);
   } catch (const UsageError& error) {
@@ -270,6 +262,7 @@ int refuse_call(const CLI::ParseError& error, const std::string& command, CLI::A
 }  // namespace
 
 int run_program(std::span<const Command> commands, int argc, char** argv) {
+  const EndWithoutMemory end;  // until it is known what the call asks for
   const std::vector<std::string> words = with_up_in_numbers({argv, argv + argc});
   const bool json = std::ranges::find(words, "--json") != words.end();
   CLI::App app("Find the symmetries of a shape; edit it, or fit it to a scan, without breaking them.", "orbifit");

@@ -102,6 +102,8 @@ void add_ascii(BadInputs& files) {
   add("header_endless", "ply\nformat ascii 1.0\n" + std::string(10'000, '\n'));
   change_header(change);
   change_rows(change);
+  add("goes_on", kAscii + "\n3 2 1 0\n");
+  add("blank_lines_at_end", kAscii + "\n \r\n");
   add("byte_order_mark", "\xef\xbb\xbf" + kAscii);
   std::string crlf;
   for (const char letter : kAscii) crlf += letter == '\n' ? "\r\n" : std::string(1, letter);
@@ -117,6 +119,8 @@ void add_binary(BadInputs& files) {
   add("cut_at_header", whole.substr(0, whole.find("end_header\n") + 11));
   add("cut_at_faces", binary("uchar", "3", 0, ""));
   add("whole", whole);
+  add("goes_on", whole + triangle(2, 1, 0));
+  add("filled_up", whole + std::string(7, '\0') + "\r\n");
   add("read_as_big_endian", with(whole, "binary_little_endian", "binary_big_endian"));
   add("crlf_header", with(whole, "end_header\n", "end_header\r\n"));
   add("count_huge", binary("uchar", "4000000000", 0, triangle(0, 1, 2)));

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 
+#include "geometry/grid_cell.h"
 #include "group/verification.h"
 #include "surface/face_points.h"
 #include "surface/thresholds.h"
@@ -81,11 +82,7 @@ std::vector<RegionBorder::Piece> RegionBorder::pieces_of(const std::vector<int>&
     std::map<std::array<std::int64_t, 3>, std::size_t> known;  // by cell: the piece
     for (const int f : faces_of_[static_cast<std::size_t>(face)]) {
       const Vector3d centroid = coarse_of_fine_(face_centroid(fine_, f));
-      std::array<std::int64_t, 3> cell{};
-      for (int k = 0; k < 3; ++k) {
-        cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(centroid[k] / size));
-      }
-      const auto [entry, fresh] = known.try_emplace(cell, pieces.size());
+      const auto [entry, fresh] = known.try_emplace(grid_cell(centroid, size), pieces.size());
       if (fresh) pieces.push_back({centroid, prepared_.normals.row(face), {}});
       pieces[entry->second].faces.push_back(f);
     }

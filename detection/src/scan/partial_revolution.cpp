@@ -15,6 +15,7 @@
 #include "orbifit/model/point_group.h"
 
 #include "base/random.h"
+#include "geometry/grid_cell.h"
 #include "geometry/point_index.h"
 
 namespace orbifit {
@@ -130,10 +131,7 @@ class Profile {
 
  private:
   using Key = std::array<std::int64_t, 2>;
-  Key key(const Vector2d& place) const {
-    return {static_cast<std::int64_t>(std::floor(place.x() / cell_)),
-            static_cast<std::int64_t>(std::floor(place.y() / cell_))};
-  }
+  Key key(const Vector2d& place) const { return {grid_cell(place.x() / cell_), grid_cell(place.y() / cell_)}; }
 
   // The signed distance of each point from the line through the mean of its neighbours on the profile.
   void measure(double tolerance) {

@@ -14,6 +14,7 @@
 #include "orbifit/model/point_group.h"
 
 #include "geometry/fitted_plane.h"
+#include "geometry/grid_cell.h"
 #include "geometry/point_index.h"
 
 namespace orbifit {
@@ -72,11 +73,7 @@ std::vector<int> thin(const Points& points, const std::vector<char>& outlier, do
   std::map<std::array<std::int64_t, 3>, std::vector<int>> voxels;
   for (int i = 0; i < points.rows(); ++i) {
     if (outlier[static_cast<std::size_t>(i)] != 0) continue;
-    std::array<std::int64_t, 3> key{};
-    for (int k = 0; k < 3; ++k) {
-      key[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(points(i, k) / edge));
-    }
-    voxels[key].push_back(i);
+    voxels[grid_cell(row(points, i), edge)].push_back(i);
   }
   std::vector<int> kept;
   kept_of_point.assign(static_cast<std::size_t>(points.rows()), -1);
@@ -163,8 +160,7 @@ bool seen_from(const Points& points, const std::vector<double>& spacings, const 
   std::map<std::array<std::int64_t, 2>, std::array<double, 2>> depths;
   for (int i = 0; i < points.rows(); ++i) {
     const Vector3d p = frame.transpose() * (row(points, i) - eye);
-    const std::array<std::int64_t, 2> key{static_cast<std::int64_t>(std::floor(p.x() / p.z() / cell)),
-                                          static_cast<std::int64_t>(std::floor(p.y() / p.z() / cell))};
+    const std::array<std::int64_t, 2> key{grid_cell(p.x() / p.z() / cell), grid_cell(p.y() / p.z() / cell)};
     const auto [at, fresh] = depths.try_emplace(key, std::array<double, 2>{p.z(), p.z()});
     if (!fresh) at->second = {std::min(at->second[0], p.z()), std::max(at->second[1], p.z())};
   }

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "base/disjoint_sets.h"
+#include "geometry/grid_cell.h"
 
 namespace orbifit {
 
@@ -154,11 +155,7 @@ Vector3d VertexClustering::place_of(int site) const {
 VertexClustering::Cell VertexClustering::cell_of(int site, int level) const {
   const auto component = static_cast<std::size_t>(sites_.component[static_cast<std::size_t>(site)]);
   const double size = std::max(std::ldexp(kCoarsest * tolerances_[component], -level), kSmallest);
-  const Vector3d place = place_of(site);
-  Cell cell{};
-  for (int k = 0; k < 3; ++k)
-    cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(place[k] / size));
-  return cell;
+  return grid_cell(place_of(site), size);
 }
 
 bool VertexClustering::at_border(int a, int b) const {

@@ -15,6 +15,7 @@
 #include "base/random.h"
 #include "basis/alike_points.h"
 #include "basis/plain_lift.h"
+#include "geometry/grid_cell.h"
 
 namespace orbifit {
 
@@ -114,11 +115,11 @@ class AtomTable {
       if ((positions_[other] - seen.position).norm() >= same) return;
       if ((displacements_[other] - seen.displacement).norm() < kSameAtom) found = number;
     };
-    const Vector3d low = cell_of(seen.position.array() - same);
-    const Vector3d high = cell_of(seen.position.array() + same);
-    for (double x = low[0]; x <= high[0]; ++x) {
-      for (double y = low[1]; y <= high[1]; ++y) {
-        for (double z = low[2]; z <= high[2]; ++z) {
+    const Cell low = cell_of(seen.position.array() - same);
+    const Cell high = cell_of(seen.position.array() + same);
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
           const auto [begin, end] = by_cell_.equal_range(key_of(seen.orbit, {x, y, z}));
           for (auto entry = begin; entry != end; ++entry) consider(entry->second);
         }
@@ -127,15 +128,17 @@ class AtomTable {
     return found >= 0 ? found : add(atom);
   }
 
-  Vector3d cell_of(const Vector3d& position) const {
+  using Cell = std::array<std::int64_t, 3>;
+
+  Cell cell_of(const Vector3d& position) const {
     constexpr double kWidth = 0.1;  // of the radius: many times what makes atoms one, so that mostly one cell is asked
-    return (position / (kWidth * sampling_.radius)).array().floor();
+    return grid_cell(position, kWidth * sampling_.radius);
   }
 
-  static std::uint64_t key_of(int orbit, const Vector3d& cell) {
+  static std::uint64_t key_of(int orbit, const Cell& cell) {
     auto key = static_cast<std::uint64_t>(orbit);
-    for (int k = 0; k < 3; ++k) {
-      key = (key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[k]))) * 0x9e3779b97f4a7c15ULL;
+    for (const std::int64_t coordinate : cell) {
+      key = (key ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15ULL;
       key ^= key >> 31U;
     }
     return key;

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "basis/subspace_parts.h"
 #include "deformation/touching_points.h"
+#include "geometry/grid_cell.h"
 #include "geometry/topology.h"
 #include "symmetry/moving_surface.h"
 
@@ -194,12 +195,8 @@ class Kept {
 
   Cell cell_of(int number) const {
     const Candidate& here = at(number);
-    const double width = width_.at(here.parts);
-    Cell cell{here.parts[0], here.parts[1], 0, 0, 0};
-    for (Index k = 0; k < 3; ++k) {
-      cell[static_cast<std::size_t>(2 + k)] = static_cast<std::int64_t>(std::floor(here.middle[k] / width));
-    }
-    return cell;
+    const auto [x, y, z] = grid_cell(here.middle, width_.at(here.parts));
+    return {here.parts[0], here.parts[1], x, y, z};
   }
 
   const std::vector<Candidate>& candidates_;

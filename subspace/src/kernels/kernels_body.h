@@ -3,8 +3,15 @@
 
 namespace {
 
+// A smaller alignment than the type's own is to Clang one of the name alone, and to GCC one of the type, lest it be lost
+// where the type is deduced; Clang loses it there, so no `auto` for pointers to these.
+#ifdef __clang__
+using Four __attribute__((vector_size(32), aligned(8), may_alias)) = double;
+using FourFloats __attribute__((vector_size(16), aligned(4), may_alias)) = float;
+#else
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using FourFloats = float __attribute__((vector_size(16), aligned(4), may_alias));
+#endif
 
 void blocked_sums(const std::int64_t* first, const std::int32_t* atom, const float* weight, const double* atoms,
                   std::size_t begin, std::size_t end, double* result) {
@@ -39,7 +46,7 @@ void carried_copies(const int* follower, const double* sources, const double* co
   if (begin >= end) return;
   const auto copy = [&](std::size_t i, double* to) {
     const double* source = sources + 4 * static_cast<std::size_t>(follower[3 * i]);
-    const auto* copier = reinterpret_cast<const Four*>(copiers + 16 * static_cast<std::size_t>(follower[3 * i + 1]));
+    const Four* copier = reinterpret_cast<const Four*>(copiers + 16 * static_cast<std::size_t>(follower[3 * i + 1]));
     *reinterpret_cast<Four*>(to) = source[0] * copier[0] + source[1] * copier[1] + (source[2] * copier[2] + copier[3]);
   };
   // A vector of four spills into the next row, which is written after; not so the last.
@@ -84,7 +91,7 @@ void turned_edges(const double* edges, const int* end, int count, const double* 
   Four b{};
   Four c{};
   for (int e = 0; e < count; ++e, edges += 4) {
-    const auto* matrix = reinterpret_cast<const Four*>(matrices + std::ptrdiff_t{12} * end[e]);
+    const Four* matrix = reinterpret_cast<const Four*>(matrices + std::ptrdiff_t{12} * end[e]);
     a += edges[0] * matrix[0];
     b += edges[1] * matrix[1];
     c += edges[2] * matrix[2];
@@ -94,11 +101,11 @@ void turned_edges(const double* edges, const int* end, int count, const double* 
 
 double edge_residuals(const double* edges, const int* end, int count, const double* matrices, const double* rows,
                       const double* matrix, const double* row) {
-  const auto* here = reinterpret_cast<const Four*>(matrix);
+  const Four* here = reinterpret_cast<const Four*>(matrix);
   const Four own = *reinterpret_cast<const Four*>(row);
   Four sum{};
   for (int e = 0; e < count; ++e, edges += 4) {
-    const auto* there = reinterpret_cast<const Four*>(matrices + std::ptrdiff_t{12} * end[e]);
+    const Four* there = reinterpret_cast<const Four*>(matrices + std::ptrdiff_t{12} * end[e]);
     const Four turned =
         edges[0] * (here[0] + there[0]) + edges[1] * (here[1] + there[1]) + edges[2] * (here[2] + there[2]);
     const Four now = *reinterpret_cast<const Four*>(edges) +

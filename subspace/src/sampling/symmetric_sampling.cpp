@@ -15,6 +15,7 @@
 
 #include "base/random.h"
 #include "files/text.h"
+#include "geometry/grid_cell.h"
 #include "sampling/symmetric_sampler.h"
 
 namespace orbifit {
@@ -70,11 +71,7 @@ class DiscGrid {
     int set;
   };
 
-  Cell cell_of(const Vector3d& point) const {
-    Cell cell{};
-    for (int k = 0; k < 3; ++k) cell[static_cast<std::size_t>(k)] = std::llround(std::floor(point[k] / width_));
-    return cell;
-  }
+  Cell cell_of(const Vector3d& point) const { return grid_cell(point, width_); }
 
   static std::uint64_t key(const Cell& cell) {
     std::uint64_t value = 0;

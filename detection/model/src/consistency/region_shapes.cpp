@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <set>
 #include <utility>
 
 #include "base/disjoint_sets.h"
+#include "geometry/grid_cell.h"
 
 namespace orbifit {
 
@@ -252,12 +254,12 @@ std::vector<int> RegionShapes::without_orbit(int shape, const std::vector<int>& 
   if (place.group.continuous()) {
     // Those as far from the axis, and along it, as one that is taken.
     const Vector3d axis = place.frame.col(2);
-    using Cell = std::pair<long, long>;
+    using Cell = std::pair<std::int64_t, std::int64_t>;
     const auto cell_of = [&](int face) {
       const Vector3d offset = centroids_.row(face).transpose() - place.centre;
-      if (!place.group.has_axis()) return Cell(std::lround(offset.norm() / near_), 0);
+      if (!place.group.has_axis()) return Cell(grid_cell(offset.norm() / near_ + 0.5), 0);
       const double along = offset.dot(axis);
-      return Cell(std::lround((offset - along * axis).norm() / near_), std::lround(along / near_));
+      return Cell(grid_cell((offset - along * axis).norm() / near_ + 0.5), grid_cell(along / near_ + 0.5));
     };
     std::set<Cell> cells;
     for (const int face : taken) {

@@ -150,9 +150,12 @@ void write_file(const fs::path& file, std::string_view content) {
 
 UnfinishedFile::UnfinishedFile(fs::path target) : target_(std::move(target)), name_(temporary_name(target_)) {
   const std::lock_guard lock(Unfinished::all().mutex);
+  const auto entry = Unfinished::all().names.insert(name_).first;  // before there is a file that is to be removed
   const Descriptor descriptor(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (descriptor.number() < 0) refuse_writing(target_, system_reason(errno));
-  Unfinished::all().names.insert(name_);
+  if (descriptor.number() >= 0) return;
+  const int reason = errno;
+  Unfinished::all().names.erase(entry);
+  refuse_writing(target_, system_reason(reason));
 }
 
 UnfinishedFile::~UnfinishedFile() {

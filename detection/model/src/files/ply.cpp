@@ -136,6 +136,13 @@ class BinaryBody {
     bytes_.remove_prefix(size);
     return number;
   }
+  // Blanks and zero bytes that fill up a file say nothing; more means that the header is wrong, or that line ends were
+  // converted within the numbers, which are others then.
+  void end() const {
+    if (bytes_.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == std::string_view::npos) return;
+    throw InputError(file_, "",
+                     "the file has " + std::to_string(bytes_.size()) + " bytes more than its header announces");
+  }
 
  private:
   [[noreturn]] void truncated(const PlyElement& element, long long row) const {
@@ -178,6 +185,12 @@ class AsciiBody {
           word.empty() ? "the line has fewer numbers than the header announces" : in_quotes(word) + " is not a number");
     }
     return *number;
+  }
+  void end() {
+    std::string_view line;
+    if (!lines_.next_content(line)) return;
+    throw InputError(file_, place(lines_.line(), "", 0),
+                     "the file goes on after the last row that its header announces");
   }
 
  private:
@@ -222,6 +235,7 @@ void visit_body(const std::string& file, const PlyHeader& header, Body body,
       visit(element, row);
     }
   }
+  body.end();
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "base/disjoint_sets.h"
+#include "geometry/grid_cell.h"
 
 namespace orbifit {
 
@@ -75,13 +76,7 @@ class GroupGrid {
   void insert(const Eigen::RowVector3d& point, int group) { groups_[cell_of(point)].push_back(group); }
 
  private:
-  Cell cell_of(const Eigen::RowVector3d& point) const {
-    Cell cell{};
-    for (int k = 0; k < 3; ++k) {
-      cell[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor((point[k] - origin_[k]) / cell_));
-    }
-    return cell;
-  }
+  Cell cell_of(const Eigen::RowVector3d& point) const { return grid_cell(Eigen::RowVector3d(point - origin_), cell_); }
 
   const Points& vertices_;
   double tolerance_;

@@ -18,9 +18,7 @@ class UsageError : public Error {
 };
 
 /// \throw UsageError "FIELD is VALUE; it must be RULE" where the rule does not hold
-inline void require(bool holds, const std::string& field, double value, const std::string& rule) {
-  if (!holds) throw UsageError(field + " is " + std::to_string(value) + "; it must be " + rule);
-}
+void require(bool holds, const std::string& field, double value, const std::string& rule);
 
 /// A file, or a value in it, that cannot be used: what() reads "FILE: WHERE: REASON" (exit code 3).
 class InputError : public Error {
