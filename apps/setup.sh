@@ -16,7 +16,7 @@ test_packages=( # for the baselines, the adapters, the Python package, the tests
   libceres-dev libpcl-dev libopenmesh-dev libgtest-dev
   python3-dev pybind11-dev python3-numpy python3-pip
   python3-pytest python3-hypothesis python3-distributed mypy python3-sphinx furo
-  parallel slurmctld slurmd slurm-client munge snakemake sqlite3 procps faketime
+  parallel slurmctld slurmd slurm-client munge snakemake sqlite3 procps faketime locales
   doxygen dpkg-dev file
 )
 fuzz_packages=( # for tests/fuzz.sh

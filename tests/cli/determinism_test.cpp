@@ -69,6 +69,10 @@ TEST_P(Determinism, NothingChangesAByte) {
   for (const Circumstance& circumstance : circumstances()) {
     EXPECT_TRUE(output(circumstance) == first) << circumstance.name;
   }
+  if (run("[ \"$fixed\" ] && [ \"$commas\" ]").code != 0) {
+    GTEST_SKIP()
+        << "all is equal, but addresses without randomisation or a locale with decimal commas are not to be had";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

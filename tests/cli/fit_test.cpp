@@ -56,6 +56,7 @@ TEST_F(OrbifitFit, SaysWhichResolutionsWereTried) {
   const json* last = nullptr;
   for (const json& each : report["resolutions"]) {
     if (&each != &report["resolutions"][0]) {
+      EXPECT_GT(each["held_out_rms_before"], 0);
       EXPECT_GT(each["held_out_rms"], 0);
     }
     if (each["kept"]) last = &each;

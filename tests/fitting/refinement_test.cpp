@@ -86,7 +86,7 @@ TEST_F(Resolution, IsFinerWhereTheScanShowsMore) {
   EXPECT_GT(fine.degrees_of_freedom, 2 * coarse.degrees_of_freedom);
   EXPECT_EQ(fine.degrees_of_freedom, fine.subspace.degrees_of_freedom());
   for (std::size_t i = 1; i < fine.levels.size(); ++i) {
-    EXPECT_EQ(fine.levels[i].kept && fine.levels[i].held_out >= fine.levels[i].held_out_before, false) << i;
+    EXPECT_FALSE(fine.levels[i].kept && fine.levels[i].held_out >= fine.levels[i].held_out_before) << i;
   }
   EXPECT_LT(fine.rms, coarse.rms);
   EXPECT_LT(error(fine, bulged), error(coarse, bulged));

@@ -48,10 +48,11 @@ def test_scans_in_one_frame_are_one(mesh, annotation, views):
     assert aligned.converged and aligned.others == [] and aligned.placements == []
 
 
-def test_a_scan_of_something_else_takes_no_part(mesh, annotation, views):
-    noise = np.random.default_rng(1).normal(size=(400, 3))
+@pytest.mark.parametrize("seed", [1, 2, 4])
+def test_a_scan_of_something_else_takes_no_part(mesh, annotation, views, seed):
+    noise = np.random.default_rng(seed).normal(size=(400, 3))
     fit = orbifit.fit(mesh, [views[0], noise * [1, 1, 1e-3]], annotation)
-    assert len(fit.others) == 1 and (fit.others[0] is not None or len(fit.scan) == len(views[0]))
+    assert fit.converged and fit.others == [None] and len(fit.scan) == len(views[0])
 
 
 def test_scale(mesh, annotation, views):
@@ -66,7 +67,7 @@ def test_levels_say_how_fine(mesh, annotation, subspace, views):
     levels = orbifit.fit(mesh, views[0], annotation).levels
     assert levels[0]["kept"] and levels[0]["degrees_of_freedom"] > 0
     assert all(a["samples"] < b["samples"] for a, b in zip(levels, levels[1:]))
-    assert len(orbifit.fit(mesh, views[0], subspace=subspace).levels) <= 1
+    assert len(orbifit.fit(mesh, views[0], subspace=subspace).levels) == 1
 
 
 def test_a_list_that_holds_itself(mesh):

@@ -58,8 +58,8 @@ struct Overlaps {
   }
 };
 
-// Where the shape is in another scan, at its own scale. Where it is as well supported where the first scan has it, the
-// two scans have one frame.
+// Where the shape is in another scan, at its own scale; nothing where that explains less of the scan than a fit to it
+// alone would have to. Where it is as well supported where the first scan has it, the two scans have one frame.
 std::optional<PlacedScan> place_in(const PointCloud& cloud, const MatchSurface& surface,
                                    const SymmetryAnnotation& annotation, const FitOptions& options,
                                    const ScanPreparationOptions& preparation, const RunContext& context) {
@@ -73,7 +73,8 @@ std::optional<PlacedScan> place_in(const PointCloud& cloud, const MatchSurface& 
   });
   const Similarity pose = one_frame ? Similarity{} : found.front().pose;
   std::optional<PlacedScan> part = placed_scan(surface, cloud, pose, 0, options.placement, preparation, context);
-  if (part && !one_frame) part->pose = align_rigidly(surface, part->scan, pose, context);
+  if (!part || part->overlap < options.min_inlier_ratio) return std::nullopt;
+  if (!one_frame) part->pose = align_rigidly(surface, part->scan, pose, context);
   return part;
 }
 

@@ -1,14 +1,14 @@
 #include "orbifit/model/errors.h"
 
-#include "files/text.h"
+#include <charconv>
 
 namespace orbifit {
 
 void require(bool holds, const std::string& field, double value, const std::string& rule) {
   if (holds) return;
-  std::string message = field + " is ";
-  append_number(message, value);
-  throw UsageError(message + "; it must be " + rule);
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  throw UsageError(field + " is " + std::string(digits, end) + "; it must be " + rule);
 }
 
 }  // namespace orbifit
