@@ -27,6 +27,7 @@ struct DetectionOptions {
   std::vector<std::string> models, forms{"assembly", "remesh"};
   std::vector<double> noise{0};
   bool cut = false;
+  bool again = false;
   std::string json, folder;
   StageRun stages;
   DetectOptions detect;
@@ -106,6 +107,11 @@ DetectionRow measure(const SuiteModel& suite_model, const CaseForm& form, const 
     row.failure = error.what();
   }
   row.seconds = seconds_now() - start;
+  row.optional = static_cast<int>(model.truth.optional_regions.size() + model.truth.optional_patterns.size());
+  row.regions = static_cast<int>(detected.regions.size());
+  row.within_tolerance = static_cast<int>(std::ranges::count_if(
+      detected.regions, [&](const Region& region) { return region.residual.max <= detected.tolerance; }));
+  if (options.again && row.failure.empty()) row.again = found_again(model.mesh, detected, options.detect, context);
   if (!options.folder.empty()) write_annotation(file.string() + ".detected.json", detected);
   row.score = score_detection(model.mesh, detected, &model.truth, {}, context);
   return row;
@@ -164,6 +170,8 @@ CommandBody detection(CLI::App& app) {
       ->delimiter(',')
       ->type_name("S,...");
   app.add_flag("--cut", options->cut, "Each form also without a fifth of its area");
+  app.add_flag("--again", options->again,
+               "Detect each mesh in two other orders and two other poses as well, and count what is found again");
   app.add_option("--tolerance", options->detect.tolerance, "The detector's, a fraction of the diagonal")
       ->capture_default_str();
   app.add_option("--max-seconds", options->detect.time_budget)->group("");  // what --time-budget was called

@@ -54,6 +54,17 @@ std::vector<Rows> by_kind(const std::vector<DetectionRow>& rows) {
   return result;
 }
 
+// What is listed by what is expected or optional.
+std::optional<double> listed_share(const Rows& rows) {
+  int listed = 0;
+  int right = 0;
+  for (const DetectionRow* row : rows) {
+    listed += row->score.summary.predicted;
+    right += row->score.summary.expected.value_or(0) + row->optional;
+  }
+  return right > 0 ? std::optional(static_cast<double>(listed) / right) : std::nullopt;
+}
+
 void add_means(TextTable& table, std::vector<std::string> cells, const Rows& rows) {
   const DetectionMeans means = means_of(rows);
   cells.push_back(std::to_string(means.rows));
@@ -61,24 +72,28 @@ void add_means(TextTable& table, std::vector<std::string> cells, const Rows& row
     cells.push_back(decimal(value, 3));
   }
   cells.push_back(decimal(percent(means.offset_error), 3));
+  cells.push_back(decimal(means.listed, 2));
+  cells.push_back(decimal(means.within_tolerance, 3));
+  cells.push_back(decimal(means.again, 3));
   cells.push_back(decimal(means.seconds, 1));
   table.add(std::move(cells));
 }
 
 std::string cases(const std::vector<DetectionRow>& rows) {
-  TextTable table({"model", "form", "noise", "faces", "true", "found", "strict", "loose", "prec.", "F1", "axis",
-                   "offset %", "s", "kV/s"});
+  TextTable table({"model", "form", "noise", "true", "found", "strict", "loose", "prec.", "axis", "offset %", "listed",
+                   "within", "again", "s"});
   for (const DetectionRow& row : rows) {
     const DetectionSummary& summary = row.score.summary;
     if (row.faces == 0) {
       table.add({row.model, row.form.name(), noise_text(row.form), "failed"});
       continue;
     }
-    table.add({row.model, row.form.name(), noise_text(row.form), std::to_string(row.faces),
-               std::to_string(summary.expected.value_or(0)), std::to_string(summary.predicted),
-               decimal(summary.strict_recall, 2), decimal(summary.loose_recall, 2), decimal(summary.precision, 2),
-               decimal(summary.f1, 2), decimal(summary.axis_error, 2), decimal(percent(summary.offset_error), 2),
-               decimal(row.seconds, 2), row.seconds > 0 ? short_number(1e-3 * row.vertices / row.seconds, 3) : "-"});
+    table.add({row.model, row.form.name(), noise_text(row.form), std::to_string(summary.expected.value_or(0)),
+               std::to_string(summary.predicted), decimal(summary.strict_recall, 2), decimal(summary.loose_recall, 2),
+               decimal(summary.precision, 2), decimal(summary.axis_error, 2), decimal(percent(summary.offset_error), 2),
+               decimal(listed_share({&row}), 2),
+               row.regions > 0 ? std::to_string(row.within_tolerance) + "/" + std::to_string(row.regions) : "-",
+               decimal(row.again, 2), decimal(row.seconds, 2)});
   }
   return table.text();
 }
@@ -117,11 +132,11 @@ std::string asymmetric(const std::vector<DetectionRow>& rows) {
 }
 
 constexpr const char* kNotes =
-    "  true, found: regions and patterns expected and detected; strict, loose: share of the expected ones that is "
-    "found;\n"
-    "  prec.: share of the detected ones that is right; axis in degrees, offset in percent of the diagonal, of what "
-    "is\n"
-    "  found strictly; s: seconds of detection; kV/s: thousands of vertices a second.\n";
+    "  true, found: regions and patterns expected and detected; strict, loose: share of the expected ones that is\n"
+    "  found; prec.: share of the detected ones that is right; axis in degrees, offset in percent of the diagonal, of\n"
+    "  what is found strictly; listed: detected by expected and optional; within: regions whose residual.max is "
+    "within\n"
+    "  the tolerance; again: share of regions found in other orders and poses as well; s: seconds of detection.\n";
 
 nlohmann::ordered_json number(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
@@ -137,6 +152,9 @@ nlohmann::ordered_json means_json(const Rows& rows) {
           {"f1", number(means.f1)},
           {"axis_error", number(means.axis_error)},
           {"offset_error", number(means.offset_error)},
+          {"listed", number(means.listed)},
+          {"within_tolerance", number(means.within_tolerance)},
+          {"again", number(means.again)},
           {"seconds", means.seconds},
           {"asymmetric_shapes", wrong.shapes},
           {"asymmetric_shapes_with_a_finite_group", wrong.anywhere},
@@ -174,6 +192,10 @@ nlohmann::ordered_json row_json(const DetectionRow& row) {
           {"offset_error", number(summary.offset_error)},
           {"unfounded_groups", row.unfounded_groups()},
           {"not_strict", missed},
+          {"optional", row.optional},
+          {"regions", row.regions},
+          {"within_tolerance", row.within_tolerance},
+          {"again", number(row.again)},
           {"seconds", row.seconds},
           {"vertices_per_second",
            row.seconds > 0 ? nlohmann::ordered_json(row.vertices / row.seconds) : nlohmann::ordered_json()}};
@@ -212,11 +234,25 @@ DetectionMeans means_of(const std::vector<const DetectionRow*>& rows) {
   means.f1 = mean([](const DetectionSummary& s) { return s.f1; });
   means.axis_error = mean([](const DetectionSummary& s) { return s.axis_error; });
   means.offset_error = mean([](const DetectionSummary& s) { return s.offset_error; });
+  means.listed = listed_share(rows);
+  int regions = 0;
+  int within = 0;
+  double again = 0;
+  int asked = 0;
+  for (const DetectionRow* row : rows) {
+    regions += row->regions;
+    within += row->within_tolerance;
+    again += row->again.value_or(0);
+    if (row->again) ++asked;
+  }
+  if (regions > 0) means.within_tolerance = static_cast<double>(within) / regions;
+  if (asked > 0) means.again = again / asked;
   return means;
 }
 
 std::string detection_text(const std::vector<DetectionRow>& rows) {
-  const std::vector<std::string> figures{"rows", "strict", "loose", "precision", "F1", "axis", "offset %", "seconds"};
+  const std::vector<std::string> figures{"rows",     "strict", "loose",  "precision", "F1",     "axis",
+                                         "offset %", "listed", "within", "again",     "seconds"};
   std::vector<std::string> form_header{"form", "noise"};
   form_header.insert(form_header.end(), figures.begin(), figures.end());
   std::vector<std::string> kind_header{"kind"};

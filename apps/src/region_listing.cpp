@@ -1,5 +1,8 @@
 #include "region_listing.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +20,68 @@ double area_fraction(const Eigen::VectorXd& areas, const std::vector<int>& faces
   return areas.sum() > 0 ? area / areas.sum() : 0;
 }
 
+nlohmann::ordered_json importance(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+// What is left by rounding is no news here; `check` shows every digit.
+std::string percent(double fraction) {
+  return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3);
+}
+
+std::string percent(const std::optional<double>& fraction) {
+  return fraction ? percent(*fraction) : "-";
+}
+
+// How many regions from this one on are images of one another: they have the importance of all in common.
+std::size_t family_size(const std::vector<Region>& regions, std::size_t first) {
+  const auto end =
+      std::find_if(regions.begin() + static_cast<std::ptrdiff_t>(first) + 1, regions.end(), [&](const Region& region) {
+        return !region.importance || region.importance != regions[first].importance ||
+               region.group != regions[first].group;
+      });
+  return static_cast<std::size_t>(end - regions.begin()) - first;
+}
+
+// "4 rods" of "rod 1 of 4, upper left", "2 groups of 6 parts" of "group of 6 parts 1 of 2".
+std::string family_name(const Region& first, std::size_t count) {
+  const std::size_t end = first.name.find(" 1 of " + std::to_string(count));
+  if (count == 1 || end == std::string::npos) return first.name;
+  std::string name = first.name.substr(0, end);
+  const std::size_t of = name.find(" of ");
+  name.insert(of == std::string::npos ? name.size() : of, "s");
+  return std::to_string(count) + " " + name;
+}
+
+// One line for each set of regions that are images of one another.
+std::string region_table(const SymmetryAnnotation& found, const Eigen::VectorXd& areas) {
+  TextTable table({"region", "group", "area %", "saves %", "parent", "residual max %", "name"});
+  for (std::size_t i = 0; i < found.regions.size();) {
+    const Region& region = found.regions[i];
+    const std::size_t count = family_size(found.regions, i);
+    double area = 0;
+    double residual = 0;
+    for (std::size_t k = i; k < i + count; ++k) {
+      area += area_fraction(areas, found.regions[k].faces);
+      residual = std::max(residual, found.regions[k].residual.max);
+    }
+    const std::string last = count > 1 ? "-" + std::to_string(found.regions[i + count - 1].id) : "";
+    table.add({std::to_string(region.id) + last, region.group.symbol(), percent(area), percent(region.importance),
+               region.parent ? std::to_string(*region.parent) : "-", percent(residual), family_name(region, count)});
+    i += count;
+  }
+  return table.text();
+}
+
+std::string pattern_table(const SymmetryAnnotation& found) {
+  TextTable table({"pattern", "kind", "instances", "saves %", "residual max %", "name"});
+  for (const Pattern& pattern : found.patterns) {
+    table.add({std::to_string(pattern.id), to_string(pattern.kind), std::to_string(pattern.instances.size()),
+               percent(pattern.importance), percent(pattern.residual.max), pattern.name});
+  }
+  return table.text();
+}
+
 }  // namespace
 
 nlohmann::ordered_json listing_json(const SymmetryAnnotation& found, const Mesh& mesh) {
@@ -28,6 +93,7 @@ nlohmann::ordered_json listing_json(const SymmetryAnnotation& found, const Mesh&
                        {"group", region.group.symbol()},
                        {"faces", region.faces.size()},
                        {"area_fraction", area_fraction(areas, region.faces)},
+                       {"importance", importance(region.importance)},
                        {"parent", region.parent ? nlohmann::ordered_json(*region.parent) : nullptr},
                        {"residual", {{"rms", region.residual.rms}, {"max", region.residual.max}}}});
   }
@@ -37,6 +103,7 @@ nlohmann::ordered_json listing_json(const SymmetryAnnotation& found, const Mesh&
                         {"name", pattern.name},
                         {"kind", to_string(pattern.kind)},
                         {"instances", pattern.instances.size()},
+                        {"importance", importance(pattern.importance)},
                         {"residual", {{"rms", pattern.residual.rms}, {"max", pattern.residual.max}}}});
   }
   return {{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
@@ -46,28 +113,10 @@ std::string listing(const SymmetryAnnotation& found, const Mesh& mesh) {
   if (found.regions.empty() && found.patterns.empty()) {
     return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
   }
-  const Eigen::VectorXd areas = face_areas(mesh);
-  // What is left by rounding is no news here; `check` shows every digit.
-  const auto percent = [](double fraction) { return short_number(fraction < 1e-12 ? 0 : 100 * fraction, 3); };
-  std::string text;
-  if (!found.regions.empty()) {
-    TextTable table({"region", "group", "area %", "faces", "parent", "residual max %", "name"});
-    for (const Region& region : found.regions) {
-      table.add({std::to_string(region.id), region.group.symbol(), percent(area_fraction(areas, region.faces)),
-                 std::to_string(region.faces.size()), region.parent ? std::to_string(*region.parent) : "-",
-                 percent(region.residual.max), region.name});
-    }
-    text += table.text();
-  }
-  if (!found.patterns.empty()) {
-    TextTable table({"pattern", "kind", "instances", "residual max %", "name"});
-    for (const Pattern& pattern : found.patterns) {
-      table.add({std::to_string(pattern.id), to_string(pattern.kind), std::to_string(pattern.instances.size()),
-                 percent(pattern.residual.max), pattern.name});
-    }
-    text += (text.empty() ? "" : "\n") + table.text();
-  }
-  return text + "Residuals are in percent of the diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
+  std::string text = found.regions.empty() ? "" : region_table(found, face_areas(mesh));
+  if (!found.patterns.empty()) text += (text.empty() ? "" : "\n") + pattern_table(found);
+  return text + "Saves: of the surface that does not follow from the lines before. Residuals are in percent of the\n" +
+         "diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
 }
 
 nlohmann::ordered_json point_listing_json(const SymmetryAnnotation& found) {

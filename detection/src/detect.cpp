@@ -18,6 +18,7 @@
 
 #include "annotate.h"
 #include "evidence/cut_discs.h"
+#include "evidence/importance.h"
 #include "evidence/noise_check.h"
 #include "group/candidates.h"
 #include "group/verification.h"
@@ -27,6 +28,7 @@
 #include "patterns/region_patterns.h"
 #include "patterns/row_growth.h"
 #include "primitives/symmetry_lines.h"
+#include "region_names.h"
 #include "resolution/coarse_mesh.h"
 #include "resolution/denoise.h"
 #include "resolution/transfer.h"
@@ -460,6 +462,7 @@ void DetectOptions::validate() const {
   if (simplify_above_faces < 0)
     refuse("simplify_above_faces", std::to_string(simplify_above_faces), "simplify_above_faces >= 0");
   if (!(time_budget >= 0)) refuse("time_budget", std::to_string(time_budget), "time_budget >= 0");
+  if (!(up.norm() > 0)) refuse("up", "zero or not a number", "|up| > 0");
 }
 
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
@@ -503,7 +506,11 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
+  for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
   annotation = kept_consistent(mesh, annotation, options.explanation, context);
+  const std::vector<std::vector<std::size_t>> families =
+      list_by_importance(prepared, annotation, options.all, options.explanation, context);
+  name_by_shape_and_place(prepared, families, options.up, annotation, options.explanation);
   context.progress("regions", 1);
   return annotation;
 }

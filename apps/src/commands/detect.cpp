@@ -146,6 +146,9 @@ void add_options(CLI::App& app, DetectArguments& arguments) {
   app.add_option("--samples", options.samples,
                  "Number of surface samples on which symmetries of the whole mesh are verified")
       ->capture_default_str();
+  app.add_flag("--all", options.all,
+               "List also what saves next to nothing beside what is listed before it: subgroups and parts whose "
+               "symmetry follows from that of others");
   app.add_option("--preview", arguments.preview,
                  "Pictures of all regions and patterns to write: one sheet (.png) or a page (.html)")
       ->type_name("FILE");
@@ -154,7 +157,7 @@ void add_options(CLI::App& app, DetectArguments& arguments) {
          "--explain", arguments.explain,
          "Folder to write what each stage kept and dropped, for which reason, and how long it took; created if missing")
       ->type_name("DIR");
-  add_up_option(app, arguments.up, "Upward direction, drawn in the preview and kept in the annotation");
+  add_up_option(app, arguments.up, "Upward direction, for names and the preview; kept in the annotation");
 }
 
 int run_detect(DetectArguments& arguments, CommandContext& context) {
@@ -168,6 +171,7 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
   context.run.check();
   Explanation explanation;
   DetectOptions chosen = arguments.options;
+  chosen.up = picture_up(arguments.up, mesh, arguments.mesh, nullptr);
   RunContext run = context.run;
   std::optional<StageTimes> times;
   if (!arguments.explain.empty()) {

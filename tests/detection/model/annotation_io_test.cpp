@@ -31,6 +31,7 @@ SymmetryAnnotation sample_annotation(const Mesh& mesh, const Eigen::Vector3d& ce
         make_region(*PointGroup::parse(symbol), centre, frame, faces, "part \"" + std::to_string(id) + "\" \xC3\xA9");
     region.id = id++;
     region.residual = {1.0 / 3, 2.0 / 3};
+    if (id % 2 == 0) region.importance = 1.0 / (id + 3);
     annotation.regions.push_back(region);
   }
   set_parents(annotation.regions);
@@ -173,6 +174,8 @@ std::vector<Mistake> mistakes() {
       {"NoFaces", "\"faces\": [[0, 8]]", "\"faces\": []", "regions[0].faces: must name at least one face"},
       {"ParentSelf", "\"parent\": null", "\"parent\": 0", "regions[0].parent: leads back to the region itself"},
       {"Residual", "\"rms\": 0,", "\"rms\": -1,", "regions[0].residual: must not be negative"},
+      {"Importance", "\"parent\": null", "\"parent\": null, \"importance\": 1.5",
+       "regions[0].importance: must be from 0 to 1"},
       {"NotANumber", "\"rms\": 0,", "\"rms\": 1e999,", "is not JSON"},
       {"Regions", "\"regions\": [", "\"region\": [", "regions: is missing"},
   };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "orbifit/detection/explanation.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
@@ -17,6 +19,10 @@ struct DetectOptions {
   int simplify_above_faces = 60000;  // >= 0
   /// Stop after this many seconds and return what is verified by then.
   double time_budget = 0;  // >= 0; 0: no limit
+  /// List all that was found and can be kept, also what saves next to nothing beside what is listed before it.
+  bool all = false;
+  /// Which way is up, for the names of regions ("upper ring").
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // not zero
   /// Where to note what each stage kept and dropped; null: nowhere.
   Explanation* explanation = nullptr;
 
@@ -26,9 +32,12 @@ struct DetectOptions {
 
 /// Finds the symmetric regions of a mesh (paper, section 3): the point group of the whole surface, the own groups of
 /// its connected components and sets of congruent components, and the congruences among components as patterns. Every
-/// element of a returned group was verified against the surface. Sorted by area, largest first; parents set. The result
-/// is the same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance
-/// asks for; the search itself depends on how much shape there is at the size of the tolerance.
+/// element of a returned group was verified against the surface, and the groups agree with one another exactly
+/// (consistent_annotation()). Ordered by importance, what each saves of the surface given those before it; images of
+/// one another follow one another and have the importance of all. What follows from those before it, and is no main
+/// part, is left out. Named by what and where they are; parents set. The result is the same for any number of threads.
+/// Costs O(F log F), for each region too, for meshes finer than the tolerance asks for; the search itself depends on
+/// how much shape there is at the size of the tolerance.
 /// \throw InputError when
 /// the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);

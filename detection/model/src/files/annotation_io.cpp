@@ -79,6 +79,13 @@ class AnnotationReader {
     return result;
   }
 
+  std::optional<double> importance(const Json& object, const std::string& where) const {
+    if (!object.contains("importance")) return std::nullopt;
+    const double result = json_.number(object, "importance", where);
+    if (!(result >= 0 && result <= 1)) json_.refuse(key_path(where, "importance"), "must be from 0 to 1");
+    return result;
+  }
+
   // Runs that people wrote out of order or touching mean the same set; only runs outside the mesh mean nothing.
   std::vector<int> faces(const Json& object, const std::string& where) const {
     const Json& runs = json_.list(object, "faces", where);
@@ -152,6 +159,7 @@ class AnnotationReader {
       result.parent = json_.identifier(object, "parent", where);
     }
     result.residual = residual(object, where);
+    result.importance = importance(object, where);
     check_group(result, where, diagonal_, json_);
     return result;
   }
@@ -182,6 +190,7 @@ class AnnotationReader {
       json_.refuse(key_path(where, "instances") + "[0].motion", "must be the identity");
     }
     result.residual = residual(object, where);
+    result.importance = importance(object, where);
     return result;
   }
 

@@ -81,6 +81,10 @@ class AnnotationWriter {
     text_ += values.empty() ? "],\n" : "\n      ],\n";
   }
 
+  void importance(const std::optional<double>& value) {
+    if (value) text_ += ",\n      \"importance\": " + number(*value);
+  }
+
   void region(const Region& value) {
     text_ += "    {\n      \"id\": " + std::to_string(value.id) + ",\n      \"name\": " + string(value.name) + ",\n";
     text_ += "      \"group\": \"" + value.group.symbol() + "\",\n      \"centre\": " + vector(value.centre) + ",\n";
@@ -88,8 +92,9 @@ class AnnotationWriter {
     motions("generators", value.generators);
     motions("elements", value.elements);
     text_ += "      \"faces\": " + runs(value.faces) + ",\n      \"parent\": ";
-    text_ +=
-        (value.parent ? std::to_string(*value.parent) : "null") + ",\n      " + residual(value.residual) + "\n    }";
+    text_ += (value.parent ? std::to_string(*value.parent) : "null") + ",\n      " + residual(value.residual);
+    importance(value.importance);
+    text_ += "\n    }";
   }
 
   void pattern(const Pattern& value) {
@@ -101,8 +106,9 @@ class AnnotationWriter {
       text_ += (i == 0 ? "\n" : ",\n") + ("        { \"motion\": " + motion(value.instances[i].motion)) +
                ",\n          \"faces\": " + runs(value.instances[i].faces) + " }";
     }
-    text_ +=
-        std::string(value.instances.empty() ? "" : "\n      ") + "],\n      " + residual(value.residual) + "\n    }";
+    text_ += std::string(value.instances.empty() ? "" : "\n      ") + "],\n      " + residual(value.residual);
+    importance(value.importance);
+    text_ += "\n    }";
   }
 
   std::string text_;

@@ -30,6 +30,8 @@ struct Region {
   std::vector<int> faces;        ///< ascending, without repetition
   std::optional<int> parent;     ///< id of the smallest region that strictly contains this one
   Residual residual;
+  /// Share of the quotient's area that it saves, given the regions and patterns listed before it, in [0, 1].
+  std::optional<double> importance = {};
 };
 
 struct PatternInstance {
@@ -46,6 +48,7 @@ struct Pattern {
   std::vector<Motion> generators;  ///< one step of the lattice each: 0 to 3, by kind
   std::vector<PatternInstance> instances;
   Residual residual;
+  std::optional<double> importance = {};  ///< as of a region
 };
 
 std::string to_string(Pattern::Kind kind);  ///< "translation-1d", ...

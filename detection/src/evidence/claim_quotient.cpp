@@ -1,0 +1,207 @@
+#include "evidence/claim_quotient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/random.h"
+#include "geometry/sampling.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSamples = 400;        // of the whole surface, about
+constexpr int kMinSamples = 3;          // of an atom
+constexpr std::size_t kMaxOrbit = 400;  // points: groups that do not close
+constexpr double kSliver = 0.05;        // of a claim's area: borders are drawn face by face
+constexpr double kSurfaceReach = 3;     // tolerances within which an image finds its face
+
+}  // namespace
+
+ClaimQuotient::ClaimQuotient(const PreparedMesh& prepared, const std::vector<Claim>& claims, const ClaimAtoms& atoms,
+                             double tolerance, const RunContext& context)
+    : prepared_(prepared), claims_(claims), atoms_(atoms), tolerance_(tolerance), context_(context) {
+  Random random(context.seed, "quotient");
+  for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
+    if (atoms.faces(atom).empty()) continue;
+    const double area = area_of(prepared, atoms.faces(atom));
+    if (!(area > 0)) continue;
+    const int count = std::max(kMinSamples, static_cast<int>(std::lround(kSamples * area / prepared.area)));
+    const SurfaceSamples samples =
+        sample_surface(prepared.mesh, prepared.areas, prepared.normals, count, random, atoms.faces(atom));
+    for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
+      Sample& sample = samples_.emplace_back();
+      sample.weight = area / count;
+      sample.orbit.push_back({samples.points.row(i), static_cast<int>(atom), std::vector<bool>(claims.size(), false)});
+    }
+  }
+}
+
+double ClaimQuotient::area() const {
+  double sum = 0;
+  for (const Sample& sample : samples_) sum += sample.weight / static_cast<double>(sample.orbit.size());
+  return sum;
+}
+
+ClaimQuotient::NamedArea ClaimQuotient::named_area(const std::vector<std::size_t>& family) const {
+  NamedArea result;
+  for (const Sample& sample : samples_) {
+    const auto named = [&](const Site& site) {
+      return std::ranges::any_of(family, [&](std::size_t claim) { return atoms_.piece(claim, site.atom) >= 0; });
+    };
+    if (named(sample.orbit.front())) result.all += sample.weight;
+    if (std::ranges::any_of(sample.orbit, named)) {
+      result.left += sample.weight / static_cast<double>(sample.orbit.size());
+    }
+  }
+  return result;
+}
+
+bool ClaimQuotient::lies_within_accepted(const std::vector<std::size_t>& family) const {
+  return std::ranges::all_of(family, [&](std::size_t claim) {
+    const double area = named_area({claim}).all;
+    return std::ranges::any_of(accepted_, [&](std::size_t known) {
+      double outside = 0;
+      for (const Sample& sample : samples_) {
+        const int atom = sample.orbit.front().atom;
+        if (atoms_.piece(claim, atom) >= 0 && atoms_.piece(known, atom) < 0) outside += sample.weight;
+      }
+      return outside <= kSliver * area;
+    });
+  });
+}
+
+bool ClaimQuotient::near(const Vector3d& a, const Vector3d& b) const {
+  return (a - b).squaredNorm() <= 0.25 * tolerance_ * tolerance_;
+}
+
+// Of a continuous group: whether its rotations take the points to one another. Mirrors through the axis and across it
+// are among the motions.
+bool ClaimQuotient::on_one_circle(std::size_t claim, const Vector3d& a, const Vector3d& b) const {
+  const Region& region = *claims_[claim].region;
+  const Vector3d from = a - region.centre;
+  const Vector3d to = b - region.centre;
+  if (!region.group.has_axis()) return std::abs(from.norm() - to.norm()) <= 0.5 * tolerance_;
+  const double up_from = region.axis.dot(from);
+  const double up_to = region.axis.dot(to);
+  const double apart = (from - up_from * region.axis).norm() - (to - up_to * region.axis).norm();
+  return std::hypot(apart, up_from - up_to) <= 0.5 * tolerance_;
+}
+
+// Of continuous groups: whether what the second turns into itself the first does too.
+bool ClaimQuotient::turns_alike(std::size_t known, std::size_t claim) const {
+  const Region& a = *claims_[known].region;
+  const Region& b = *claims_[claim].region;
+  const Vector3d apart = b.centre - a.centre;
+  if (!a.group.has_axis()) {
+    return b.group.has_axis() ? apart.cross(b.axis).norm() <= 0.5 * tolerance_ : near(a.centre, b.centre);
+  }
+  return b.group.has_axis() && a.axis.cross(b.axis).norm() <= tolerance_ &&
+         apart.cross(a.axis).norm() <= 0.5 * tolerance_;
+}
+
+bool ClaimQuotient::same(const Site& known, const Vector3d& point) const {
+  return near(known.point, point) || std::ranges::any_of(continuous_, [&](std::size_t claim) {
+           return known.complete[claim] && on_one_circle(claim, known.point, point);
+         });
+}
+
+int ClaimQuotient::find(const std::vector<Site>& orbit, const Vector3d& point) const {
+  const auto found = std::ranges::find_if(orbit, [&](const Site& known) { return same(known, point); });
+  return found == orbit.end() ? -1 : static_cast<int>(found - orbit.begin());
+}
+
+int ClaimQuotient::atom_at(const Vector3d& point) const {
+  const SurfaceIndex::Nearest nearest = prepared_.index->nearest(point, kSurfaceReach * tolerance_);
+  return nearest.face < 0 ? -1 : atoms_.of_face(nearest.face);
+}
+
+// Of the orbit that the claim gives a point, n points of which e are known to be in one orbit: of n / e orbits one is
+// left. Points on circles that are known to be filled count once for the circle.
+double ClaimQuotient::saved_share(const Sample& sample, const Site& site, std::size_t claim) const {
+  if (site.complete[claim]) return 0;
+  // Whether the claim turns the point along a circle that is not yet known.
+  const bool fills = continuous(claim) && std::ranges::none_of(continuous_, [&](std::size_t known) {
+                       return site.complete[known] && turns_alike(known, claim);
+                     });
+  Site image_site = site;  // with what is known of the point
+  std::vector<Vector3d> images{site.point};
+  std::size_t known = 1;
+  for (const Motion& motion : claims_[claim].motions[static_cast<std::size_t>(atoms_.piece(claim, site.atom))]) {
+    const Vector3d image = motion(site.point);
+    const bool repeated = std::ranges::any_of(images, [&](const Vector3d& other) {
+      image_site.point = other;
+      return same(image_site, image);
+    });
+    if (repeated) continue;
+    if (!fills && find(sample.orbit, image) >= 0) ++known;
+    images.push_back(image);
+  }
+  // The finite group in place of a continuous one need not hold the elements that are known.
+  if (fills) {
+    known = static_cast<std::size_t>(std::ranges::count_if(
+        sample.orbit, [&](const Site& other) { return on_one_circle(claim, other.point, site.point); }));
+  }
+  return std::max(0.0, 1 - static_cast<double>(known) / static_cast<double>(images.size()));
+}
+
+double ClaimQuotient::saving(const std::vector<std::size_t>& family) const {
+  double sum = 0;
+  for (const Sample& sample : samples_) {
+    double share = 0;  // members that hold points of one orbit save the same
+    for (const std::size_t claim : family) {
+      const auto site =
+          std::ranges::find_if(sample.orbit, [&](const Site& each) { return atoms_.piece(claim, each.atom) >= 0; });
+      if (site != sample.orbit.end()) share = std::max(share, saved_share(sample, *site, claim));
+    }
+    sum += share * sample.weight / static_cast<double>(sample.orbit.size());
+  }
+  return sum;
+}
+
+void ClaimQuotient::accept(const std::vector<std::size_t>& family) {
+  accepted_.insert(accepted_.end(), family.begin(), family.end());
+  std::ranges::copy_if(family, std::back_inserter(continuous_), [&](std::size_t claim) { return continuous(claim); });
+  parallel_for(
+      context_, samples_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) extend(samples_[s]);
+      },
+      16);
+  context_.check();
+}
+
+void ClaimQuotient::extend(Sample& sample) const {
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < sample.orbit.size(); ++i) open.push_back(i);
+  for (std::size_t next = 0; next < open.size(); ++next) {
+    for (const std::size_t claim : accepted_) {
+      if (sample.orbit.size() >= kMaxOrbit) return;
+      expand(sample, open[next], claim, open);
+    }
+  }
+}
+
+void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim, std::vector<std::size_t>& open) const {
+  if (sample.orbit[site].complete[claim]) return;
+  const int piece = atoms_.piece(claim, sample.orbit[site].atom);
+  if (piece < 0) return;
+  const Vector3d point = sample.orbit[site].point;
+  std::vector<std::size_t> arrived{site};
+  for (const Motion& motion : claims_[claim].motions[static_cast<std::size_t>(piece)]) {
+    const Vector3d image = motion(point);
+    int at = find(sample.orbit, image);
+    if (at < 0) {
+      at = static_cast<int>(sample.orbit.size());
+      open.push_back(sample.orbit.size());
+      sample.orbit.push_back({image, atom_at(image), std::vector<bool>(claims_.size(), false)});
+    }
+    arrived.push_back(static_cast<std::size_t>(at));
+  }
+  for (const std::size_t each : arrived) sample.orbit[each].complete[claim] = true;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "orbifit/model/run_context.h"
+
+#include "evidence/claims.h"
+
+namespace orbifit {
+
+/// The quotient of a surface by what is known of it: samples of the surface, each with its orbit under the claims that
+/// are accepted. A sample in an orbit of n points stands for an n-th of its area, since the others are its images.
+class ClaimQuotient {
+ public:
+  /// Arguments are kept by reference. O(A log F) for A samples. \param tolerance normalised; points nearer than half of
+  /// it are one
+  ClaimQuotient(const PreparedMesh& prepared, const std::vector<Claim>& claims, const ClaimAtoms& atoms,
+                double tolerance, const RunContext& context);
+
+  double area() const;  ///< of the quotient, mesh units
+  /// Of the faces that the claims name, mesh units: all, and what the quotient has of it.
+  struct NamedArea {
+    double all = 0, left = 0;
+  };
+  NamedArea named_area(const std::vector<std::size_t>& family) const;
+
+  /// Whether an accepted claim names all faces, but for a sliver, of each of these.
+  bool lies_within_accepted(const std::vector<std::size_t>& family) const;
+
+  /// What accepting claims that are images of one another would take off the area, about: exact for one claim whose
+  /// orbits meet known ones evenly.
+  double saving(const std::vector<std::size_t>& family) const;
+
+  void accept(const std::vector<std::size_t>& family);
+
+ private:
+  struct Site {
+    Eigen::Vector3d point;
+    int atom;
+    std::vector<bool> complete;  // by claim: whether the orbit under it is in
+  };
+  struct Sample {
+    double weight;  // area
+    std::vector<Site> orbit;
+  };
+
+  // The site at the point, or on a circle or sphere with it that an accepted continuous group is known to fill; -1:
+  // none.
+  int find(const std::vector<Site>& orbit, const Eigen::Vector3d& point) const;
+  bool same(const Site& known, const Eigen::Vector3d& point) const;
+  bool turns_alike(std::size_t known, std::size_t claim) const;
+  bool near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
+  bool on_one_circle(std::size_t claim, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
+  int atom_at(const Eigen::Vector3d& point) const;
+  double saved_share(const Sample& sample, const Site& site, std::size_t claim) const;
+  bool continuous(std::size_t claim) const {
+    return claims_[claim].region != nullptr && claims_[claim].region->group.continuous();
+  }
+  void extend(Sample& sample) const;
+  void expand(Sample& sample, std::size_t site, std::size_t claim, std::vector<std::size_t>& open) const;
+
+  const PreparedMesh& prepared_;
+  const std::vector<Claim>& claims_;
+  const ClaimAtoms& atoms_;
+  double tolerance_;
+  const RunContext& context_;
+  std::vector<std::size_t> accepted_, continuous_;  // the latter of the former
+  std::vector<Sample> samples_;
+};
+
+}  // namespace orbifit

@@ -1,0 +1,180 @@
+#include "region_names.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Eigenvalues>
+
+#include "surface/thresholds.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+using Family = PointGroup::Family;
+
+// Ratios of lengths at which a shape is called by another noun.
+constexpr double kRingHole = 0.4;  // of a ring's radius, at least
+constexpr double kFlat = 0.35;     // thickness of a disc or plate by its width, at most
+constexpr double kLong = 2.5;      // length of a rod or bar by its width, at least
+constexpr double kAside = 0.2;     // of the mesh's extent from its middle: on one side
+
+struct Extents {
+  double inner = std::numeric_limits<double>::infinity(), outer = 0;  // distances from the axis
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+};
+
+Extents extents_about(const PreparedMesh& prepared, const Region& region) {
+  Extents result;
+  for (const int face : region.faces) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d from_centre =
+          prepared.input_of_normalised(prepared.mesh.vertices.row(prepared.mesh.faces(face, k)).transpose()) -
+          region.centre;
+      const double height = region.axis.dot(from_centre);
+      const double radius = (from_centre - height * region.axis).norm();
+      result.inner = std::min(result.inner, radius);
+      result.outer = std::max(result.outer, radius);
+      result.low = std::min(result.low, height);
+      result.high = std::max(result.high, height);
+    }
+  }
+  return result;
+}
+
+std::string_view round_noun(const PreparedMesh& prepared, const Region& region) {
+  if (region.group.family == Family::K || region.group.family == Family::Kh) return "sphere";
+  const Extents extents = extents_about(prepared, region);
+  const double width = 2 * extents.outer;
+  const double height = extents.high - extents.low;
+  if (extents.inner > kRingHole * extents.outer && height < width) return "ring";
+  if (height < kFlat * width) return "disc";
+  return height > kLong * width ? "rod" : "round part";
+}
+
+// By the lengths along the principal axes.
+std::string_view angular_noun(const SurfaceMoments& moments) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
+  const Vector3d lengths = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+  if (lengths[2] > kLong * lengths[1]) return "bar";
+  return lengths[0] < kFlat * lengths[1] ? "plate" : "block";
+}
+
+std::size_t components_in(const PreparedMesh& prepared, const std::vector<int>& faces) {
+  std::set<int> components;
+  for (const int face : faces) {
+    components.insert(prepared.components.component_of_face[static_cast<std::size_t>(face)]);
+  }
+  return components.size();
+}
+
+// "ring", or "group of 12 parts".
+std::string noun_of(const PreparedMesh& prepared, const std::vector<int>& faces, const Region* region) {
+  if (region != nullptr && region->group.continuous()) return std::string(round_noun(prepared, *region));
+  const std::size_t parts = components_in(prepared, faces);
+  if (parts > 1) return "group of " + std::to_string(parts) + " parts";
+  return std::string(angular_noun(surface_moments(prepared, faces)));
+}
+
+/// Words for the sides of the mesh.
+class Sides {
+ public:
+  Sides(const PreparedMesh& prepared, const Vector3d& up) {
+    axes_[2] = up.normalized();
+    const Vector3d right = std::abs(up.normalized().x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
+    axes_[0] = (right - right.dot(axes_[2]) * axes_[2]).normalized();
+    axes_[1] = axes_[2].cross(axes_[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::VectorXd along = prepared.mesh.vertices * axes_[k];
+      low_[k] = along.minCoeff();
+      high_[k] = along.maxCoeff();
+    }
+  }
+
+  // "upper left ", or nothing where it lies in the middle.
+  std::string of(const Vector3d& centroid) const {
+    static constexpr std::string_view kWords[3][2] = {{"left", "right"}, {"front", "back"}, {"lower", "upper"}};
+    std::string text;
+    for (const std::size_t k : {2UL, 1UL, 0UL}) {
+      const double extent = high_[k] - low_[k];
+      if (extent < kAside) continue;  // of the diagonal: too flat to have sides
+      const double aside = (centroid.dot(axes_[k]) - 0.5 * (low_[k] + high_[k])) / extent;
+      if (std::abs(aside) > kAside) text += std::string(kWords[k][aside > 0 ? 1 : 0]) + " ";
+    }
+    return text;
+  }
+
+ private:
+  Vector3d axes_[3];  // right, backwards, up
+  double low_[3], high_[3];
+};
+
+std::string pattern_name(const Pattern& pattern, const std::string& noun) {
+  const std::string count = std::to_string(pattern.instances.size());
+  const std::string items =
+      count + " " + (noun.starts_with("group") ? "g" + noun.substr(1, 4) + "s" + noun.substr(5) : noun + "s");
+  switch (pattern.kind) {
+    case Pattern::Kind::translation_1d:
+      return "row of " + items;
+    case Pattern::Kind::translation_2d:
+    case Pattern::Kind::translation_3d:
+      return "grid of " + items;
+    case Pattern::Kind::rotation:
+      return "arc of " + items;
+    case Pattern::Kind::screw:
+      return "spiral of " + items;
+    case Pattern::Kind::congruent:
+      return items;
+  }
+  return items;
+}
+
+}  // namespace
+
+void name_by_shape_and_place(const PreparedMesh& prepared, const std::vector<std::vector<std::size_t>>& families,
+                             const Vector3d& up, SymmetryAnnotation& annotation, Explanation* explanation) {
+  const Sides sides(prepared, up);
+  std::vector<std::string> taken;  // names of families, to tell equal ones apart
+  const auto told_apart = [&](std::string name) {
+    const auto same = std::ranges::count(taken, name);
+    taken.push_back(name);
+    return same > 0 ? name + " (" + std::to_string(same + 1) + ")" : name;
+  };
+  const auto rename = [&](std::string& name, std::string now, const std::string& what) {
+    if (explanation != nullptr) explanation->notes.push_back({"names", what + now, true, "found as " + name});
+    name = std::move(now);
+  };
+  for (const std::vector<std::size_t>& family : families) {
+    std::string noun;  // of the family's first
+    for (std::size_t i = 0; i < family.size(); ++i) {
+      Region& region = annotation.regions[family[i]];
+      const std::string what = region.group.symbol() + " on ";
+      const SurfaceMoments moments = surface_moments(prepared, region.faces);
+      if (i == 0) noun = noun_of(prepared, region.faces, &region);
+      const std::string side = sides.of(moments.centroid);
+      if (moments.area >= kOfWhole * prepared.area) {
+        rename(region.name, told_apart("whole"), what);
+      } else if (family.size() == 1) {
+        rename(region.name, told_apart(side + noun), what);
+      } else {
+        if (i == 0) noun = told_apart(noun);
+        rename(region.name,
+               noun + " " + std::to_string(i + 1) + " of " + std::to_string(family.size()) +
+                   (side.empty() ? "" : ", " + side.substr(0, side.size() - 1)),
+               what);
+      }
+    }
+  }
+  for (Pattern& pattern : annotation.patterns) {
+    const std::vector<int>& first = pattern.instances.front().faces;
+    rename(pattern.name, told_apart(pattern_name(pattern, noun_of(prepared, first, nullptr))),
+           to_string(pattern.kind) + " of ");
+  }
+}
+
+}  // namespace orbifit
