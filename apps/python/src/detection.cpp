@@ -35,9 +35,10 @@ void define_detection(py::module_& module) {
   module.def(
       "detect",
       [](const MeshLike& vertices, const std::optional<ArrayLike>& faces, double tolerance,
-         std::optional<double> time_budget, int samples, int simplify_above_faces, std::uint64_t seed,
+         std::optional<double> time_budget, int samples, int simplify_above_faces, bool all, std::uint64_t seed,
          std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
-        const DetectOptions options = options_from(tolerance, time_budget, samples, simplify_above_faces);
+        DetectOptions options = options_from(tolerance, time_budget, samples, simplify_above_faces);
+        options.all = all;
         const MeshPointer mesh = faces ? mesh_from_arrays(vertices, *faces) : mesh_from(vertices);
         return std::make_shared<Annotation>(
             Annotation{run({seed, threads, timeout, progress},
@@ -46,8 +47,8 @@ void define_detection(py::module_& module) {
       },
       py::arg("vertices"), py::arg("faces") = py::none(), py::kw_only(), py::arg("tolerance") = 0.005,
       py::arg("time_budget") = py::none(), py::arg("samples") = DetectOptions{}.samples,
-      py::arg("simplify_above_faces") = DetectOptions{}.simplify_above_faces, seed_argument(), threads_argument(),
-      timeout_argument(), progress_argument(),
+      py::arg("simplify_above_faces") = DetectOptions{}.simplify_above_faces, py::arg("all") = false, seed_argument(),
+      threads_argument(), timeout_argument(), progress_argument(),
       "Finds the symmetric regions of a mesh and its repeated parts.\n\n"
       "Args:\n"
       "    vertices: (n, 3) coordinates; or all of a mesh, see :meth:`Mesh.of`.\n"
@@ -55,7 +56,8 @@ void define_detection(py::module_& module) {
       "    tolerance: largest distance that still counts as symmetric, as a fraction of the mesh's diagonal.\n"
       "    time_budget: in seconds; search no longer, and keep what is verified by then.\n"
       "    samples: of the surface, on which a whole mesh is verified.\n"
-      "    simplify_above_faces: meshes of more faces are searched on a coarser proxy; 0: none are.\n" ORBIFIT_RUN_DOC
+      "    simplify_above_faces: meshes of more faces are searched on a coarser proxy; 0: none are.\n"
+      "    all: list also what follows from the rest.\n" ORBIFIT_RUN_DOC
       "\nRaises:\n"
       "    InputError: an array or mesh that cannot be used.\n"
       "    UsageError: an option out of range.");

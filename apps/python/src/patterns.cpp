@@ -22,7 +22,8 @@ py::tuple state_of(const Pattern& pattern) {
     faces.append(IntArray(static_cast<py::ssize_t>(instance.faces.size()), instance.faces.data()));
   }
   return py::make_tuple(pattern.id, pattern.name, to_string(pattern.kind), bytes_of(pattern.generators),
-                        bytes_of(instance_motions(pattern)), faces, pattern.residual.rms, pattern.residual.max);
+                        bytes_of(instance_motions(pattern)), faces, pattern.residual.rms, pattern.residual.max,
+                        pattern.importance);
 }
 
 Pattern pattern_from_state(const py::tuple& state) {
@@ -39,6 +40,7 @@ Pattern pattern_from_state(const py::tuple& state) {
     pattern.instances.push_back({motions[i], indices_from(faces[i], "faces", std::numeric_limits<int>::max())});
   }
   pattern.residual = {state[6].cast<double>(), state[7].cast<double>()};
+  pattern.importance = state[8].cast<std::optional<double>>();
   return pattern;
 }
 
@@ -77,6 +79,8 @@ void define_patterns(py::module_& module) {
       .def_property_readonly(
           "residual_max", [](const Pattern& pattern) { return pattern.residual.max; },
           "The largest of those distances.")
+      .def_readonly("importance", &Pattern::importance,
+                    "Share of what was left of the surface that it saves, given those listed before it, or None.")
       .def("__len__", [](const Pattern& pattern) { return pattern.instances.size(); })
       .def("__repr__",
            [](const Pattern& pattern) {

@@ -64,7 +64,7 @@ py::tuple state_of(const Region& region) {
   return py::make_tuple(region.id, region.name, region.group.symbol(), array_of(region.centre), array_of(region.axis),
                         bytes_of(region.generators), bytes_of(region.elements),
                         IntArray(static_cast<py::ssize_t>(region.faces.size()), region.faces.data()), region.parent,
-                        region.residual.rms, region.residual.max);
+                        region.residual.rms, region.residual.max, region.importance);
 }
 
 Region region_from_state(const py::tuple& state) {
@@ -79,6 +79,7 @@ Region region_from_state(const py::tuple& state) {
   region.faces = indices_from(state[7], "faces", std::numeric_limits<int>::max());
   region.parent = state[8].cast<std::optional<int>>();
   region.residual = {state[9].cast<double>(), state[10].cast<double>()};
+  region.importance = state[11].cast<std::optional<double>>();
   return region;
 }
 
@@ -133,6 +134,8 @@ void define_regions(py::module_& module) {
           "Root mean square distance between the region and its images, fraction of the mesh's diagonal.")
       .def_property_readonly(
           "residual_max", [](const Region& region) { return region.residual.max; }, "The largest of those distances.")
+      .def_readonly("importance", &Region::importance,
+                    "Share of what was left of the surface that it saves, given those listed before it, or None.")
       .def("__repr__",
            [](const Region& region) {
              return "<orbifit.Region " + std::to_string(region.id) + ": " + region.group.symbol() + ", " +
