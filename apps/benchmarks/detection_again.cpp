@@ -23,7 +23,7 @@ std::vector<int> permutation(Eigen::Index count, Random& random) {
   return result;
 }
 
-// The mesh with vertices and faces in another order. \param[out] face_of by face of the result: its number in `mesh`
+// The mesh with vertices and faces in another order; `face_of` tells, by face of the result, its number in `mesh`.
 Mesh reordered(const Mesh& mesh, Random& random, std::vector<int>& face_of) {
   const std::vector<int> vertex_of = permutation(mesh.vertices.rows(), random);
   face_of = permutation(mesh.faces.rows(), random);

@@ -1,6 +1,7 @@
 #include "region_names.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -9,6 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "geometry/surface_index.h"
 #include "surface/thresholds.h"
 
 namespace orbifit {
@@ -18,11 +20,8 @@ namespace {
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-// Ratios of lengths at which a shape is called by another noun.
-constexpr double kRingHole = 0.4;  // of a ring's radius, at least
-constexpr double kFlat = 0.35;     // thickness of a disc or plate by its width, at most
-constexpr double kLong = 2.5;      // length of a rod or bar by its width, at least
-constexpr double kAside = 0.2;     // of the mesh's extent from its middle: on one side
+constexpr double kLong = 2.5;   // ratio of two lengths at which a shape is called by another noun
+constexpr double kAside = 0.2;  // of the mesh's extent from its middle: on one side
 
 struct Extents {
   double inner = std::numeric_limits<double>::infinity(), outer = 0;  // distances from the axis
@@ -32,17 +31,21 @@ struct Extents {
 Extents extents_about(const PreparedMesh& prepared, const Region& region) {
   Extents result;
   for (const int face : region.faces) {
+    std::array<Vector3d, 3> across;  // the corners as seen along the axis
     for (int k = 0; k < 3; ++k) {
       const Vector3d from_centre =
           prepared.input_of_normalised(prepared.mesh.vertices.row(prepared.mesh.faces(face, k)).transpose()) -
           region.centre;
       const double height = region.axis.dot(from_centre);
-      const double radius = (from_centre - height * region.axis).norm();
-      result.inner = std::min(result.inner, radius);
-      result.outer = std::max(result.outer, radius);
+      Vector3d& corner = across[static_cast<std::size_t>(k)];
+      corner = from_centre - height * region.axis;
+      result.outer = std::max(result.outer, corner.norm());
       result.low = std::min(result.low, height);
       result.high = std::max(result.high, height);
     }
+    const Vector3d weights = nearest_on_triangle(Vector3d::Zero(), across[0], across[1], across[2]);
+    const Vector3d nearest = weights[0] * across[0] + weights[1] * across[1] + weights[2] * across[2];
+    result.inner = std::min(result.inner, nearest.norm());
   }
   return result;
 }
@@ -52,8 +55,8 @@ std::string_view round_noun(const PreparedMesh& prepared, const Region& region) 
   const Extents extents = extents_about(prepared, region);
   const double width = 2 * extents.outer;
   const double height = extents.high - extents.low;
-  if (extents.inner > kRingHole * extents.outer && height < width) return "ring";
-  if (height < kFlat * width) return "disc";
+  if (kLong * extents.inner > extents.outer && height < width) return "ring";
+  if (kLong * height < width) return "disc";
   return height > kLong * width ? "rod" : "round part";
 }
 
@@ -62,7 +65,7 @@ std::string_view angular_noun(const SurfaceMoments& moments) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
   const Vector3d lengths = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
   if (lengths[2] > kLong * lengths[1]) return "bar";
-  return lengths[0] < kFlat * lengths[1] ? "plate" : "block";
+  return kLong * lengths[0] < lengths[1] ? "plate" : "block";
 }
 
 std::size_t components_in(const PreparedMesh& prepared, const std::vector<int>& faces) {
@@ -139,7 +142,7 @@ std::string pattern_name(const Pattern& pattern, const std::string& noun) {
 void name_by_shape_and_place(const PreparedMesh& prepared, const std::vector<std::vector<std::size_t>>& families,
                              const Vector3d& up, SymmetryAnnotation& annotation, Explanation* explanation) {
   const Sides sides(prepared, up);
-  std::vector<std::string> taken;  // names of families, to tell equal ones apart
+  std::vector<std::string> taken;  // names, to tell equal ones apart
   const auto told_apart = [&](std::string name) {
     const auto same = std::ranges::count(taken, name);
     taken.push_back(name);
@@ -162,11 +165,9 @@ void name_by_shape_and_place(const PreparedMesh& prepared, const std::vector<std
       } else if (family.size() == 1) {
         rename(region.name, told_apart(side + noun), what);
       } else {
-        if (i == 0) noun = told_apart(noun);
+        const std::string where = side.empty() ? "" : ", " + side.substr(0, side.size() - 1);
         rename(region.name,
-               noun + " " + std::to_string(i + 1) + " of " + std::to_string(family.size()) +
-                   (side.empty() ? "" : ", " + side.substr(0, side.size() - 1)),
-               what);
+               told_apart(noun + " " + std::to_string(i + 1) + " of " + std::to_string(family.size()) + where), what);
       }
     }
   }

@@ -125,6 +125,16 @@ TEST_F(BenchmarkProgram, DetectionIsScoredInEveryForm) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120U) << line;
 }
 
+TEST_F(BenchmarkProgram, DetectionIsTheSameInOtherOrdersAndPoses) {
+  const json result = result_of("detection --models bowl --forms assembly --again");
+  const json& row = result["rows"].at(0);
+  EXPECT_EQ(row["regions"], 1);
+  EXPECT_EQ(row["within_tolerance"], 1);
+  EXPECT_EQ(row["again"], 1);
+  EXPECT_EQ(result["means"]["by_form"][0]["again"], 1);
+  EXPECT_GT(result["means"]["by_form"][0]["listed"], 0);
+}
+
 TEST_F(BenchmarkProgram, DetectionWritesTheSameFilesForTheSameSeed) {
   for (const char* folder : {"first", "second"}) {
     result_of("detection --models boulder --forms remesh --noise 0.003 --write " + std::string(folder));

@@ -2,6 +2,8 @@
 
 #include "evidence/importance.h"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "shapes.h"
@@ -88,6 +90,51 @@ TEST(Importance, ARoundPartLeavesNothingForItsFiniteGroups) {
   list_by_importance(prepare(mesh), annotation, false, nullptr, {});
   ASSERT_EQ(annotation.regions.size(), 1U);
   EXPECT_EQ(annotation.regions[0].name, "Dinfh");
+}
+
+TEST(Importance, TheFlipOfAPartHalvesWhatItsRotationsLeave) {
+  // A cylinder on a wider one: both turn about the axis, the lower one alone has a flip.
+  const Mesh lower = test::prism(48, 1, 1);
+  const Mesh mesh = test::joined({lower, test::moved(test::prism(48, 0.5, 1), test::shift(0, 0, 1))});
+  SymmetryAnnotation annotation = empty_annotation(mesh, test::kTolerance);
+  const auto add = [&](const char* group, const Vector3d& centre, std::vector<int> faces) {
+    annotation.regions.push_back(
+        make_region(*PointGroup::parse(group), centre, GroupFrame::Identity(), std::move(faces), group));
+    annotation.regions.back().id = static_cast<int>(annotation.regions.size()) - 1;
+  };
+  add("Dinfh", Vector3d::Zero(), test::all_faces(lower));
+  add("Cinfv", Vector3d::Zero(), test::all_faces(mesh));
+  list_by_importance(prepare(mesh), annotation, false, nullptr, {});
+  ASSERT_EQ(annotation.regions.size(), 2U);
+  EXPECT_EQ(annotation.regions[0].name, "Cinfv");
+  EXPECT_GT(*annotation.regions[0].importance, 0.9);
+  // Half of the lower cylinder's share of the area.
+  const double round = 2 * std::numbers::pi;
+  const double share = 2 * round / (2 * round + round / 4 + round / 2);
+  EXPECT_NEAR(*annotation.regions[1].importance, share / 2, 0.05);
+}
+
+TEST(Importance, WhatTellsHowPartsStandToOneAnotherIsListed) {
+  // Two boxes, unlike and each with a group of its own, and the mirror that both share.
+  const Mesh box = test::box(2, 1, 1);
+  const Mesh mesh = test::joined({box, test::moved(test::box(1, 1, 3), test::shift(0, 0, 2))});
+  for (const char* common : {"Cs", "C2v"}) {
+    SymmetryAnnotation annotation = empty_annotation(mesh, test::kTolerance);
+    const auto add = [&](const char* group, const Vector3d& centre, std::vector<int> faces) {
+      annotation.regions.push_back(
+          make_region(*PointGroup::parse(group), centre, GroupFrame::Identity(), std::move(faces), group));
+      annotation.regions.back().id = static_cast<int>(annotation.regions.size()) - 1;
+    };
+    add("D2h", Vector3d::Zero(), test::all_faces(box));
+    add("D2h", {0, 0, 2}, faces_from(12, 12));
+    add(common, Vector3d::Zero(), test::all_faces(mesh));
+    list_by_importance(prepare(mesh), annotation, false, nullptr, {});
+    ASSERT_EQ(annotation.regions.size(), 3U) << common;
+    // A part of the first box that others hold says nothing more.
+    add("Cs", Vector3d::Zero(), faces_from(0, 12));
+    list_by_importance(prepare(mesh), annotation, false, nullptr, {});
+    EXPECT_EQ(annotation.regions.size(), 3U) << common;
+  }
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ void add_options(CLI::App& app, DetectArguments& arguments) {
       ->capture_default_str();
   app.add_flag("--all", options.all,
                "List also what saves next to nothing beside what is listed before it: subgroups and parts whose "
-               "symmetry follows from that of others");
+               "symmetry follows from that of others. Of a scan (--points) all is listed anyway");
   app.add_option("--preview", arguments.preview,
                  "Pictures of all regions and patterns to write: one sheet (.png) or a page (.html)")
       ->type_name("FILE");

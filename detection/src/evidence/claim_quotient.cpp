@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/random.h"
+#include "evidence/policy.h"
 #include "geometry/sampling.h"
 
 namespace orbifit {
@@ -13,23 +14,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSamples = 400;        // of the whole surface, about
-constexpr int kMinSamples = 3;          // of an atom
-constexpr std::size_t kMaxOrbit = 400;  // points: groups that do not close
-constexpr double kSliver = 0.05;        // of a claim's area: borders are drawn face by face
-constexpr double kSurfaceReach = 3;     // tolerances within which an image finds its face
-
 }  // namespace
 
-ClaimQuotient::ClaimQuotient(const PreparedMesh& prepared, const std::vector<Claim>& claims, const ClaimAtoms& atoms,
-                             double tolerance, const RunContext& context)
+ClaimQuotient::ClaimQuotient(const PreparedMesh& prepared, const std::vector<SymmetryClaim>& claims,
+                             const ClaimAtoms& atoms, double tolerance, const RunContext& context)
     : prepared_(prepared), claims_(claims), atoms_(atoms), tolerance_(tolerance), context_(context) {
   Random random(context.seed, "quotient");
   for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
     if (atoms.faces(atom).empty()) continue;
     const double area = area_of(prepared, atoms.faces(atom));
     if (!(area > 0)) continue;
-    const int count = std::max(kMinSamples, static_cast<int>(std::lround(kSamples * area / prepared.area)));
+    const int count = std::max(kQuotientResolution.samples_of_atom,
+                               static_cast<int>(std::lround(kQuotientResolution.samples * area / prepared.area)));
     const SurfaceSamples samples =
         sample_surface(prepared.mesh, prepared.areas, prepared.normals, count, random, atoms.faces(atom));
     for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
@@ -69,7 +65,7 @@ bool ClaimQuotient::lies_within_accepted(const std::vector<std::size_t>& family)
         const int atom = sample.orbit.front().atom;
         if (atoms_.piece(claim, atom) >= 0 && atoms_.piece(known, atom) < 0) outside += sample.weight;
       }
-      return outside <= kSliver * area;
+      return outside <= EvidencePolicy{}.sliver * area;
     });
   });
 }
@@ -115,7 +111,7 @@ int ClaimQuotient::find(const std::vector<Site>& orbit, const Vector3d& point) c
 }
 
 int ClaimQuotient::atom_at(const Vector3d& point) const {
-  const SurfaceIndex::Nearest nearest = prepared_.index->nearest(point, kSurfaceReach * tolerance_);
+  const SurfaceIndex::Nearest nearest = prepared_.index->nearest(point, kQuotientResolution.reach * tolerance_);
   return nearest.face < 0 ? -1 : atoms_.of_face(nearest.face);
 }
 
@@ -179,7 +175,7 @@ void ClaimQuotient::extend(Sample& sample) const {
   for (std::size_t i = 0; i < sample.orbit.size(); ++i) open.push_back(i);
   for (std::size_t next = 0; next < open.size(); ++next) {
     for (const std::size_t claim : accepted_) {
-      if (sample.orbit.size() >= kMaxOrbit) return;
+      if (sample.orbit.size() >= kQuotientResolution.orbit) return;
       expand(sample, open[next], claim, open);
     }
   }
@@ -202,6 +198,13 @@ void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim, 
     arrived.push_back(static_cast<std::size_t>(at));
   }
   for (const std::size_t each : arrived) sample.orbit[each].complete[claim] = true;
+  if (!continuous(claim)) return;
+  // The other points on the circles that are now filled.
+  for (Site& other : sample.orbit) {
+    if (other.complete[claim] || atoms_.piece(claim, other.atom) < 0) continue;
+    other.complete[claim] = std::ranges::any_of(
+        arrived, [&](std::size_t each) { return on_one_circle(claim, sample.orbit[each].point, other.point); });
+  }
 }
 
 }  // namespace orbifit

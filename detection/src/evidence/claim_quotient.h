@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "orbifit/model/run_context.h"
@@ -14,13 +13,14 @@ namespace orbifit {
 /// are accepted. A sample in an orbit of n points stands for an n-th of its area, since the others are its images.
 class ClaimQuotient {
  public:
-  /// Arguments are kept by reference. O(A log F) for A samples. \param tolerance normalised; points nearer than half of
-  /// it are one
-  ClaimQuotient(const PreparedMesh& prepared, const std::vector<Claim>& claims, const ClaimAtoms& atoms,
+  /// Arguments are kept by reference. Lengths and areas are those of the normalised mesh. O(A log F) for A samples.
+  /// \param tolerance  points nearer than half of it are one
+  ClaimQuotient(const PreparedMesh& prepared, const std::vector<SymmetryClaim>& claims, const ClaimAtoms& atoms,
                 double tolerance, const RunContext& context);
 
-  double area() const;  ///< of the quotient, mesh units
-  /// Of the faces that the claims name, mesh units: all, and what the quotient has of it.
+  double area() const;  ///< of the quotient
+
+  /// Of the faces that the claims name: all, and what the quotient has of it.
   struct NamedArea {
     double all = 0, left = 0;
   };
@@ -30,7 +30,7 @@ class ClaimQuotient {
   bool lies_within_accepted(const std::vector<std::size_t>& family) const;
 
   /// What accepting claims that are images of one another would take off the area, about: exact for one claim whose
-  /// orbits meet known ones evenly.
+  /// orbits meet known ones evenly. O(A |G| n) for orbits of n points.
   double saving(const std::vector<std::size_t>& family) const;
 
   void accept(const std::vector<std::size_t>& family);
@@ -62,7 +62,7 @@ class ClaimQuotient {
   void expand(Sample& sample, std::size_t site, std::size_t claim, std::vector<std::size_t>& open) const;
 
   const PreparedMesh& prepared_;
-  const std::vector<Claim>& claims_;
+  const std::vector<SymmetryClaim>& claims_;
   const ClaimAtoms& atoms_;
   double tolerance_;
   const RunContext& context_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.h"
+#include "evidence/policy.h"
 
 namespace orbifit {
 
@@ -14,21 +15,18 @@ namespace {
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr int kOrbit = 36;             // images about an axis that stand for a circle: divisible by the usual orders
-constexpr std::size_t kWitnesses = 6;  // faces of an atom that are asked where a motion takes it
-
 PointGroup finite_part(const PointGroup& group) {
   switch (group.family) {
     case Family::Cinf:
-      return {Family::Cn, kOrbit};
+      return {Family::Cn, kQuotientResolution.circle};
     case Family::Cinfv:
-      return {Family::Cnv, kOrbit};
+      return {Family::Cnv, kQuotientResolution.circle};
     case Family::Cinfh:
-      return {Family::Cnh, kOrbit};
+      return {Family::Cnh, kQuotientResolution.circle};
     case Family::Dinf:
-      return {Family::Dn, kOrbit};
+      return {Family::Dn, kQuotientResolution.circle};
     case Family::Dinfh:
-      return {Family::Dnh, kOrbit};
+      return {Family::Dnh, kQuotientResolution.circle};
     case Family::K:
       return {Family::I, 1};
     case Family::Kh:
@@ -52,8 +50,8 @@ std::vector<Motion> motions_of(const Region& region) {
   return result;
 }
 
-Claim claim_of(const Pattern& pattern) {
-  Claim claim;
+SymmetryClaim claim_of(const Pattern& pattern) {
+  SymmetryClaim claim;
   claim.pattern = &pattern;
   const std::vector<PatternInstance>& instances = pattern.instances;
   for (std::size_t i = 0; i < instances.size(); ++i) {
@@ -71,7 +69,6 @@ Claim claim_of(const Pattern& pattern) {
 // Whether the motion takes the one region's group to the other's, to `reach` near `at`.
 bool takes_group(const Region& from, const Motion& motion, const Region& to, const Vector3d& at, double extent,
                  double reach) {
-  constexpr double kAngle = 1e-3;  // radians
   if (from.group != to.group) return false;
   if (!from.group.continuous()) {
     return std::ranges::all_of(from.generators, [&](const Motion& generator) {
@@ -82,7 +79,7 @@ bool takes_group(const Region& from, const Motion& motion, const Region& to, con
   }
   Vector3d apart = motion(from.centre) - to.centre;
   if (!from.group.has_axis()) return apart.norm() <= reach;
-  if ((motion.linear * from.axis).cross(to.axis).norm() > kAngle) return false;
+  if (extent * (motion.linear * from.axis).cross(to.axis).norm() > reach) return false;
   const bool slides = from.group.family == Family::Cinf || from.group.family == Family::Cinfv;
   if (slides) apart -= to.axis.dot(apart) * to.axis;
   return apart.norm() <= reach;
@@ -91,9 +88,17 @@ bool takes_group(const Region& from, const Motion& motion, const Region& to, con
 /// Finds the images of claims.
 class Images {
  public:
-  Images(const PreparedMesh& prepared, const std::vector<Claim>& claims, const ClaimAtoms& atoms, double tolerance)
+  Images(const PreparedMesh& prepared, const std::vector<SymmetryClaim>& claims, const ClaimAtoms& atoms,
+         double tolerance)
       : prepared_(prepared), claims_(claims), atoms_(atoms), tolerance_(tolerance), families_(claims.size()) {
-    for (std::size_t atom = 0; atom < atoms.count(); ++atom) witnesses_.push_back(witnesses(atoms.faces(atom)));
+    areas_.assign(claims.size(), 0);
+    for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
+      witnesses_.push_back(witnesses(atoms.faces(atom)));
+      atom_areas_.push_back(area_of(prepared, atoms.faces(atom)));
+      for (std::size_t claim = 0; claim < claims.size(); ++claim) {
+        if (atoms.piece(claim, static_cast<int>(atom)) >= 0) areas_[claim] += atom_areas_.back();
+      }
+    }
   }
 
   DisjointSets families() {
@@ -114,7 +119,7 @@ class Images {
 
   std::vector<Vector3d> witnesses(const std::vector<int>& faces) const {
     std::vector<Vector3d> result;
-    const std::size_t count = std::min(kWitnesses, faces.size());
+    const std::size_t count = std::min(kQuotientResolution.witnesses, faces.size());
     for (std::size_t k = 0; k < count; ++k) {
       const int face = faces[(2 * k + 1) * faces.size() / (2 * count)];
       Vector3d middle = Vector3d::Zero();
@@ -125,6 +130,7 @@ class Images {
   }
 
   bool alike(std::size_t a, std::size_t b) const {
+    if (std::min(areas_[a], areas_[b]) < kQuotientResolution.arrived * std::max(areas_[a], areas_[b])) return false;
     if ((claims_[a].region != nullptr) != (claims_[b].region != nullptr)) return false;
     if (claims_[a].region != nullptr) return claims_[a].region->group == claims_[b].region->group;
     return claims_[a].pattern->kind == claims_[b].pattern->kind &&
@@ -135,9 +141,10 @@ class Images {
     std::map<std::size_t, Arrival> arrivals;  // by the claim that is moved
     for (std::size_t atom = 0; atom < atoms_.count(); ++atom) {
       if (atoms_.piece(mover, static_cast<int>(atom)) != piece) continue;
-      const double weight = area_of(prepared_, atoms_.faces(atom)) / static_cast<double>(witnesses_[atom].size());
+      const double weight = atom_areas_[atom] / static_cast<double>(witnesses_[atom].size());
       for (const Vector3d& witness : witnesses_[atom]) {
-        const SurfaceIndex::Nearest nearest = prepared_.index->nearest(motion(witness), 3 * tolerance_);
+        const SurfaceIndex::Nearest nearest =
+            prepared_.index->nearest(motion(witness), kQuotientResolution.reach * tolerance_);
         const int there = nearest.face < 0 ? -1 : atoms_.of_face(nearest.face);
         for (std::size_t from = 0; from < claims_.size(); ++from) {
           if (from == mover || atoms_.piece(from, static_cast<int>(atom)) < 0) continue;
@@ -149,10 +156,9 @@ class Images {
         }
       }
     }
-    constexpr double kMost = 0.5;
     for (const auto& [from, arrival] : arrivals) {
       for (const auto& [to, area] : arrival.at) {
-        if (to == from || area < kMost * arrival.asked) continue;
+        if (to == from || area < kQuotientResolution.arrived * arrival.asked) continue;
         if (families_.root(static_cast<int>(from)) == families_.root(static_cast<int>(to))) continue;
         if (claims_[from].region == nullptr || takes(from, motion, to)) {
           families_.unite(static_cast<int>(from), static_cast<int>(to));
@@ -168,19 +174,20 @@ class Images {
   }
 
   const PreparedMesh& prepared_;
-  const std::vector<Claim>& claims_;
+  const std::vector<SymmetryClaim>& claims_;
   const ClaimAtoms& atoms_;
   double tolerance_;
   DisjointSets families_;
   std::vector<std::vector<Vector3d>> witnesses_;  // by atom
+  std::vector<double> atom_areas_, areas_;        // by atom, by claim
 };
 
 }  // namespace
 
-std::vector<Claim> claims_of(const SymmetryAnnotation& annotation) {
-  std::vector<Claim> claims;
+std::vector<SymmetryClaim> claims_of(const SymmetryAnnotation& annotation) {
+  std::vector<SymmetryClaim> claims;
   for (const Region& region : annotation.regions) {
-    Claim& claim = claims.emplace_back();
+    SymmetryClaim& claim = claims.emplace_back();
     claim.region = &region;
     claim.pieces = {&region.faces};
     claim.motions = {motions_of(region)};
@@ -190,12 +197,12 @@ std::vector<Claim> claims_of(const SymmetryAnnotation& annotation) {
   return claims;
 }
 
-ClaimAtoms::ClaimAtoms(const PreparedMesh& prepared, const std::vector<Claim>& claims) {
+ClaimAtoms::ClaimAtoms(const PreparedMesh& prepared, const std::vector<SymmetryClaim>& claims) {
   const auto face_count = static_cast<std::size_t>(prepared.mesh.faces.rows());
   atom_of_face_.assign(face_count, 0);
   std::vector<int> piece_of_face(face_count);
   std::vector<std::vector<int>> pieces{{}};
-  for (const Claim& claim : claims) {
+  for (const SymmetryClaim& claim : claims) {
     std::ranges::fill(piece_of_face, -1);
     for (std::size_t p = 0; p < claim.pieces.size(); ++p) {
       for (const int face : *claim.pieces[p]) piece_of_face[static_cast<std::size_t>(face)] = static_cast<int>(p);
@@ -222,8 +229,9 @@ ClaimAtoms::ClaimAtoms(const PreparedMesh& prepared, const std::vector<Claim>& c
   }
 }
 
-std::vector<std::vector<std::size_t>> families_of(const PreparedMesh& prepared, const std::vector<Claim>& claims,
-                                                  const ClaimAtoms& atoms, double tolerance) {
+std::vector<std::vector<std::size_t>> families_of(const PreparedMesh& prepared,
+                                                  const std::vector<SymmetryClaim>& claims, const ClaimAtoms& atoms,
+                                                  double tolerance) {
   DisjointSets sets = Images(prepared, claims, atoms, tolerance).families();
   std::map<int, std::vector<std::size_t>> by_root;
   for (std::size_t i = 0; i < claims.size(); ++i) by_root[sets.root(static_cast<int>(i))].push_back(i);

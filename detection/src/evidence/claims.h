@@ -10,7 +10,7 @@
 namespace orbifit {
 
 /// What a region or a pattern says: which motions take which faces onto others that it names.
-struct Claim {
+struct SymmetryClaim {
   const Region* region = nullptr;  ///< one of the two
   const Pattern* pattern = nullptr;
   std::vector<const std::vector<int>*> pieces;  ///< faces of the region, or of each instance
@@ -20,12 +20,12 @@ struct Claim {
 };
 
 /// The regions, then the patterns; the annotation is kept by reference.
-std::vector<Claim> claims_of(const SymmetryAnnotation& annotation);
+std::vector<SymmetryClaim> claims_of(const SymmetryAnnotation& annotation);
 
 /// The mesh's faces by the claims that name them: an atom is all faces that the same claims name.
 class ClaimAtoms {
  public:
-  ClaimAtoms(const PreparedMesh& prepared, const std::vector<Claim>& claims);
+  ClaimAtoms(const PreparedMesh& prepared, const std::vector<SymmetryClaim>& claims);
 
   std::size_t count() const { return faces_.size(); }
   int of_face(int face) const { return atom_of_face_[static_cast<std::size_t>(face)]; }
@@ -43,7 +43,8 @@ class ClaimAtoms {
 
 /// Claims that are images of one another under the motions of others, by number, each family ascending, families in the
 /// order of their first. Listed together, or not at all, they leave a consistent annotation consistent.
-std::vector<std::vector<std::size_t>> families_of(const PreparedMesh& prepared, const std::vector<Claim>& claims,
-                                                  const ClaimAtoms& atoms, double tolerance);
+std::vector<std::vector<std::size_t>> families_of(const PreparedMesh& prepared,
+                                                  const std::vector<SymmetryClaim>& claims, const ClaimAtoms& atoms,
+                                                  double tolerance);
 
 }  // namespace orbifit

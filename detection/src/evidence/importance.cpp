@@ -47,7 +47,7 @@ std::vector<Listed> greedy_order(ClaimQuotient& quotient, std::vector<std::vecto
     }
     const double importance = left > 0 ? std::clamp(best->saving / left, 0.0, 1.0) : 0;
     const ClaimQuotient::NamedArea named = quotient.named_area(best->family);
-    const bool says_more = best->saving > policy.min_saving * named.left ||
+    const bool says_more = best->saving > policy.sliver * named.left ||
                            (named.all >= policy.main_part * surface && !quotient.lies_within_accepted(best->family));
     order.push_back({std::move(best->family), importance, says_more || all});
     waiting.erase(best);
@@ -59,7 +59,7 @@ std::vector<Listed> greedy_order(ClaimQuotient& quotient, std::vector<std::vecto
   return order;
 }
 
-void note_left_out(Explanation* explanation, const Claim& claim) {
+void note_left_out(Explanation* explanation, const SymmetryClaim& claim) {
   if (explanation == nullptr) return;
   const std::string subject = claim.region != nullptr ? claim.region->group.symbol() + " on " + claim.region->name
                                                       : to_string(claim.pattern->kind) + " of " + claim.pattern->name;
@@ -73,7 +73,7 @@ std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& pre
                                                          const RunContext& context) {
   context.progress("importance", 0);
   const SymmetryAnnotation local = transformed(annotation, inverse(prepared.input_of_normalised));
-  const std::vector<Claim> claims = claims_of(local);
+  const std::vector<SymmetryClaim> claims = claims_of(local);
   const ClaimAtoms atoms(prepared, claims);
   ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
   std::vector<Region> regions;

@@ -1,15 +1,31 @@
 #pragma once
 
+#include <cstddef>
+
 namespace orbifit {
 
-/// What the judge asks of regions and patterns before they are listed: each threshold with its unit and its reason.
+/// What decides on the list of regions and patterns: each threshold with its unit and its reason.
 struct EvidencePolicy {
-  /// Share of what was left of its own surface that a region or pattern (with its images) saves, given those listed
-  /// before it; what saves less repeats what others say of its faces, but for a sliver.
-  double min_saving = 0.05;
-  /// Share of the mesh's area from which on a region or pattern (with its images) is a main part: it is listed in any
-  /// case, since it tells how others stand to one another.
+  /// Share of an area that says nothing, since borders are drawn face by face. A region or pattern (with its images)
+  /// that saves no more of what was left of its own surface follows from those listed before it; one that has no more
+  /// outside of another lies in it.
+  double sliver = 0.05;
+  /// Share of the mesh's area from which on a region or pattern (with its images) is a main part: it is listed unless
+  /// another holds it, since it tells how others stand to one another.
   double main_part = 0.2;
 };
+
+/// How finely the quotient of a surface is measured.
+struct QuotientResolution {
+  int samples = 400;          ///< of the whole surface, about: areas to a few percent
+  int samples_of_atom = 3;    ///< at least, so that no small part goes unasked
+  std::size_t witnesses = 6;  ///< faces of an atom that are asked where a motion takes it
+  int circle = 36;            ///< images about an axis that stand for a circle: divisible by the usual orders
+  std::size_t orbit = 400;    ///< points at most: groups that do not close
+  double reach = 3;           ///< tolerances within which an image finds its face
+  double arrived = 0.5;       ///< share of a claim's area that must arrive in another for them to be images
+};
+
+inline constexpr QuotientResolution kQuotientResolution;
 
 }  // namespace orbifit

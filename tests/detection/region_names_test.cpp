@@ -1,0 +1,98 @@
+// What regions and patterns are called.
+
+#include "region_names.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "shapes.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A box on four legs, a ring in the middle of it.
+class RegionNames : public ::testing::Test {
+ protected:
+  static Mesh leg(double x, double y) { return test::moved(test::box(0.5, 0.5, 2), test::shift(x, y, 0)); }
+
+  void add(const char* group, const Vector3d& centre, int first, int count) {
+    std::vector<int> faces;
+    for (int k = 0; k < count; ++k) faces.push_back(first + k);
+    annotation_.regions.push_back(
+        make_region(*PointGroup::parse(group), centre, GroupFrame::Identity(), std::move(faces), "as found"));
+    annotation_.regions.back().id = static_cast<int>(annotation_.regions.size()) - 1;
+  }
+
+  std::vector<std::string> names(const std::vector<std::vector<std::size_t>>& families, const Vector3d& up) {
+    name_by_shape_and_place(prepare(mesh_), families, up, annotation_, &explanation_);
+    std::vector<std::string> result;
+    for (const Region& region : annotation_.regions) result.push_back(region.name);
+    return result;
+  }
+
+  Mesh mesh_ = test::joined({test::moved(test::box(4, 4, 0.4), test::shift(0, 0, 1.2)), leg(-1.5, -1.5), leg(1.5, -1.5),
+                             leg(1.5, 1.5), leg(-1.5, 1.5)});
+  SymmetryAnnotation annotation_ = empty_annotation(mesh_, test::kTolerance);
+  Explanation explanation_;
+};
+
+TEST_F(RegionNames, SayWhatAndWhere) {
+  add("C4v", Vector3d::Zero(), 0, 60);
+  for (int k = 0; k < 4; ++k) add("D4h", Vector3d::Zero(), 12 * (k + 1), 12);
+  add("D4h", {0, 0, 1.2}, 0, 12);
+  const std::vector<std::vector<std::size_t>> families{{0}, {1, 2, 3, 4}, {5}};
+  EXPECT_EQ(names(families, Vector3d::UnitZ()),
+            (std::vector<std::string>{"whole", "bar 1 of 4, front left", "bar 2 of 4, front right",
+                                      "bar 3 of 4, back right", "bar 4 of 4, back left", "upper plate"}));
+  // Seen with z downwards, what was above is below.
+  EXPECT_EQ(names(families, -Vector3d::UnitZ()).back(), "lower plate");
+}
+
+TEST_F(RegionNames, TellEqualOnesApart) {
+  add("Cs", Vector3d::Zero(), 12, 48);
+  add("C2v", Vector3d::Zero(), 12, 48);
+  EXPECT_EQ(names({{0}, {1}}, Vector3d::UnitZ()),
+            (std::vector<std::string>{"group of 4 parts", "group of 4 parts (2)"}));
+}
+
+TEST_F(RegionNames, SayWhatPatternsRepeat) {
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::translation_1d;
+  for (int k = 0; k < 2; ++k) {
+    pattern.instances.push_back({test::shift(3 * k, 0, 0), {}});
+    for (int f = 0; f < 12; ++f) pattern.instances.back().faces.push_back(12 * (k + 1) + f);
+  }
+  annotation_.patterns.push_back(pattern);
+  names({}, Vector3d::UnitZ());
+  EXPECT_EQ(annotation_.patterns[0].name, "row of 2 bars");
+}
+
+TEST_F(RegionNames, AreExplained) {
+  add("C4v", Vector3d::Zero(), 0, 60);
+  names({{0}}, Vector3d::UnitZ());
+  EXPECT_TRUE(std::ranges::any_of(explanation_.notes, [](const Explanation::Note& note) {
+    return note.kept && note.subject == "C4v on whole" && note.reason == "found as as found";
+  }));
+}
+
+TEST(RoundNames, AreByTheirProportions) {
+  const auto name = [](const Mesh& mesh) {
+    SymmetryAnnotation annotation = empty_annotation(mesh, test::kTolerance);
+    const Mesh aside = test::joined({mesh, test::moved(test::box(9, 9, 9), test::shift(20, 0, 0))});
+    annotation.regions.push_back(
+        make_region(*PointGroup::parse("Dinfh"), Vector3d::Zero(), GroupFrame::Identity(), test::all_faces(mesh), ""));
+    name_by_shape_and_place(prepare(aside), {{0}}, Vector3d::UnitZ(), annotation, nullptr);
+    return annotation.regions[0].name;
+  };
+  EXPECT_EQ(name(test::prism(48, 1, 0.2)), "left disc");
+  EXPECT_EQ(name(test::prism(48, 1, 8)), "left rod");
+  EXPECT_EQ(name(test::prism(48, 1, 2)), "left round part");
+}
+
+}  // namespace
+}  // namespace orbifit
