@@ -1,5 +1,6 @@
 #include "orbifit/model/consistent_annotation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "base/random.h"
 #include "basis/subspace_parts.h"
+#include "suite/detection_suite.h"
 #include "support/subspaces.h"
 
 namespace orbifit {
@@ -246,6 +248,27 @@ std::vector<int> all_faces(const Mesh& mesh) {
 
 // A car: the whole has the mirror across x; four wheels (C5v) with axes +x and -x are a pattern whose motions include
 // reflections; hub caps (Cinfv) on their axes.
+// Truths of the detection suite in which patterns and groups overlap: twenty windows of which a mirror of the wall
+// keeps sixteen, and a chain whose links turn by a quarter, where the whole's group takes steps to steps of the other
+// hand.
+class OverlappingPattern : public testing::TestWithParam<const char*> {};
+
+TEST_P(OverlappingPattern, IsKeptBesideTheGroupsAroundIt) {
+  const std::vector<SuiteModel> suite = detection_suite();
+  const auto found = std::ranges::find(suite, GetParam(), &SuiteModel::name);
+  ASSERT_NE(found, suite.end());
+  const TruthModel model = found->build();
+  SymmetryAnnotation annotation = model.truth.expected;
+  annotation.regions.resize(1);  // the largest; those about single links of the chain need images that it lacks
+  const ConsistentAnnotation result = consistent_annotation(model.mesh, annotation, RunContext{});
+  EXPECT_TRUE(result.left_out.empty()) << said(result);
+  EXPECT_EQ(result.annotation.regions.size(), 1U);
+  EXPECT_EQ(result.annotation.patterns.size(), 1U);
+  expect_exact(model.mesh, result.annotation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, OverlappingPattern, testing::Values("facade", "chain"));
+
 struct Car {
   Mesh mesh;
   SymmetryAnnotation annotation;

@@ -117,5 +117,23 @@ TEST(Disagreements, AreOfAPatternAndWhatOneInstanceHolds) {
   EXPECT_TRUE(disagreements(plate(), annotation, RunContext{}).empty());
 }
 
+// Of three copies one lies outside of a region that mirrors each of the others into itself: what holds an instance need
+// not come along with it, as long as it is around all of it.
+TEST(Disagreements, AreNoneOfAPatternThatARegionHoldsInPart) {
+  SymmetryAnnotation annotation;
+  annotation.regions = {patch(0, 3, 0, 8, 8)};
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::congruent;
+  for (const int i : {0, 3, 6}) {
+    pattern.instances.push_back(
+        {Motion{Eigen::Matrix3d::Identity(), Vector3d(2.0 * i / kCells, 0, 0)}, patch(0, i, 3, i + 2, 5).faces});
+  }
+  annotation.patterns = {pattern};
+  EXPECT_TRUE(disagreements(plate(), annotation, RunContext{}).empty());
+  // Not so where the region ends within an instance.
+  annotation.regions = {patch(0, 4, 0, 8, 8)};
+  EXPECT_FALSE(disagreements(plate(), annotation, RunContext{}).empty());
+}
+
 }  // namespace
 }  // namespace orbifit

@@ -126,10 +126,12 @@ class Steps {
   bool translations_;
 };
 
-// A step's image under a normaliser: a product of the steps.
+// A step's image under a normaliser: a product of the steps, after a motion that keeps the first instance. Of a chain
+// whose links turn by a quarter a mirror across it makes steps of the other hand, which differ by a link's half-turn.
 struct StepImage {
   std::size_t normaliser, step;
   std::vector<int> counts;  // of each step
+  Motion own;
 };
 
 // Each step not at all, forwards or back, in all combinations; of up to three steps.
@@ -147,20 +149,29 @@ std::vector<std::vector<int>> single_steps(std::size_t count) {
   return result;
 }
 
-// Nothing where an image is farther than `near` from all products of single steps.
+// Nothing where an image is farther than `near` from all products of single steps. \param own  the group that keeps the
+// first instance
 std::optional<std::vector<StepImage>> images_of_steps(const std::vector<Motion>& steps,
-                                                      const std::vector<Motion>& normalisers, const Extent& extent,
+                                                      const std::vector<Motion>& normalisers,
+                                                      const std::vector<Motion>& own, const Extent& extent,
                                                       double near) {
   const std::vector<std::vector<int>> candidates = single_steps(steps.size());
   std::vector<StepImage> result;
   for (std::size_t n = 0; n < normalisers.size(); ++n) {
     for (std::size_t g = 0; g < steps.size(); ++g) {
       const Motion image = conjugate(normalisers[n], steps[g]);
-      const auto best = std::ranges::min_element(candidates, {}, [&](const std::vector<int>& counts) {
-        return distance(product(steps, counts), image, extent);
-      });
-      if (distance(product(steps, *best), image, extent) > near) return std::nullopt;
-      result.push_back({n, g, *best});
+      StepImage best;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Motion& element : own) {
+        for (const std::vector<int>& counts : candidates) {
+          const double d = distance(product(steps, counts) * element, image, extent);
+          if (d >= nearest) continue;
+          nearest = d;
+          best = {n, g, counts, element};
+        }
+      }
+      if (nearest > near) return std::nullopt;
+      result.push_back(std::move(best));
     }
   }
   return result;
@@ -253,18 +264,21 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
 }
 
 // What takes the instances to one another takes steps to steps, forward or back.
-std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known,
-                                                          const std::vector<Motion>& normalisers) const {
+std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known, const InstanceOrbits& orbits) const {
+  const std::vector<Motion>& normalisers = orbits.normalisers;
   Pattern& pattern = known.pattern;
   const Extent& extent = shapes_.extent(known.shapes[0]);
   const Steps given(pattern.generators, extent);
-  const auto images = images_of_steps(pattern.generators, normalisers, extent, length(policy_.same_group));
+  const double near = length(policy_.same_group);
+  const std::vector<Motion> own = closure(orbits.stabilisers[0], extent, near);
+  const auto images = images_of_steps(pattern.generators, normalisers, own, extent, near);
   if (!images) return "the groups around it do not keep its steps";
   const auto hard = [&](const VectorXd& x) {
     std::vector<double> rows;
     const std::vector<Motion> steps = given.at(x);
     for (const StepImage& each : *images) {
-      add_rows(conjugate(normalisers[each.normaliser], steps[each.step]), product(steps, each.counts), extent, rows);
+      add_rows(conjugate(normalisers[each.normaliser], steps[each.step]), product(steps, each.counts) * each.own,
+               extent, rows);
     }
     return as_vector(rows);
   };
@@ -360,7 +374,7 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
     if (Verdict refusal = follow_from(root, known, orbits)) return refusal;
   }
   const bool copies = known.pattern.kind == Pattern::Kind::congruent || known.pattern.generators.empty();
-  if (auto reason = copies ? fit_copies(known, orbits) : fit_lattice(known, orbits.normalisers)) {
+  if (auto reason = copies ? fit_copies(known, orbits) : fit_lattice(known, orbits)) {
     return Refusal{*reason, orbits.asking};
   }
   if (!closes(known, orbits.steps)) {

@@ -79,10 +79,7 @@ PieceMoments DomainMap::common_piece(int a, int b) const {
 }
 
 bool DomainMap::around(int outer, int inner) const {
-  for (std::size_t set = 0; set < moments_.size(); ++set) {
-    if (holds(static_cast<int>(set), inner) && !holds(static_cast<int>(set), outer)) return false;
-  }
-  return true;
+  return std::ranges::binary_search(around_[static_cast<std::size_t>(inner)], outer);
 }
 
 // As the moments have it.
@@ -182,7 +179,7 @@ int DomainMap::carried_set(int set, int place, int element) const {
   Images& known = images(place, element);
   const auto [entry, added] = known.sets.try_emplace(set, -1);
   if (added) {
-    std::vector<int> members{arrival(place, element)};
+    std::vector<int> members = around_[static_cast<std::size_t>(arrival(place, element))];
     for (const auto& [from, to] : known.pairs) {
       if (holds(set, from)) members.push_back(to);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -130,9 +131,17 @@ void DomainMap::find_meeting(const Mesh& mesh) {
       met.insert(met.end(), set_places(set).begin(), set_places(set).end());
     }
   }
-  for (std::vector<int>& met : meeting_) {
+  around_.resize(places_.size());
+  for (std::size_t inner = 0; inner < places_.size(); ++inner) {
+    std::vector<int>& met = meeting_[inner];
     std::ranges::sort(met);
     met.erase(std::unique(met.begin(), met.end()), met.end());
+    std::ranges::copy_if(met, std::back_inserter(around_[inner]), [&](int outer) {
+      for (std::size_t set = 0; set < moments_.size(); ++set) {
+        if (holds(static_cast<int>(set), static_cast<int>(inner)) && !holds(static_cast<int>(set), outer)) return false;
+      }
+      return true;
+    });
   }
 }
 

@@ -89,9 +89,9 @@ class DomainMap {
   bool comparable(int a, int b) const { return contains(a, b) || contains(b, a); }
 
   /// The places that hold the image, by element number `element` of `place`, of a point that `set` holds: those that
-  /// the motion takes places of the set to, and the arrival. By algebra alone: the surface at the image is not asked,
-  /// since it is off by the tolerance and would answer now so, now so (docs/method.md 3). Not for use by several
-  /// threads.
+  /// the motion takes places of the set to, the arrival, and what holds all of that. By algebra alone: the surface at
+  /// the image is not asked, since it is off by the tolerance and would answer now so, now so (docs/method.md 3). Not
+  /// for use by several threads.
   int carried_set(int set, int place, int element) const;
 
   /// The places to which that motion takes `other`, which has surface in common with `place`; none where the annotation
@@ -104,6 +104,9 @@ class DomainMap {
 
   /// Places that share faces or vertices with a place, itself among them, ascending.
   const std::vector<int>& meeting(int place) const { return meeting_[static_cast<std::size_t>(place)]; }
+
+  /// Whether `outer` holds all faces of `inner`.
+  bool around(int outer, int inner) const;
 
   std::size_t face_count(int place) const { return at(place).faces.size(); }
 
@@ -135,7 +138,6 @@ class DomainMap {
   PieceMoments common_moments(int a, int b) const;
   PieceMoments common_piece(int a, int b) const;
   PieceMoments common_faces(int a, int b) const;
-  bool around(int outer, int inner) const;  // whether outer holds all faces of inner
   Motion told_from_origin(const Motion& motion) const;
   Images find_images(int place, int element) const;
   Images& images(int place, int element) const;
@@ -154,6 +156,7 @@ class DomainMap {
   mutable std::vector<const std::vector<int>*> sets_;
   mutable std::unordered_map<std::uint64_t, int> with_;
   std::vector<std::vector<int>> meeting_;                    // of each place, the places that share faces with it
+  std::vector<std::vector<int>> around_;                     // of each place, the places that hold all faces of it
   std::vector<PieceMoments> moments_;                        // of the faces of each set
   std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();         // of the moments
