@@ -507,6 +507,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
+  if (!options.all) annotation = without_contradictions(prepared, mesh, annotation, options.explanation, context);
   annotation = kept_consistent(mesh, annotation, options.explanation, context);
   const std::vector<std::vector<std::size_t>> families =
       list_by_importance(prepared, annotation, options.all, options.explanation, context);

@@ -4,19 +4,52 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "orbifit/model/consistent_annotation.h"
 
+#include "evidence/importance.h"
+
 namespace orbifit {
+
+namespace {
+
+void note_left_out(const std::vector<LeftOut>& left_out, Explanation* explanation) {
+  if (explanation == nullptr) return;
+  for (const LeftOut& each : left_out) {
+    explanation->notes.push_back({"consistency", each.group + " on " + each.name, false, each.reason});
+  }
+}
+
+// Numbers of regions, and of patterns, are those of their places.
+void number(SymmetryAnnotation& annotation) {
+  for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
+  for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
+}
+
+}  // namespace
+
+SymmetryAnnotation without_contradictions(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
+                                          Explanation* explanation, const RunContext& context) {
+  number(found);
+  for (;;) {
+    SymmetryAnnotation some = without_what_follows(prepared, found, context);
+    const ConsistentAnnotation kept = consistent_annotation(mesh, some, context);
+    note_left_out(kept.left_out, explanation);
+    if (kept.left_out.empty()) return some;
+    const auto left_out = [&](bool pattern, int id) {
+      return std::ranges::any_of(kept.left_out,
+                                 [&](const LeftOut& each) { return each.pattern == pattern && each.id == id; });
+    };
+    std::erase_if(found.regions, [&](const Region& region) { return left_out(false, region.id); });
+    std::erase_if(found.patterns, [&](const Pattern& pattern) { return left_out(true, pattern.id); });
+  }
+}
 
 SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
                                    const RunContext& context) {
   ConsistentAnnotation result = consistent_annotation(mesh, found, context);
-  if (explanation != nullptr) {
-    for (const LeftOut& left_out : result.left_out) {
-      explanation->notes.push_back({"consistency", left_out.group + " on " + left_out.name, false, left_out.reason});
-    }
-  }
+  note_left_out(result.left_out, explanation);
   if (!result.left_out.empty()) {
     const std::size_t count = result.left_out.size();
     context.message("left out " + std::to_string(count) +
@@ -31,8 +64,7 @@ SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& f
     return sum;
   };
   std::ranges::stable_sort(annotation.regions, std::greater<>(), area);
-  for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
-  for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
+  number(annotation);
   set_parents(annotation.regions);
   return std::move(annotation);
 }

@@ -5,11 +5,18 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
+#include "surface/surface_patch.h"
+
 namespace orbifit {
 
 /// What every subspace can keep of what was found, largest regions first, numbered in that order. What is left out is
 /// told in one message, and each with its reason in `explanation` (may be null). See consistent_annotation().
 SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
                                    const RunContext& context);
+
+/// What was found without what follows from the rest (without_what_follows()) and what the rest cannot be kept beside:
+/// what follows from something that goes comes back. Each that goes is told in `explanation` (may be null).
+SymmetryAnnotation without_contradictions(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
+                                          Explanation* explanation, const RunContext& context);
 
 }  // namespace orbifit

@@ -38,12 +38,14 @@ struct Claim {
   }
 };
 
+const RunContext kQuiet;  // which checks keep
+
 class NoisyHills : public testing::TestWithParam<double> {};
 
 TEST_P(NoisyHills, AreSymmetricAsFarAsNoiseLetsThem) {
   const Claim claim(with_noise(test::hills(60, 0), GetParam()));
   EXPECT_NEAR(claim.sigma, GetParam() / diagonal(test::hills(60, 0).vertices), 0.25 * GetParam() + 1e-5);
-  const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, {});
+  const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, kQuiet);
   EXPECT_TRUE(check.holds(claim.region));
   const NoiseCheck::Share share = check.share(claim.region);
   EXPECT_NEAR(share.kept, share.expected, 0.04);
@@ -51,7 +53,7 @@ TEST_P(NoisyHills, AreSymmetricAsFarAsNoiseLetsThem) {
 
 TEST_P(NoisyHills, AreNotWhereTheyDifferByMoreThanTheTolerance) {
   const Claim claim(with_noise(test::hills(60, 0.008), GetParam()));
-  const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, {});
+  const NoiseCheck check(claim.given, claim.clean, claim.sigma, test::kTolerance, kQuiet);
   EXPECT_FALSE(check.holds(claim.region));
 }
 
@@ -61,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Sigma, NoisyHills, testing::Values(0, 0.001, 0.003, 0.0
 
 TEST(NoiseCheck, AsksNothingOfNoNoise) {
   const Claim claim(test::hills(60, 0));
-  const NoiseCheck check(claim.given, claim.clean, 0, test::kTolerance, {});
+  const NoiseCheck check(claim.given, claim.clean, 0, test::kTolerance, kQuiet);
   EXPECT_EQ(check.share(claim.region).expected, 1);
   EXPECT_EQ(check.share(claim.region).kept, 1);
 }

@@ -83,8 +83,11 @@ bool ClaimQuotient::on_one_circle(std::size_t claim, const Vector3d& a, const Ve
   if (!region.group.has_axis()) return std::abs(from.norm() - to.norm()) <= 0.5 * tolerance_;
   const double up_from = region.axis.dot(from);
   const double up_to = region.axis.dot(to);
+  const double along = up_from - up_to;
+  const double most = 0.25 * tolerance_ * tolerance_;
+  if (along * along > most) return false;
   const double apart = (from - up_from * region.axis).norm() - (to - up_to * region.axis).norm();
-  return std::hypot(apart, up_from - up_to) <= 0.5 * tolerance_;
+  return apart * apart + along * along <= most;
 }
 
 // Of continuous groups: whether what the second turns into itself the first does too.
@@ -105,9 +108,13 @@ bool ClaimQuotient::same(const Site& known, const Vector3d& point) const {
          });
 }
 
-int ClaimQuotient::find(const std::vector<Site>& orbit, const Vector3d& point) const {
-  const auto found = std::ranges::find_if(orbit, [&](const Site& known) { return same(known, point); });
-  return found == orbit.end() ? -1 : static_cast<int>(found - orbit.begin());
+int ClaimQuotient::find(const Sample& sample, const Vector3d& point) const {
+  const auto found = std::ranges::find_if(sample.orbit, [&](const Site& known) { return near(known.point, point); });
+  if (found != sample.orbit.end()) return static_cast<int>(found - sample.orbit.begin());
+  const auto circle = std::ranges::find_if(sample.circles, [&](const Circle& each) {
+    return on_one_circle(each.claim, sample.orbit[each.site].point, point);
+  });
+  return circle == sample.circles.end() ? -1 : static_cast<int>(circle->site);
 }
 
 int ClaimQuotient::atom_at(const Vector3d& point) const {
@@ -133,7 +140,7 @@ double ClaimQuotient::saved_share(const Sample& sample, const Site& site, std::s
       return same(image_site, image);
     });
     if (repeated) continue;
-    if (!fills && find(sample.orbit, image) >= 0) ++known;
+    if (!fills && find(sample, image) >= 0) ++known;
     images.push_back(image);
   }
   // The finite group in place of a continuous one need not hold the elements that are known.
@@ -189,7 +196,7 @@ void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim, 
   std::vector<std::size_t> arrived{site};
   for (const Motion& motion : claims_[claim].motions[static_cast<std::size_t>(piece)]) {
     const Vector3d image = motion(point);
-    int at = find(sample.orbit, image);
+    int at = find(sample, image);
     if (at < 0) {
       at = static_cast<int>(sample.orbit.size());
       open.push_back(sample.orbit.size());
@@ -199,6 +206,12 @@ void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim, 
   }
   for (const std::size_t each : arrived) sample.orbit[each].complete[claim] = true;
   if (!continuous(claim)) return;
+  for (const std::size_t each : arrived) {
+    const bool known = std::ranges::any_of(sample.circles, [&](const Circle& circle) {
+      return circle.claim == claim && on_one_circle(claim, sample.orbit[circle.site].point, sample.orbit[each].point);
+    });
+    if (!known) sample.circles.push_back({claim, each});
+  }
   // The other points on the circles that are now filled.
   for (Site& other : sample.orbit) {
     if (other.complete[claim] || atoms_.piece(claim, other.atom) < 0) continue;

@@ -41,14 +41,19 @@ class ClaimQuotient {
     int atom;
     std::vector<bool> complete;  // by claim: whether the orbit under it is in
   };
+  // A circle or sphere that an accepted continuous group fills.
+  struct Circle {
+    std::size_t claim;
+    std::size_t site;  // one on it
+  };
   struct Sample {
     double weight;  // area
     std::vector<Site> orbit;
+    std::vector<Circle> circles;
   };
 
-  // The site at the point, or on a circle or sphere with it that an accepted continuous group is known to fill; -1:
-  // none.
-  int find(const std::vector<Site>& orbit, const Eigen::Vector3d& point) const;
+  // The site at the point, or on a filled circle with it; -1: none.
+  int find(const Sample& sample, const Eigen::Vector3d& point) const;
   bool same(const Site& known, const Eigen::Vector3d& point) const;
   bool turns_alike(std::size_t known, std::size_t claim) const;
   bool near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;

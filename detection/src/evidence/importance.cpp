@@ -1,7 +1,9 @@
 #include "evidence/importance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,15 +16,47 @@ namespace orbifit {
 
 namespace {
 
+using Families = std::vector<std::vector<std::size_t>>;
+
+struct Chosen {
+  Families kept, left_out;
+};
+
+// What a person would name: taken in the order of how often a family's motions halve its area, times that area, each
+// that says more than those before it. Parts come before what follows from them and how they stand.
+Chosen chosen_families(ClaimQuotient quotient, const std::vector<SymmetryClaim>& claims, Families families,
+                       const RunContext& context) {
+  struct Rated {
+    std::vector<std::size_t> family;
+    double area, halved;
+  };
+  std::vector<Rated> rated;
+  for (std::vector<std::size_t>& family : families) {
+    const double area = quotient.named_area(family).all;
+    const auto places = static_cast<double>(claims[family.front()].motions.front().size() + 1);
+    rated.push_back({std::move(family), area, area * std::log2(places)});
+  }
+  std::ranges::stable_sort(rated, std::greater<>(), &Rated::halved);
+  const EvidencePolicy policy;
+  const double surface = quotient.area();  // of which nothing is known yet
+  Chosen result;
+  for (Rated& each : rated) {
+    context.check();
+    const bool says_more = quotient.saving(each.family) > policy.sliver * quotient.named_area(each.family).left ||
+                           (each.area >= policy.main_part * surface && !quotient.lies_within_accepted(each.family));
+    if (says_more) quotient.accept(each.family);
+    (says_more ? result.kept : result.left_out).push_back(std::move(each.family));
+  }
+  return result;
+}
+
 struct Listed {
   std::vector<std::size_t> family;
   double importance;
-  bool listed;
 };
 
 // Families in greedy order. Savings only fall as more is known, so one that saves most, asked anew, saves most of all.
-std::vector<Listed> greedy_order(ClaimQuotient& quotient, std::vector<std::vector<std::size_t>> families, bool all,
-                                 const RunContext& context) {
+std::vector<Listed> greedy_order(ClaimQuotient quotient, Families families, const RunContext& context) {
   struct Waiting {
     std::vector<std::size_t> family;
     double saving;
@@ -34,9 +68,7 @@ std::vector<Listed> greedy_order(ClaimQuotient& quotient, std::vector<std::vecto
     for (std::size_t i = begin; i < end; ++i) waiting[i].saving = quotient.saving(waiting[i].family);
   });
   std::vector<Listed> order;
-  const EvidencePolicy policy;
-  const double surface = quotient.area();  // of which nothing is known yet
-  double left = surface;
+  double left = quotient.area();
   while (!waiting.empty()) {
     context.check();
     const auto best = std::ranges::max_element(waiting, {}, &Waiting::saving);
@@ -45,13 +77,8 @@ std::vector<Listed> greedy_order(ClaimQuotient& quotient, std::vector<std::vecto
       best->current = true;
       continue;
     }
-    const double importance = left > 0 ? std::clamp(best->saving / left, 0.0, 1.0) : 0;
-    const ClaimQuotient::NamedArea named = quotient.named_area(best->family);
-    const bool says_more = best->saving > policy.sliver * named.left ||
-                           (named.all >= policy.main_part * surface && !quotient.lies_within_accepted(best->family));
-    order.push_back({std::move(best->family), importance, says_more || all});
+    order.push_back({std::move(best->family), left > 0 ? std::clamp(best->saving / left, 0.0, 1.0) : 0});
     waiting.erase(best);
-    if (!says_more) continue;
     quotient.accept(order.back().family);
     left = quotient.area();
     for (Waiting& rest : waiting) rest.current = false;
@@ -68,6 +95,30 @@ void note_left_out(Explanation* explanation, const SymmetryClaim& claim) {
 
 }  // namespace
 
+SymmetryAnnotation without_what_follows(const PreparedMesh& prepared, const SymmetryAnnotation& annotation,
+                                        const RunContext& context) {
+  const SymmetryAnnotation local = transformed(annotation, inverse(prepared.input_of_normalised));
+  const std::vector<SymmetryClaim> claims = claims_of(local);
+  const ClaimAtoms atoms(prepared, claims);
+  const ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
+  const Chosen chosen =
+      chosen_families(quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
+  std::vector<bool> kept(claims.size(), false);
+  for (const std::vector<std::size_t>& family : chosen.kept) {
+    for (const std::size_t claim : family) kept[claim] = true;
+  }
+  SymmetryAnnotation result = annotation;
+  result.regions.clear();
+  result.patterns.clear();
+  for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
+    if (kept[i]) result.regions.push_back(annotation.regions[i]);
+  }
+  for (std::size_t i = 0; i < annotation.patterns.size(); ++i) {
+    if (kept[annotation.regions.size() + i]) result.patterns.push_back(annotation.patterns[i]);
+  }
+  return result;
+}
+
 std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& prepared, SymmetryAnnotation& annotation,
                                                          bool all, Explanation* explanation,
                                                          const RunContext& context) {
@@ -75,17 +126,24 @@ std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& pre
   const SymmetryAnnotation local = transformed(annotation, inverse(prepared.input_of_normalised));
   const std::vector<SymmetryClaim> claims = claims_of(local);
   const ClaimAtoms atoms(prepared, claims);
-  ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
+  const ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
+  Chosen chosen =
+      chosen_families(quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
+  std::vector<Listed> order = greedy_order(quotient, std::move(chosen.kept), context);
+  for (std::vector<std::size_t>& family : chosen.left_out) {
+    if (all) {
+      order.push_back({std::move(family), 0});
+    } else {
+      for (const std::size_t claim : family) note_left_out(explanation, claims[claim]);
+    }
+  }
   std::vector<Region> regions;
   std::vector<Pattern> patterns;
   std::vector<std::vector<std::size_t>> listed;
-  for (const Listed& entry :
-       greedy_order(quotient, families_of(prepared, claims, atoms, annotation.tolerance), all, context)) {
+  for (const Listed& entry : order) {
     std::vector<std::size_t> family;
     for (const std::size_t claim : entry.family) {
-      if (!entry.listed) {
-        note_left_out(explanation, claims[claim]);
-      } else if (claim < annotation.regions.size()) {
+      if (claim < annotation.regions.size()) {
         family.push_back(regions.size());
         regions.push_back(std::move(annotation.regions[claim]));
         regions.back().importance = entry.importance;

@@ -11,10 +11,17 @@
 
 namespace orbifit {
 
-/// Orders regions and patterns by what they save, given those before them, of the quotient's area (the surface of which
-/// all else is images): the next is always the one that saves most. `importance` is that saving as a share of the area
-/// that was left. Images of one another (families_of()) are listed one after the other, with the saving of all. What
-/// saves next to nothing that those before have not is left out, unless all is asked for. Numbers and parents are set.
+/// A copy of the annotation without what follows from the rest. Families of images (families_of()) are taken in the
+/// order of how often their motions halve their area, times that area; one follows if it saves next to nothing of the
+/// quotient's area (the surface of which all else is images) that those before it have not. What is a main part is
+/// kept.
+SymmetryAnnotation without_what_follows(const PreparedMesh& prepared, const SymmetryAnnotation& annotation,
+                                        const RunContext& context);
+
+/// Orders regions and patterns by what they save, given those before them, of the quotient's area: the next is always
+/// the one that saves most. `importance` is that saving as a share of the area that was left. Images of one another are
+/// listed one after the other, with the saving of all. What follows from the rest (without_what_follows()) is left out,
+/// or last with importance 0 where all is asked for. Numbers and parents are set.
 /// \return the families of regions listed, by their places in the list
 std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& prepared, SymmetryAnnotation& annotation,
                                                          bool all, Explanation* explanation, const RunContext& context);

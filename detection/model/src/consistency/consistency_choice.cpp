@@ -24,14 +24,14 @@ class Choice {
       : mesh_(mesh),
         annotation_(annotation),
         context_(context),
-        shapes_(ConsistencySearch::shapes_of(mesh, annotation)),
-        trials_(ConsistencyPolicy{}.work /
-                (1.0 + static_cast<double>(annotation.regions.size()) * static_cast<double>(mesh.faces.rows()))) {}
+        shapes_(ConsistencySearch::shapes_of(mesh, annotation)) {}
 
   ConsistentAnnotation run() {
-    if (ConsistencySearch(mesh_, annotation_, shapes_, {}, context_).agrees() &&
-        disagreements(mesh_, annotation_, context_).empty()) {
-      return {annotation_, {}, 0, 0};
+    {
+      ConsistencySearch search(mesh_, annotation_, shapes_, {}, context_);
+      if (search.agrees() && disagreements(mesh_, annotation_, context_).empty()) return {annotation_, {}, 0, 0};
+      for (std::size_t i = 0; i < annotation_.regions.size(); ++i) savings_[{false, i}] = search.saving({false, i});
+      for (std::size_t i = 0; i < annotation_.patterns.size(); ++i) savings_[{true, i}] = search.saving({true, i});
     }
     best_ = search(excluded_);
     while (improve()) {
@@ -42,15 +42,13 @@ class Choice {
   }
 
  private:
-  ConsistencyOutcome search(const Excluded& excluded, std::optional<Claim> wanted = {}) {
-    ++searches_;
-    return ConsistencySearch(mesh_, annotation_, shapes_, excluded, context_).run(wanted);
+  ConsistencyOutcome search(const Excluded& excluded) {
+    return ConsistencySearch(mesh_, annotation_, shapes_, excluded, context_).run();
   }
 
-  double saving(const std::vector<Claim>& family) {
-    const ConsistencySearch search(mesh_, annotation_, shapes_, {}, context_);
+  double saving(const std::vector<Claim>& family) const {
     double sum = 0;
-    for (const Claim& claim : family) sum += search.saving(claim);
+    for (const Claim& claim : family) sum += savings_.at(claim);
     return sum;
   }
 
@@ -64,9 +62,19 @@ class Choice {
 
   // \return whether something refused could be kept instead of what was in its way, to the good of the whole
   bool improve() {
-    std::vector<Refused> refused = best_.refused;
-    std::ranges::stable_sort(refused, std::greater<>(), &Refused::saving);
-    return std::ranges::any_of(refused, [&](const Refused& each) { return kept_instead(each); });
+    struct Change {
+      double gain;  // at least one of what bars it would have to go
+      const Refused* refused;
+    };
+    std::vector<Change> changes;
+    const std::vector<Refused> refused = best_.refused;
+    for (const Refused& each : refused) {
+      if (each.against.empty()) continue;
+      const auto cost = [&](const std::vector<Claim>& family) { return saving(family); };
+      changes.push_back({each.saving - cost(*std::ranges::min_element(each.against, {}, cost)), &each});
+    }
+    std::ranges::stable_sort(changes, std::greater<>(), &Change::gain);
+    return std::ranges::any_of(changes, [&](const Change& change) { return kept_instead(*change.refused); });
   }
 
   // Leaves out what bars the first of the refused claims, of several that which saves least, until nothing does or it
@@ -75,18 +83,19 @@ class Choice {
     const Claim wanted = refused.claims.front();
     Excluded trial = excluded_;
     double cost = 0;
-    while (!refused.against.empty() && searches_ < trials_) {
+    while (!refused.against.empty() && shapes_.work() < ConsistencyPolicy{}.work) {
       const auto least = std::ranges::min_element(refused.against, {}, [&](const auto& f) { return saving(f); });
       cost += saving(*least);
       if (cost >= best_.refused_saving()) return false;
       const std::string reason = "it contradicts " + name_of(wanted) + ", which saves more";
       for (const Claim& claim : *least) trial.emplace(claim, reason);
       if (!tried_.emplace(trial).second) return false;
-      ConsistencyOutcome outcome = search(trial, wanted);
+      ConsistencyOutcome outcome = search(trial);
+      if (take(trial, outcome)) return true;
       const auto again = std::ranges::find_if(outcome.refused, [&](const Refused& each) {
         return std::ranges::find(each.claims, wanted) != each.claims.end();
       });
-      if (again == outcome.refused.end()) return take(std::move(trial), std::move(outcome));
+      if (again == outcome.refused.end()) return false;
       const double saved = refused.saving;
       refused = *again;
       refused.saving = std::max(refused.saving, saved);
@@ -95,10 +104,10 @@ class Choice {
   }
 
   // \return whether what the outcome keeps saves more than the best so far
-  bool take(Excluded excluded, ConsistencyOutcome outcome) {
+  bool take(const Excluded& excluded, const ConsistencyOutcome& outcome) {
     if (!(outcome.saving > (1 + 1e-9) * best_.saving)) return false;
-    best_ = std::move(outcome);
-    excluded_ = std::move(excluded);
+    best_ = outcome;
+    excluded_ = excluded;
     return true;
   }
 
@@ -106,7 +115,7 @@ class Choice {
   void readmit() {
     const Excluded all = excluded_;
     for (const auto& [claim, reason] : all) {
-      if (searches_ >= trials_) return;
+      if (shapes_.work() >= ConsistencyPolicy{}.work) return;
       Excluded trial = excluded_;
       trial.erase(claim);
       if (trial.size() != excluded_.size() && tried_.emplace(trial).second) take(trial, search(trial));
@@ -118,10 +127,9 @@ class Choice {
   const RunContext& context_;
   RegionShapes shapes_;
   Excluded excluded_;
+  std::map<Claim, double> savings_;  // of all claims, whole
   ConsistencyOutcome best_;
   std::set<Excluded> tried_;
-  double trials_;
-  double searches_ = 0;
 };
 
 }  // namespace

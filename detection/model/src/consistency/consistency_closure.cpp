@@ -57,12 +57,12 @@ class Closure {
     };
     if (!claim.pattern) {
       const Region& region = kept.regions[claim.number];
-      return saving_of(area(region.faces), region.group, region.residual);
+      return saving_of(area(region.faces), region.group);
     }
     const Pattern& pattern = kept.patterns[claim.number];
     std::vector<double> areas;
     for (const PatternInstance& instance : pattern.instances) areas.push_back(area(instance.faces));
-    return saving_of(areas, pattern.residual);
+    return saving_of(areas);
   }
 
   void leave_out(const Claim& claim, const Claim& other) {

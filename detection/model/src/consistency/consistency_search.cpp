@@ -11,8 +11,25 @@ namespace orbifit {
 
 namespace {
 
-double bits(const Residual& residual) {
-  return std::max(1.0, -std::log2(residual.rms + ConsistencyPolicy{}.told));
+// Of a continuous group the places that count as different, in place of its elements.
+double order_of(const PointGroup& group) {
+  const double circle = ConsistencyPolicy{}.circle;
+  switch (group.family) {
+    case PointGroup::Family::Cinf:
+      return circle;
+    case PointGroup::Family::Cinfv:
+    case PointGroup::Family::Cinfh:
+    case PointGroup::Family::Dinf:
+      return 2 * circle;
+    case PointGroup::Family::Dinfh:
+      return 4 * circle;
+    case PointGroup::Family::K:
+      return circle * circle;
+    case PointGroup::Family::Kh:
+      return 2 * circle * circle;
+    default:
+      return group.order();
+  }
 }
 
 }  // namespace
@@ -27,14 +44,12 @@ bool stands_at(const Region& region, const GroupPlace& place, const Extent& exte
   });
 }
 
-double saving_of(double area, const PointGroup& group, const Residual& residual) {
-  const double saved = area * bits(residual);
-  return group.continuous() ? saved : saved * (1 - 1.0 / group.order());
+double saving_of(double area, const PointGroup& group) {
+  return area * std::log2(order_of(group));
 }
 
-double saving_of(const std::vector<double>& areas, const Residual& residual) {
-  if (areas.empty()) return 0;
-  return (std::accumulate(areas.begin(), areas.end(), 0.0) - *std::ranges::max_element(areas)) * bits(residual);
+double saving_of(const std::vector<double>& areas) {
+  return std::accumulate(areas.begin(), areas.end(), 0.0) * std::log2(std::max<double>(1, areas.size()));
 }
 
 RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation) {
@@ -114,15 +129,23 @@ void ConsistencySearch::refuse(std::vector<Claim> claims, const Refusal& refusal
       leave_out_region(claim.number, refusal.reason);
     }
   }
-  for (const Claim& claim : refusal.by) {
-    const bool own = std::ranges::find(refused.claims, claim) != refused.claims.end();
-    if (own || (!claim.pattern && claim.number >= regions_.size()) || is_everything(claim)) continue;
-    std::vector<Claim> family = family_of(claim);
-    if (std::ranges::find(refused.against, family) == refused.against.end()) {
-      refused.against.push_back(std::move(family));
-    }
-  }
+  refused.against = against(refusal.by);
+  std::erase_if(refused.against, [&](const std::vector<Claim>& family) {
+    return std::ranges::any_of(
+        family, [&](const Claim& claim) { return std::ranges::find(refused.claims, claim) != refused.claims.end(); });
+  });
   refused_.push_back(std::move(refused));
+}
+
+// The families of claims that are in the way of something, without those of the whole, which are never given up.
+std::vector<std::vector<Claim>> ConsistencySearch::against(const std::vector<Claim>& claims) const {
+  std::vector<std::vector<Claim>> result;
+  for (const Claim& claim : claims) {
+    if ((!claim.pattern && claim.number >= regions_.size()) || is_everything(claim)) continue;
+    std::vector<Claim> family = family_of(claim);
+    if (std::ranges::find(result, family) == result.end()) result.push_back(std::move(family));
+  }
+  return result;
 }
 
 // Of the annotation's own; an image that was added stands or falls with what it is the image of.
@@ -141,14 +164,14 @@ bool ConsistencySearch::is_everything(const Claim& claim) const {
 
 double ConsistencySearch::saving(std::size_t region) const {
   const Region& known = regions_[region].region;
-  return saving_of(shapes_.area(regions_[region].shape), known.group, known.residual);
+  return saving_of(shapes_.area(regions_[region].shape), known.group);
 }
 
 double ConsistencySearch::saving(const Claim& claim) const {
   if (!claim.pattern) return saving(claim.number);
   std::vector<double> areas;
   for (const int shape : patterns_[claim.number].shapes) areas.push_back(shapes_.area(shape));
-  return saving_of(areas, patterns_[claim.number].pattern.residual);
+  return saving_of(areas);
 }
 
 double ConsistencySearch::total_saving() const {
@@ -183,7 +206,7 @@ void ConsistencySearch::add_moves_of_pattern(std::size_t pattern) {
   }
 }
 
-ConsistencyOutcome ConsistencySearch::run(std::optional<Claim> wanted) {
+ConsistencyOutcome ConsistencySearch::run() {
   struct Item {
     bool pattern;
     std::size_t number;
@@ -212,9 +235,6 @@ ConsistencyOutcome ConsistencySearch::run(std::optional<Claim> wanted) {
     } else if (regions_[item.number].state == State::waiting) {
       place_family(item.number);
     }
-    if (wanted && !refused_.empty() &&
-        std::ranges::find(refused_.back().claims, *wanted) != refused_.back().claims.end())
-      return {{}, 0, std::move(refused_)};
   }
   while (drop_contradictions()) {
     moves_.clear();

@@ -37,16 +37,17 @@ struct ConsistencyPolicy {
   double told = 1e-6;
   /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.
   double exact = 1e-13;
-  /// Searches at most for what to keep of claims that contradict one another, times regions, times faces: what takes
-  /// about two seconds.
-  double work = 4e6;
+  /// Places on a circle that count as different, of continuous groups: about as many as facets show.
+  int circle = 36;
+  /// Faces and samples looked at (RegionShapes::work()) until no further change of what is kept is tried, of claims
+  /// that contradict one another: what takes about two seconds.
+  std::size_t work = 20000000;
 };
 
-/// What need not be told once a region, or a pattern, is kept: the area that follows from the rest, of a region all but
-/// the share that its group repeats, of a pattern all instances but the largest, times the bits of each position that
-/// follow, which are the fewer the larger the residual is.
-double saving_of(double area, const PointGroup& group, const Residual& residual);
-double saving_of(const std::vector<double>& areas, const Residual& residual);
+/// What a region, or a pattern, saves: how often its motions halve the area, times that area. The more is saved, the
+/// less need be told of the surface.
+double saving_of(double area, const PointGroup& group);
+double saving_of(const std::vector<double>& areas);
 
 /// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
 struct Refused {
@@ -88,8 +89,7 @@ class ConsistencySearch {
   /// Whether all regions and patterns agree as they are, to rounding: nothing is to be done then.
   bool agrees();
 
-  /// \param wanted  the search ends early, with an outcome that holds what was refused until then, when this is refused
-  ConsistencyOutcome run(std::optional<Claim> wanted = {});
+  ConsistencyOutcome run();
 
   /// See saving_of().
   double saving(const Claim& claim) const;
@@ -157,6 +157,7 @@ class ConsistencySearch {
   std::string label(std::size_t region) const;
 
   void place_family(std::size_t first);
+  void note_given_up(const Family& family, const std::vector<Claim>& takers);
   bool trim(std::size_t region, int other);
   bool trim_alike(const Family& family);
   Verdict gather(std::size_t first, Family& family);
@@ -171,6 +172,7 @@ class ConsistencySearch {
   void leave_out_region(std::size_t region, const std::string& reason);
   void refuse(std::vector<Claim> claims, const Refusal& refusal);
   std::vector<Claim> family_of(const Claim& claim) const;
+  std::vector<std::vector<Claim>> against(const std::vector<Claim>& claims) const;
   bool is_everything(const Claim& claim) const;
   double saving(std::size_t region) const;
   Claim mover_of(const Move& move) const;

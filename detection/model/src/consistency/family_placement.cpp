@@ -142,22 +142,54 @@ bool ConsistencySearch::trim_alike(const Family& family) {
   return true;
 }
 
+// What a family gave up counts as refused: without what takes it, all of it could be kept.
+void ConsistencySearch::note_given_up(const Family& family, const std::vector<Claim>& takers) {
+  Refused refused{{}, "it gives up what others take of it", 0, against(takers)};
+  for (const Member& member : family.members) {
+    if (regions_[member.region].source >= 0) continue;
+    refused.claims.push_back({false, member.region});
+    const KnownRegion& known = regions_[member.region];
+    const double before =
+        shapes_.area(static_cast<int>(member.region));  // shapes of regions come first, in their order
+    refused.saving += saving_of(before, known.region.group) - saving(member.region);
+  }
+  if (refused.saving > 0) refused_.push_back(std::move(refused));
+}
+
 void ConsistencySearch::place_family(std::size_t first) {
   if (!regions_[first].place) {
     refuse({{false, first}}, {"its elements form no group of that symbol", {}});
     return;
   }
   std::map<std::size_t, std::pair<int, std::vector<int>>> given;  // of regions that were trimmed: shape and faces
+  std::vector<Claim> takers;                                      // of what those gave up
   Family family;
   Verdict refusal;
   std::size_t regions_before = 0;
+  bool alike = true;  // whether all members have given up the same
   for (bool again = true; again;) {
     regions_before = regions_.size();
     const int shapes_before = shapes_.count();
     family = {};
     refusal = gather(first, family);
-    if (!refusal && !given.empty() && !trim_alike(family))
+    again = !refusal && !alike;
+    if (again) {  // what is left is looked at once more
+      std::vector<std::size_t> members;
+      for (const Member& member : family.members) {
+        if (member.region >= regions_before) continue;
+        members.push_back(member.region);
+        given.try_emplace(member.region, regions_[member.region].shape, regions_[member.region].region.faces);
+      }
+      alike = trim_alike(family);
+      regions_.resize(regions_before);
+      shapes_.keep(shapes_before);
+      if (alike) {
+        for (const std::size_t region : members) regions_[region].shape = shapes_.add(regions_[region].region.faces);
+        continue;
+      }
       refusal = Refusal{"its images overlap others differently", {}};
+      break;
+    }
     if (!refusal) refusal = accept_family(family);
     if (!refusal) break;
     regions_.resize(regions_before);
@@ -167,6 +199,8 @@ void ConsistencySearch::place_family(std::size_t first) {
       const KnownRegion& across = regions_[*refusal->across];
       given.try_emplace(*refusal->across, across.shape, across.region.faces);
       again = trim(*refusal->across, refusal->shape);
+      alike = alike && !again;
+      takers.insert(takers.end(), refusal->by.begin(), refusal->by.end());
     }
   }
   if (refusal) {
@@ -181,6 +215,7 @@ void ConsistencySearch::place_family(std::size_t first) {
     refuse(std::move(claims), *refusal);
     return;
   }
+  if (!given.empty()) note_given_up(family, takers);
   for (const std::size_t other : family.replaced) {
     if (regions_[other].state == State::waiting) {
       leave_out_region(other, "an image of " + label(first) + " takes its place");

@@ -94,6 +94,7 @@ RegionShapes::RegionShapes(const Mesh& mesh, double near)
       centroids_(face_centroids(mesh)) {}
 
 int RegionShapes::add(const std::vector<int>& faces) {
+  work_ += faces.size();
   Shape shape;
   shape.faces = faces;
   shape.holds.assign(static_cast<std::size_t>(mesh_.faces.rows()), 0);
@@ -170,6 +171,7 @@ double RegionShapes::common_area(int a, int b) const {
 
 PieceMoments RegionShapes::common_moments(int a, int b) const {
   if (at(b).faces.size() == static_cast<std::size_t>(mesh_.faces.rows())) return at(a).moments;
+  work_ += at(a).faces.size();
   std::vector<int> common;
   for (const int face : at(a).faces) {
     if (at(b).holds[static_cast<std::size_t>(face)] != 0) common.push_back(face);
@@ -207,7 +209,25 @@ std::vector<int> RegionShapes::faces_at(int a, int b) const {
 }
 
 bool RegionShapes::within(int inner, int outer) const {
-  return common_area(inner, outer) >= (1 - kSliver) * area(inner);
+  const double common = common_area(inner, outer);
+  return common >= (1 - kSliver) * area(inner) && (common >= area(inner) || ends_at(inner, outer));
+}
+
+// Whether all of the one outside of the other lies at its border.
+bool RegionShapes::ends_at(int inner, int outer) const {
+  const std::pair<int, int> key{inner, outer};
+  if (const auto known = ends_at_.find(key); known != ends_at_.end()) return known->second;
+  const Shape& border = at(outer);
+  const bool result = std::ranges::all_of(at(inner).faces, [&](int face) {
+    if (border.holds[static_cast<std::size_t>(face)] != 0) return true;
+    const auto shared = [&](int vertex) {
+      return std::ranges::binary_search(border.points, point_of_vertex_[static_cast<std::size_t>(vertex)]);
+    };
+    return std::ranges::any_of(mesh_.faces.row(face), shared) ||
+           index(outer).within(centroids_.row(face).transpose(), near_);
+  });
+  ends_at_[key] = result;
+  return result;
 }
 
 RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& motion, int to, int arrival) const {
@@ -217,6 +237,7 @@ RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& moti
     const auto taken = std::ranges::count_if(source.sample_faces,
                                              [&](int face) { return holds[static_cast<std::size_t>(face)] != 0; });
     if (taken == 0) return 0.0;
+    work_ += static_cast<std::size_t>(taken);
     std::ptrdiff_t missed = 0;
     for (std::size_t k = 0; k < source.sample_faces.size() && 2 * missed <= taken; ++k) {
       if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
@@ -239,6 +260,7 @@ RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& moti
 std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
   const Motion back = inverse(motion);
   std::vector<int> result;
+  work_ += at(arrival).faces.size();
   for (const int face : at(arrival).faces) {
     const Vector3d origin = back(centroids_.row(face).transpose());
     if (at(from).box.exteriorDistance(origin) > near_) continue;
@@ -291,6 +313,7 @@ std::vector<int> RegionShapes::without_orbit(int shape, const std::vector<int>& 
 double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double near) const {
   const Shape& known = at(shape);
   if (known.sample_faces.empty()) return 0;
+  work_ += known.sample_faces.size() * motions.size();
   int all = 0;
   for (Eigen::Index k = 0; k < known.samples.rows(); ++k) {
     const Vector3d sample = known.samples.row(k).transpose();
@@ -302,6 +325,7 @@ double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double 
 
 Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) const {
   Residual result;
+  work_ += at(shape).sample_faces.size() * motions.size();
   double count = 0;
   for (const Motion& motion : motions) {
     for (Eigen::Index k = 0; k < at(shape).samples.rows(); ++k) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -27,10 +30,17 @@ class RegionShapes {
   /// \return the number of the new shape
   int add(const std::vector<int>& faces);
   /// Takes away the shapes from number `count` on.
-  void keep(int count) { shapes_.resize(static_cast<std::size_t>(count)); }
+  void keep(int count) {
+    shapes_.resize(static_cast<std::size_t>(count));
+    std::erase_if(ends_at_,
+                  [&](const auto& known) { return std::max(known.first.first, known.first.second) >= count; });
+  }
   int count() const { return static_cast<int>(shapes_.size()); }
 
   static constexpr double kSliver = 0.02;
+
+  /// Faces and samples looked at so far: what time is measured by where the result must not depend on the machine.
+  std::size_t work() const { return work_; }
 
   const std::vector<int>& faces(int shape) const { return at(shape).faces; }
   double area(int shape) const { return at(shape).area; }
@@ -46,7 +56,7 @@ class RegionShapes {
   bool touch(int a, int b) const;
   /// The faces of `a` that `b` holds or has a vertex of.
   std::vector<int> faces_at(int a, int b) const;
-  /// Whether `outer` holds all of `inner` but a sliver, or everything.
+  /// Whether `outer` holds all of `inner`, but perhaps a sliver that touches it or lies near it: a small part is none.
   bool within(int inner, int outer) const;
   bool same(int a, int b) const { return within(a, b) && within(b, a); }
 
@@ -89,6 +99,7 @@ class RegionShapes {
   const Shape& at(int shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
   const SurfaceIndex& index(int shape) const;
   PieceMoments common_moments(int a, int b) const;
+  bool ends_at(int inner, int outer) const;
   void sample(Shape& shape) const;
 
   const Mesh& mesh_;
@@ -99,6 +110,8 @@ class RegionShapes {
   Eigen::VectorXd areas_;
   Points centroids_;
   std::vector<Shape> shapes_;
+  mutable std::map<std::pair<int, int>, bool> ends_at_;
+  mutable std::size_t work_ = 0;
 };
 
 }  // namespace orbifit

@@ -47,9 +47,9 @@ struct ConsistentAnnotation {
 /// groups around them, and take regions within one instance to those of the others.
 ///
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
-/// barred it where that saves more. A region of order |G| saves 1 - 1/|G| of its area, since the rest follows from one
-/// part, and a pattern all instances but one; each position saves the more bits the smaller the residual is. Regions of
-/// the whole are never given up.
+/// barred it where that saves more, and so is what was given up. A region of order |G| saves its area log2 |G| times,
+/// as often as its group halves it, and a pattern of n instances theirs log2 n times. Regions of the whole are never
+/// given up. What a region holds of another but for a sliver at the border counts as all of it.
 ///
 /// An annotation that is consistent comes back as it is.
 /// \pre the annotation fits the mesh (read_annotation checks it)
