@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,21 +22,50 @@ struct Chosen {
   Families kept, left_out;
 };
 
-// What a person would name: taken in the order of how often a family's motions halve its area, times that area, each
-// that says more than those before it. Parts come before what follows from them and how they stand.
-Chosen chosen_families(ClaimQuotient quotient, const std::vector<SymmetryClaim>& claims, Families families,
-                       const RunContext& context) {
+// Whether the claim ends where parts do, and not within one.
+class PartEnds {
+ public:
+  explicit PartEnds(const PreparedMesh& prepared) : parts_(prepared.components.faces) {
+    part_of_face_.resize(static_cast<std::size_t>(prepared.mesh.faces.rows()), -1);
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      for (const int face : parts_[part]) part_of_face_[static_cast<std::size_t>(face)] = static_cast<int>(part);
+    }
+  }
+
+  bool hold(const SymmetryClaim& claim) const {
+    return std::ranges::all_of(claim.pieces, [&](const std::vector<int>* faces) {
+      std::map<int, std::size_t> counts;
+      for (const int face : *faces) ++counts[part_of_face_[static_cast<std::size_t>(face)]];
+      return std::ranges::all_of(counts, [&](const auto& each) {
+        return each.first < 0 || each.second == parts_[static_cast<std::size_t>(each.first)].size();
+      });
+    });
+  }
+
+ private:
+  const std::vector<std::vector<int>>& parts_;
+  std::vector<int> part_of_face_;  // -1: of no area
+};
+
+// What a person would name: claims on whole parts first, then those that end within one; each in the order of how often
+// a family's motions halve its area, times that area; of them those that say more than what comes before. So parts and
+// rows come before what follows from them.
+Chosen chosen_families(const PreparedMesh& prepared, ClaimQuotient quotient, const std::vector<SymmetryClaim>& claims,
+                       Families families, const RunContext& context) {
   struct Rated {
     std::vector<std::size_t> family;
+    bool within_a_part;
     double area, halved;
   };
+  const PartEnds parts(prepared);
   std::vector<Rated> rated;
   for (std::vector<std::size_t>& family : families) {
     const double area = quotient.named_area(family).all;
     const auto places = static_cast<double>(claims[family.front()].motions.front().size() + 1);
-    rated.push_back({std::move(family), area, area * std::log2(places)});
+    const bool whole = std::ranges::all_of(family, [&](std::size_t claim) { return parts.hold(claims[claim]); });
+    rated.push_back({std::move(family), !whole, area, area * std::log2(places)});
   }
-  std::ranges::stable_sort(rated, std::greater<>(), &Rated::halved);
+  std::ranges::stable_sort(rated, {}, [](const Rated& each) { return std::pair(each.within_a_part, -each.halved); });
   const EvidencePolicy policy;
   const double surface = quotient.area();  // of which nothing is known yet
   Chosen result;
@@ -102,7 +131,7 @@ SymmetryAnnotation without_what_follows(const PreparedMesh& prepared, const Symm
   const ClaimAtoms atoms(prepared, claims);
   const ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
   const Chosen chosen =
-      chosen_families(quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
+      chosen_families(prepared, quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
   std::vector<bool> kept(claims.size(), false);
   for (const std::vector<std::size_t>& family : chosen.kept) {
     for (const std::size_t claim : family) kept[claim] = true;
@@ -128,7 +157,7 @@ std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& pre
   const ClaimAtoms atoms(prepared, claims);
   const ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
   Chosen chosen =
-      chosen_families(quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
+      chosen_families(prepared, quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
   std::vector<Listed> order = greedy_order(quotient, std::move(chosen.kept), context);
   for (std::vector<std::size_t>& family : chosen.left_out) {
     if (all) {

@@ -36,6 +36,7 @@ SparseRows basis_values(const Grid& grid, const Points& points) {
   const int width = grid.basis == GridBasis::linear ? 2 : 4;
   const Eigen::Array3i nodes = grid.nodes();
   SparseRows rows(points.rows(), nodes.prod());
+  if (points.rows() == 0) return rows;  // Eigen 3.4 reads beyond the end of what it compresses there
   rows.reserve(Eigen::VectorXi::Constant(points.rows(), width * width * width));
   for (Eigen::Index p = 0; p < points.rows(); ++p) {
     Eigen::Array3i cell;

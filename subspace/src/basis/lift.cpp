@@ -39,6 +39,7 @@ LiftWeights lift_weights(const Points& points, const Points& samples, double sig
     }
   });
   LiftWeights weights(points.rows(), samples.rows());
+  if (count == 0) return weights;  // Eigen 3.4 reads beyond the end of what it compresses there
   Eigen::VectorXi sizes(points.rows());
   for (std::size_t p = 0; p < count; ++p) sizes[static_cast<Eigen::Index>(p)] = static_cast<int>(rows[p].size());
   weights.reserve(sizes);

@@ -1,0 +1,59 @@
+// What takes all stages together, on models of the detection suite.
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/detection/detect.h"
+
+#include "suite/detection_suite.h"
+
+namespace orbifit {
+namespace {
+
+TruthModel suite_model(const std::string& name) {
+  const std::vector<SuiteModel> suite = detection_suite();
+  return std::ranges::find(suite, name, &SuiteModel::name)->build();
+}
+
+std::ptrdiff_t count_of(const SymmetryAnnotation& annotation, const char* group) {
+  return std::ranges::count_if(annotation.regions,
+                               [&](const Region& region) { return region.group.symbol() == group; });
+}
+
+// Mirrors of some of the windows would stand against the grid of all; they follow from it and from the windows' own.
+TEST(DetectSuite, AGridStandsBesideTheMirrorOfTheWallThatKeepsSomeOfIt) {
+  const TruthModel model = suite_model("facade");
+  RunContext context;
+  const SymmetryAnnotation found = detect(model.mesh, {}, context);
+  ASSERT_EQ(found.patterns.size(), 1U);
+  EXPECT_EQ(found.patterns[0].instances.size(), 20U);
+  EXPECT_EQ(found.patterns[0].kind, Pattern::Kind::translation_2d);
+  EXPECT_EQ(count_of(found, "Cs"), 1);
+  EXPECT_EQ(count_of(found, "C2v"), 0);
+}
+
+// Ten columns are turned about their own axes from foot to head, though rings of all ten have more elements.
+TEST(DetectSuite, ColumnsDoNotGiveUpTheirShaftsToTheRingOfThem) {
+  const TruthModel model = suite_model("rotunda");
+  RunContext context;
+  const SymmetryAnnotation found = detect(model.mesh, {}, context);
+  for (const Region& column : model.truth.expected.regions) {
+    const bool is_found = std::ranges::any_of(found.regions, [&](const Region& region) {
+      return region.group == column.group && region.faces == column.faces;
+    });
+    EXPECT_TRUE(is_found) << column.name;
+  }
+}
+
+// The wheels of two gears in mesh and their pins, beside what mirrors all but the teeth that meet.
+TEST(DetectSuite, GearsKeepTheirOwnGroups) {
+  const TruthModel model = suite_model("two_gears");
+  RunContext context;
+  const SymmetryAnnotation found = detect(model.mesh, {}, context);
+  for (const char* group : {"C16v", "C10v", "D16h", "D10h"}) EXPECT_EQ(count_of(found, group), 1) << group;
+}
+
+}  // namespace
+}  // namespace orbifit
