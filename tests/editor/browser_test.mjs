@@ -52,6 +52,12 @@ const settled = async () => {
   await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
   await page.waitForFunction(() => globalThis.orbifit.editor.isMeasured, null, { timeout: 60000 });
 };
+/** What is chosen may have to wait for what the page is at: it is settled once it has been taken up. */
+const chooseMode = async (value, name) => {
+  await page.selectOption("#mode", value);
+  await page.waitForFunction(mode => globalThis.orbifit.editor.info.mode === mode, name, { timeout: 60000 });
+  await settled();
+};
 /** All that is asked of the page's editor. */
 const ask = (call, argument) => page.evaluate(call, argument);
 const shown = async () => Float64Array.from(await ask(() => {
@@ -304,14 +310,12 @@ check((await regions()).length === listed.length - 1, "those that are off are fo
 await undo();
 await undo();
 await same("undo brings all back");
-await page.selectOption("#mode", "0");
-await settled();
+await chooseMode("0", "fixed");
 check(await ask(() => globalThis.orbifit.editor.info.mode) === "fixed", "groups are fixed");
 await undo();
 
 // Moving groups: a drag may take fewer iterations a frame, what is released not.
-await page.selectOption("#mode", "2");
-await settled();
+await chooseMode("2", "moving");
 await drag([], []);
 await page.mouse.up();
 await settled();
@@ -475,8 +479,7 @@ orbifit("edit", "chair.ply", "chair.json", ...field, "-o", "field.html", "--quie
 const native = orbifit("subspace", "chair.ply", "chair.json", ...field, "--mode", "fixed", "--json", "--quiet");
 await page.goto(pathToFileURL(join(folder, "field.html")).href);
 await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 60000 });
-await page.selectOption("#mode", "0");
-await settled();
+await chooseMode("0", "fixed");
 const built = await ask(() => globalThis.orbifit.editor.info);
 check(built.mode === "fixed" && built.samples === native.samples && built.degrees_of_freedom === native.degrees_of_freedom,
       `the page samples by the radius field: ${built.samples} samples, ${built.degrees_of_freedom} degrees of freedom`);
