@@ -16,6 +16,7 @@
 #include "base/random.h"
 #include "basis/subspace_parts.h"
 #include "suite/detection_suite.h"
+#include "support/parts.h"
 #include "support/subspaces.h"
 
 namespace orbifit {
@@ -248,6 +249,42 @@ std::vector<int> all_faces(const Mesh& mesh) {
 
 // A car: the whole has the mirror across x; four wheels (C5v) with axes +x and -x are a pattern whose motions include
 // reflections; hub caps (Cinfv) on their axes.
+// Two round posts whose axes were found one by one, each within positions as they are told, and their heads as copies:
+// the copies' motion is made to take the one's axis to the other's.
+TEST(ConsistentAnnotation, CopiesOnRoundPostsKeepTheirAxes) {
+  std::vector<double> angles;
+  for (int k = 0; k < 24; ++k) angles.push_back(2 * std::numbers::pi * k / 24);
+  const Mesh post = turned_part({{0, 0}, {0.2, 0}, {0.2, 1}, {0.3, 1.1}, {0.25, 1.3}, {0, 1.35}}, angles);
+  Mesh mesh;
+  SymmetryAnnotation annotation;
+  Pattern heads;
+  heads.kind = Pattern::Kind::congruent;
+  const Motion step{Eigen::Matrix3d::Identity(), Vector3d(1.5, 0, 0)};
+  std::vector<Region> posts;
+  for (const Motion& place : {Motion{}, step}) {
+    const Motion tilted =
+        place * Motion::rotation(Vector3d::UnitY(), place.translation.x() > 0 ? 4e-7 : 0, Vector3d::Zero());
+    const std::vector<int> faces = append(mesh, post, place);
+    posts.push_back(make_region(*PointGroup::parse("Cinfv"), place(Vector3d::Zero()), frame_about(tilted.linear.col(2)),
+                                faces, "post"));
+    std::vector<int> head;
+    for (const int face : faces) {
+      if (mesh.vertices(mesh.faces(face, 0), 2) > 0.99 && mesh.vertices(mesh.faces(face, 1), 2) > 0.99 &&
+          mesh.vertices(mesh.faces(face, 2), 2) > 0.99) {
+        head.push_back(face);
+      }
+    }
+    heads.instances.push_back({place, head});
+  }
+  annotation = empty_annotation(mesh, 0.005);
+  annotation.regions = posts;
+  annotation.regions[1].id = 1;
+  annotation.patterns = {heads};
+  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+  EXPECT_TRUE(result.left_out.empty()) << said(result);
+  expect_exact(mesh, result.annotation);
+}
+
 // Truths of the detection suite in which patterns and groups overlap: twenty windows of which a mirror of the wall
 // keeps sixteen, and a chain whose links turn by a quarter, where the whole's group takes steps to steps of the other
 // hand.

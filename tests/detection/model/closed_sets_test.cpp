@@ -130,7 +130,11 @@ TEST(Disagreements, AreNoneOfAPatternThatARegionHoldsInPart) {
   }
   annotation.patterns = {pattern};
   EXPECT_TRUE(disagreements(plate(), annotation, RunContext{}).empty());
-  // Not so where the region ends within an instance.
+  // Not so where the region turns, since points on a circle would have one orbit here and another there.
+  annotation.regions[0] = make_region(*PointGroup::parse("Cinfv"), Vector3d::Zero(), frame_about(Vector3d::UnitY()),
+                                      annotation.regions[0].faces, "turned");
+  EXPECT_FALSE(disagreements(plate(), annotation, RunContext{}).empty());
+  // Nor where the region ends within an instance.
   annotation.regions = {patch(0, 4, 0, 8, 8)};
   EXPECT_FALSE(disagreements(plate(), annotation, RunContext{}).empty());
 }

@@ -134,10 +134,12 @@ class ConsistencySearch {
   };
   // The orbits of a pattern's instances under the moves.
   struct InstanceOrbits {
-    explicit InstanceOrbits(std::size_t count) : roots(count, -1), ways(count), stabilisers(count) {}
+    explicit InstanceOrbits(std::size_t count) : roots(count, -1), ways(count), stabilisers(count), turns(count) {}
     std::vector<int> roots;                        // by instance: the first of its orbit
     std::vector<Motion> ways;                      // from the root
     std::vector<std::vector<Motion>> stabilisers;  // of the roots
+    std::vector<std::vector<Motion>> turns;  // by instance: of each continuous group around it the half-turn about
+                                             // its axis, or the inversion in its centre
     std::vector<InstanceStep> steps;
     std::vector<Motion> normalisers;  // of the pattern's steps: the motions of regions among the moves
     std::vector<Claim> asking;        // whose the moves are
@@ -183,6 +185,7 @@ class ConsistencySearch {
   std::optional<std::size_t> arrival_of(const KnownPattern& known, std::size_t from, const Move& move,
                                         bool meets) const;
   bool closes(const KnownPattern& known, const std::vector<InstanceStep>& steps) const;
+  bool keeps_axes(const KnownPattern& known, const InstanceOrbits& orbits) const;
   std::optional<std::string> fit_copies(KnownPattern& known, const InstanceOrbits& orbits) const;
   std::optional<std::string> fit_lattice(KnownPattern& known, const InstanceOrbits& orbits) const;
   Motion with_told_directions(const KnownPattern& known, const Motion& motion) const;

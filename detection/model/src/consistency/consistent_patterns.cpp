@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "consistency/consistency_search.h"
 
@@ -231,6 +232,7 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
     std::vector<Pair> pairs;
     const std::vector<Motion> others = closure(orbits.stabilisers[t], shapes_.extent(known.shapes[t]), near);
     const auto pair_up = [&](const std::vector<Motion>& from, const std::vector<Motion>& to, bool forth) {
+      if (to.empty()) return from.empty();
       return std::ranges::all_of(from, [&](const Motion& stabiliser) {
         const Motion seen = conjugate(forth ? motion : inverse(motion), stabiliser);
         const Extent& on = forth ? shapes_.extent(known.shapes[t]) : extent;
@@ -240,7 +242,8 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
         return true;
       });
     };
-    if (!pair_up(own, others, true) || !pair_up(others, own, false)) {
+    if (!pair_up(own, others, true) || !pair_up(others, own, false) ||
+        !pair_up(orbits.turns[0], orbits.turns[t], true) || !pair_up(orbits.turns[t], orbits.turns[0], false)) {
       return "the groups around it keep one of its instances and not the others";
     }
     const Motion before = motion;
@@ -341,6 +344,12 @@ ConsistencySearch::Verdict ConsistencySearch::follow_from(std::size_t root, cons
       if (std::ranges::find(orbits.asking, mover_of(move)) == orbits.asking.end()) {
         orbits.asking.push_back(mover_of(move));
       }
+      if (move.turning) {
+        const GroupPlace turning = turning_part(*regions_[static_cast<std::size_t>(move.region)].place);
+        orbits.turns[from].push_back(turning.group.has_axis()
+                                         ? Motion::rotation(turning.frame.col(2), std::numbers::pi, turning.centre)
+                                         : Motion::about(-Eigen::Matrix3d::Identity(), turning.centre));
+      }
       if (move.region >= 0) orbits.normalisers.push_back(move.motion);
       orbits.steps.push_back({from, *to, move.motion});
       if (orbits.roots[*to] < 0) {
@@ -367,6 +376,22 @@ bool ConsistencySearch::closes(const KnownPattern& known, const std::vector<Inst
   return closure(returns, first, std::max(1e3 * rounding_, 1e-9 * first.reach)).size() < kMaxStabilisers;
 }
 
+// Whether what turns the first instance is taken to what turns each other, to rounding.
+bool ConsistencySearch::keeps_axes(const KnownPattern& known, const InstanceOrbits& orbits) const {
+  for (std::size_t t = 1; t < known.shapes.size(); ++t) {
+    const Motion& motion = known.pattern.instances[t].motion;
+    const Extent& extent = shapes_.extent(known.shapes[t]);
+    if (orbits.turns[0].size() != orbits.turns[t].size()) return false;
+    for (const Motion& turn : orbits.turns[0]) {
+      const Motion image = conjugate(motion, turn);
+      if (std::ranges::none_of(orbits.turns[t],
+                               [&](const Motion& other) { return distance(image, other, extent) <= 1e3 * rounding_; }))
+        return false;
+    }
+  }
+  return true;
+}
+
 ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) const {
   InstanceOrbits orbits(known.shapes.size());
   for (std::size_t root = 0; root < known.shapes.size(); ++root) {
@@ -377,6 +402,7 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
   if (auto reason = copies ? fit_copies(known, orbits) : fit_lattice(known, orbits)) {
     return Refusal{*reason, orbits.asking};
   }
+  if (!keeps_axes(known, orbits)) return Refusal{"it does not keep the axes of what turns around it", orbits.asking};
   if (!closes(known, orbits.steps)) {
     return Refusal{"its steps and the groups around it do not close", orbits.asking};
   }

@@ -71,7 +71,8 @@ class Check {
     const int there = domains_.carried_set(set, place, element);
     reach(there);
     for (const int other : places) {
-      if (domains_.around(other, place)) continue;  // what holds all of it need not come along
+      // What holds all of it need not come along: of finite groups all elements are tried from wherever they act.
+      if (domains_.around(other, place) && domains_.continuum(other) == nullptr) continue;
       if (domains_.images_of(other, place, element).empty()) blame(other, place);
     }
     const int arrival = domains_.arrival(place, element);
