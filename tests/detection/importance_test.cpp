@@ -2,6 +2,7 @@
 
 #include "evidence/importance.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -135,6 +136,21 @@ TEST(Importance, WhatTellsHowPartsStandToOneAnotherIsListed) {
     list_by_importance(prepare(mesh), annotation, false, nullptr, {});
     EXPECT_EQ(annotation.regions.size(), 3U) << common;
   }
+}
+
+// A mirror of the whole is listed beside a larger group of all but a small part.
+TEST(Importance, NothingButTheWholeHoldsTheWhole) {
+  Table table;
+  const std::vector<int> all_but_the_knob = test::all_faces(table.mesh);
+  table.mesh = test::joined({table.mesh, test::moved(test::box(0.4, 0.4, 0.2), test::shift(0, 1, 1.3))});
+  table.annotation = empty_annotation(table.mesh, test::kTolerance);
+  table.add("C2v", Vector3d::Zero(), all_but_the_knob);
+  Region whole = make_region(*PointGroup::parse("Cs"), Vector3d::Zero(), frame_about(Vector3d::UnitX()),
+                             test::all_faces(table.mesh), "Cs");
+  whole.id = 1;
+  table.annotation.regions.push_back(whole);
+  table.list();
+  EXPECT_TRUE(std::ranges::any_of(table.annotation.regions, [](const Region& region) { return region.name == "Cs"; }));
 }
 
 }  // namespace

@@ -59,13 +59,15 @@ ClaimQuotient::NamedArea ClaimQuotient::named_area(const std::vector<std::size_t
 bool ClaimQuotient::lies_within_accepted(const std::vector<std::size_t>& family) const {
   return std::ranges::all_of(family, [&](std::size_t claim) {
     const double area = named_area({claim}).all;
+    const bool whole = std::ranges::all_of(
+        samples_, [&](const Sample& sample) { return atoms_.piece(claim, sample.orbit.front().atom) >= 0; });
     return std::ranges::any_of(accepted_, [&](std::size_t known) {
       double outside = 0;
       for (const Sample& sample : samples_) {
         const int atom = sample.orbit.front().atom;
         if (atoms_.piece(claim, atom) >= 0 && atoms_.piece(known, atom) < 0) outside += sample.weight;
       }
-      return outside <= EvidencePolicy{}.sliver * area;
+      return outside <= (whole ? 0 : EvidencePolicy{}.sliver * area);
     });
   });
 }

@@ -26,7 +26,8 @@ class ClaimQuotient {
   };
   NamedArea named_area(const std::vector<std::size_t>& family) const;
 
-  /// Whether an accepted claim names all faces, but for a sliver, of each of these.
+  /// Whether an accepted claim names all faces, but for a sliver, of each of these; nothing but the whole holds the
+  /// whole.
   bool lies_within_accepted(const std::vector<std::size_t>& family) const;
 
   /// What accepting claims that are images of one another would take off the area, about: exact for one claim whose
