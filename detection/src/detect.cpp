@@ -507,8 +507,9 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
-  if (!options.all) annotation = without_contradictions(prepared, mesh, annotation, options.explanation, context);
-  annotation = kept_consistent(mesh, annotation, options.explanation, context);
+  annotation = options.all
+                   ? kept_consistent(mesh, annotation, options.explanation, context)
+                   : kept_without_what_follows(prepared, mesh, std::move(annotation), options.explanation, context);
   const std::vector<std::vector<std::size_t>> families =
       list_by_importance(prepared, annotation, options.all, options.explanation, context);
   name_by_shape_and_place(prepared, families, options.up, annotation, options.explanation);

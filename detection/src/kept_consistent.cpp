@@ -27,36 +27,14 @@ void number(SymmetryAnnotation& annotation) {
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
 }
 
-}  // namespace
-
-SymmetryAnnotation without_contradictions(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
-                                          Explanation* explanation, const RunContext& context) {
-  number(found);
-  for (;;) {
-    SymmetryAnnotation some = without_what_follows(prepared, found, context);
-    const ConsistentAnnotation kept = consistent_annotation(mesh, some, context);
-    note_left_out(kept.left_out, explanation);
-    if (kept.left_out.empty()) return some;
-    const auto left_out = [&](bool pattern, int id) {
-      return std::ranges::any_of(kept.left_out,
-                                 [&](const LeftOut& each) { return each.pattern == pattern && each.id == id; });
-    };
-    std::erase_if(found.regions, [&](const Region& region) { return left_out(false, region.id); });
-    std::erase_if(found.patterns, [&](const Pattern& pattern) { return left_out(true, pattern.id); });
-  }
-}
-
-SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
-                                   const RunContext& context) {
-  ConsistentAnnotation result = consistent_annotation(mesh, found, context);
-  note_left_out(result.left_out, explanation);
-  if (!result.left_out.empty()) {
-    const std::size_t count = result.left_out.size();
-    context.message("left out " + std::to_string(count) +
-                    (count == 1 ? " region or pattern" : " regions and patterns") +
+// Largest regions first. \param left_out  how many were, told in a message
+SymmetryAnnotation sorted(const Mesh& mesh, SymmetryAnnotation annotation, std::size_t left_out,
+                          const RunContext& context) {
+  if (left_out > 0) {
+    context.message("left out " + std::to_string(left_out) +
+                    (left_out == 1 ? " region or pattern" : " regions and patterns") +
                     " that cannot be kept exactly beside larger ones (--explain says which and why)");
   }
-  SymmetryAnnotation& annotation = result.annotation;
   const Eigen::VectorXd areas = face_areas(mesh);
   const auto area = [&](const Region& region) {
     double sum = 0;
@@ -66,7 +44,33 @@ SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& f
   std::ranges::stable_sort(annotation.regions, std::greater<>(), area);
   number(annotation);
   set_parents(annotation.regions);
-  return std::move(annotation);
+  return annotation;
+}
+
+}  // namespace
+
+SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
+                                   const RunContext& context) {
+  ConsistentAnnotation kept = consistent_annotation(mesh, found, context);
+  note_left_out(kept.left_out, explanation);
+  return sorted(mesh, std::move(kept.annotation), kept.left_out.size(), context);
+}
+
+SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
+                                             Explanation* explanation, const RunContext& context) {
+  number(found);
+  for (std::size_t gone = 0;;) {
+    ConsistentAnnotation kept = consistent_annotation(mesh, without_what_follows(prepared, found, context), context);
+    note_left_out(kept.left_out, explanation);
+    if (kept.left_out.empty()) return sorted(mesh, std::move(kept.annotation), gone, context);
+    gone += kept.left_out.size();
+    const auto left_out = [&](bool pattern, int id) {
+      return std::ranges::any_of(kept.left_out,
+                                 [&](const LeftOut& each) { return each.pattern == pattern && each.id == id; });
+    };
+    std::erase_if(found.regions, [&](const Region& region) { return left_out(false, region.id); });
+    std::erase_if(found.patterns, [&](const Pattern& pattern) { return left_out(true, pattern.id); });
+  }
 }
 
 }  // namespace orbifit

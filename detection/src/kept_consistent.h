@@ -14,9 +14,10 @@ namespace orbifit {
 SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
                                    const RunContext& context);
 
-/// What was found without what follows from the rest (without_what_follows()) and what the rest cannot be kept beside:
-/// what follows from something that goes comes back. Each that goes is told in `explanation` (may be null).
-SymmetryAnnotation without_contradictions(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
-                                          Explanation* explanation, const RunContext& context);
+/// As above, of what was found without what follows from the rest (without_what_follows()), so that this stands in
+/// nothing's way: what follows from something that cannot be kept comes back.
+/// \param found  in the frame of `mesh`, of which `prepared` is made
+SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
+                                             Explanation* explanation, const RunContext& context);
 
 }  // namespace orbifit

@@ -55,5 +55,18 @@ TEST(DetectSuite, GearsKeepTheirOwnGroups) {
   for (const char* group : {"C16v", "C10v", "D16h", "D10h"}) EXPECT_EQ(count_of(found, group), 1) << group;
 }
 
+// A gear's boss is a part: its own group is named, and not only that of what turns about the axis, gear's faces and
+// all.
+TEST(DetectSuite, PartsComeBeforeWhatEndsWithinThem) {
+  const TruthModel model = suite_model("gear_D12h");
+  RunContext context;
+  const SymmetryAnnotation found = detect(model.mesh, {}, context);
+  for (const Region& part : model.truth.expected.regions) {
+    const bool is_found = std::ranges::any_of(
+        found.regions, [&](const Region& region) { return region.group == part.group && region.faces == part.faces; });
+    EXPECT_TRUE(is_found) << part.name;
+  }
+}
+
 }  // namespace
 }  // namespace orbifit

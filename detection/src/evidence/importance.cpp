@@ -1,13 +1,13 @@
 #include "evidence/importance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "consistency/halvings.h"
 #include "evidence/claim_quotient.h"
 #include "evidence/claims.h"
 #include "evidence/policy.h"
@@ -47,27 +47,49 @@ class PartEnds {
   std::vector<int> part_of_face_;  // -1: of no area
 };
 
+// The claims of an annotation, and the quotient of which nothing is known yet.
+struct Weighed {
+  Weighed(const PreparedMesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+      : prepared(mesh),
+        local(transformed(annotation, inverse(mesh.input_of_normalised))),
+        claims(claims_of(local)),
+        atoms(mesh, claims),
+        quotient(mesh, claims, atoms, annotation.tolerance, context),
+        families(families_of(mesh, claims, atoms, annotation.tolerance)) {}
+
+  const PreparedMesh& prepared;
+  SymmetryAnnotation local;  // in the prepared mesh's frame
+  std::vector<SymmetryClaim> claims;
+  ClaimAtoms atoms;
+  ClaimQuotient quotient;
+  Families families;
+};
+
+double halvings_of(const SymmetryClaim& claim) {
+  return claim.region != nullptr ? halvings(claim.region->group) : halvings(claim.pieces.size());
+}
+
 // What a person would name: claims on whole parts first, then those that end within one; each in the order of how often
 // a family's motions halve its area, times that area; of them those that say more than what comes before. So parts and
 // rows come before what follows from them.
-Chosen chosen_families(const PreparedMesh& prepared, ClaimQuotient quotient, const std::vector<SymmetryClaim>& claims,
-                       Families families, const RunContext& context) {
+Chosen chosen_families(const Weighed& weighed, const RunContext& context) {
   struct Rated {
     std::vector<std::size_t> family;
     bool within_a_part;
-    double area, halved;
+    double area, saving;
   };
-  const PartEnds parts(prepared);
+  ClaimQuotient quotient = weighed.quotient;
+  const double surface = quotient.area();
+  const PartEnds parts(weighed.prepared);
   std::vector<Rated> rated;
-  for (std::vector<std::size_t>& family : families) {
+  for (const std::vector<std::size_t>& family : weighed.families) {
     const double area = quotient.named_area(family).all;
-    const auto places = static_cast<double>(claims[family.front()].motions.front().size() + 1);
-    const bool whole = std::ranges::all_of(family, [&](std::size_t claim) { return parts.hold(claims[claim]); });
-    rated.push_back({std::move(family), !whole, area, area * std::log2(places)});
+    const bool whole =
+        std::ranges::all_of(family, [&](std::size_t claim) { return parts.hold(weighed.claims[claim]); });
+    rated.push_back({family, !whole, area, area * halvings_of(weighed.claims[family.front()])});
   }
-  std::ranges::stable_sort(rated, {}, [](const Rated& each) { return std::pair(each.within_a_part, -each.halved); });
+  std::ranges::stable_sort(rated, {}, [](const Rated& each) { return std::pair(each.within_a_part, -each.saving); });
   const EvidencePolicy policy;
-  const double surface = quotient.area();  // of which nothing is known yet
   Chosen result;
   for (Rated& each : rated) {
     context.check();
@@ -126,13 +148,9 @@ void note_left_out(Explanation* explanation, const SymmetryClaim& claim) {
 
 SymmetryAnnotation without_what_follows(const PreparedMesh& prepared, const SymmetryAnnotation& annotation,
                                         const RunContext& context) {
-  const SymmetryAnnotation local = transformed(annotation, inverse(prepared.input_of_normalised));
-  const std::vector<SymmetryClaim> claims = claims_of(local);
-  const ClaimAtoms atoms(prepared, claims);
-  const ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
-  const Chosen chosen =
-      chosen_families(prepared, quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
-  std::vector<bool> kept(claims.size(), false);
+  const Weighed weighed(prepared, annotation, context);
+  const Chosen chosen = chosen_families(weighed, context);
+  std::vector<bool> kept(weighed.claims.size(), false);
   for (const std::vector<std::size_t>& family : chosen.kept) {
     for (const std::size_t claim : family) kept[claim] = true;
   }
@@ -152,18 +170,14 @@ std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& pre
                                                          bool all, Explanation* explanation,
                                                          const RunContext& context) {
   context.progress("importance", 0);
-  const SymmetryAnnotation local = transformed(annotation, inverse(prepared.input_of_normalised));
-  const std::vector<SymmetryClaim> claims = claims_of(local);
-  const ClaimAtoms atoms(prepared, claims);
-  const ClaimQuotient quotient(prepared, claims, atoms, annotation.tolerance, context);
-  Chosen chosen =
-      chosen_families(prepared, quotient, claims, families_of(prepared, claims, atoms, annotation.tolerance), context);
-  std::vector<Listed> order = greedy_order(quotient, std::move(chosen.kept), context);
+  const Weighed weighed(prepared, annotation, context);
+  Chosen chosen = chosen_families(weighed, context);
+  std::vector<Listed> order = greedy_order(weighed.quotient, std::move(chosen.kept), context);
   for (std::vector<std::size_t>& family : chosen.left_out) {
     if (all) {
       order.push_back({std::move(family), 0});
     } else {
-      for (const std::size_t claim : family) note_left_out(explanation, claims[claim]);
+      for (const std::size_t claim : family) note_left_out(explanation, weighed.claims[claim]);
     }
   }
   std::vector<Region> regions;

@@ -11,10 +11,11 @@
 
 namespace orbifit {
 
-/// A copy of the annotation without what follows from the rest. Families of images (families_of()) are taken in the
-/// order of how often their motions halve their area, times that area; one follows if it saves next to nothing of the
-/// quotient's area (the surface of which all else is images) that those before it have not. What is a main part is
-/// kept.
+/// A copy of the annotation without what follows from the rest. Families of images (families_of()) are taken one after
+/// the other: those on whole parts before those that end within one, each by how often its motions halve its area,
+/// times that area. One follows if it saves next to nothing of the quotient's area (the surface of which all else is
+/// images) that those before it have not, unless it is a main part (EvidencePolicy).
+/// \param annotation  in the frame of the mesh that was given, as list_by_importance()
 SymmetryAnnotation without_what_follows(const PreparedMesh& prepared, const SymmetryAnnotation& annotation,
                                         const RunContext& context);
 

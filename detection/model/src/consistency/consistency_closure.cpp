@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "consistency/consistency_search.h"
+#include "consistency/halvings.h"
 #include "domains/closed_sets.h"
 
 namespace orbifit {
@@ -57,12 +58,12 @@ class Closure {
     };
     if (!claim.pattern) {
       const Region& region = kept.regions[claim.number];
-      return saving_of(area(region.faces), region.group);
+      return area(region.faces) * halvings(region.group);
     }
     const Pattern& pattern = kept.patterns[claim.number];
-    std::vector<double> areas;
-    for (const PatternInstance& instance : pattern.instances) areas.push_back(area(instance.faces));
-    return saving_of(areas);
+    double sum = 0;
+    for (const PatternInstance& instance : pattern.instances) sum += area(instance.faces);
+    return sum * halvings(pattern.instances.size());
   }
 
   void leave_out(const Claim& claim, const Claim& other) {

@@ -1,38 +1,13 @@
 #include "consistency/consistency_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "consistency/halvings.h"
+
 namespace orbifit {
-
-namespace {
-
-// Of a continuous group the places that count as different, in place of its elements.
-double order_of(const PointGroup& group) {
-  const double circle = ConsistencyPolicy{}.circle;
-  switch (group.family) {
-    case PointGroup::Family::Cinf:
-      return circle;
-    case PointGroup::Family::Cinfv:
-    case PointGroup::Family::Cinfh:
-    case PointGroup::Family::Dinf:
-      return 2 * circle;
-    case PointGroup::Family::Dinfh:
-      return 4 * circle;
-    case PointGroup::Family::K:
-      return circle * circle;
-    case PointGroup::Family::Kh:
-      return 2 * circle * circle;
-    default:
-      return group.order();
-  }
-}
-
-}  // namespace
 
 bool stands_at(const Region& region, const GroupPlace& place, const Extent& extent, double tolerance) {
   if (region.group.continuous()) return true;  // the place was made of its axis and centre
@@ -42,14 +17,6 @@ bool stands_at(const Region& region, const GroupPlace& place, const Extent& exte
       return motion_distance(element, motion, extent.centre, extent.reach) <= tolerance;
     });
   });
-}
-
-double saving_of(double area, const PointGroup& group) {
-  return area * std::log2(order_of(group));
-}
-
-double saving_of(const std::vector<double>& areas) {
-  return std::accumulate(areas.begin(), areas.end(), 0.0) * std::log2(std::max<double>(1, areas.size()));
 }
 
 RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation) {
@@ -163,15 +130,16 @@ bool ConsistencySearch::is_everything(const Claim& claim) const {
 }
 
 double ConsistencySearch::saving(std::size_t region) const {
-  const Region& known = regions_[region].region;
-  return saving_of(shapes_.area(regions_[region].shape), known.group);
+  const KnownRegion& known = regions_[region];
+  return shapes_.area(known.shape) * halvings(known.region.group);
 }
 
 double ConsistencySearch::saving(const Claim& claim) const {
   if (!claim.pattern) return saving(claim.number);
-  std::vector<double> areas;
-  for (const int shape : patterns_[claim.number].shapes) areas.push_back(shapes_.area(shape));
-  return saving_of(areas);
+  const std::vector<int>& shapes = patterns_[claim.number].shapes;
+  double area = 0;
+  for (const int shape : shapes) area += shapes_.area(shape);
+  return area * halvings(shapes.size());
 }
 
 double ConsistencySearch::total_saving() const {

@@ -44,11 +44,6 @@ struct ConsistencyPolicy {
   std::size_t work = 20000000;
 };
 
-/// What a region, or a pattern, saves: how often its motions halve the area, times that area. The more is saved, the
-/// less need be told of the surface.
-double saving_of(double area, const PointGroup& group);
-double saving_of(const std::vector<double>& areas);
-
 /// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
 struct Refused {
   std::vector<Claim> claims;  ///< not empty
@@ -91,7 +86,7 @@ class ConsistencySearch {
 
   ConsistencyOutcome run();
 
-  /// See saving_of().
+  /// Its area, as often as its motions halve it.
   double saving(const Claim& claim) const;
 
  private:
@@ -127,6 +122,16 @@ class ConsistencySearch {
     std::vector<std::size_t> replaced;  // waiting regions whose place added images take
     std::vector<Claim> asking;          // whose motions the ties are of
   };
+  // What the members of a family gave up to others that overlap them.
+  struct GivenUp {
+    std::map<std::size_t, std::pair<int, std::vector<int>>> before;  // by region: shape and faces, whole
+    std::vector<Claim> takers;
+    bool alike = true;  // whether all members have given up the same
+
+    void remember(std::size_t region, const KnownRegion& known) {
+      before.try_emplace(region, known.shape, known.region.faces);
+    }
+  };
   // A move that takes one of a pattern's instances to another.
   struct InstanceStep {
     std::size_t from, to;
@@ -159,7 +164,9 @@ class ConsistencySearch {
   std::string label(std::size_t region) const;
 
   void place_family(std::size_t first);
+  bool give_up_alike(const Family& family, std::size_t regions_before, int shapes_before, GivenUp& given_up);
   void note_given_up(const Family& family, const std::vector<Claim>& takers);
+  void refuse_family(const Family& family, std::size_t regions_before, const GivenUp& given_up, const Refusal& refusal);
   bool trim(std::size_t region, int other);
   bool trim_alike(const Family& family);
   Verdict gather(std::size_t first, Family& family);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "consistency/consistency_search.h"
+#include "consistency/halvings.h"
 
 namespace orbifit {
 
@@ -151,9 +152,41 @@ void ConsistencySearch::note_given_up(const Family& family, const std::vector<Cl
     const KnownRegion& known = regions_[member.region];
     const double before =
         shapes_.area(static_cast<int>(member.region));  // shapes of regions come first, in their order
-    refused.saving += saving_of(before, known.region.group) - saving(member.region);
+    refused.saving += before * halvings(known.region.group) - saving(member.region);
   }
   if (refused.saving > 0) refused_.push_back(std::move(refused));
+}
+
+// Lets all members give up the same; what is left of them is looked at once more. \return whether it is enough
+bool ConsistencySearch::give_up_alike(const Family& family, std::size_t regions_before, int shapes_before,
+                                      GivenUp& given_up) {
+  std::vector<std::size_t> members;
+  for (const Member& member : family.members) {
+    if (member.region >= regions_before) continue;
+    members.push_back(member.region);
+    given_up.remember(member.region, regions_[member.region]);
+  }
+  given_up.alike = trim_alike(family);
+  regions_.resize(regions_before);
+  shapes_.keep(shapes_before);
+  if (!given_up.alike) return false;
+  for (const std::size_t region : members) regions_[region].shape = shapes_.add(regions_[region].region.faces);
+  return true;
+}
+
+void ConsistencySearch::refuse_family(const Family& family, std::size_t regions_before, const GivenUp& given_up,
+                                      const Refusal& refusal) {
+  for (const auto& [region, before] : given_up.before) {
+    std::tie(regions_[region].shape, regions_[region].region.faces) = before;
+  }
+  std::vector<Claim> claims;
+  for (const Member& member : family.members) {
+    if (member.region < regions_before && regions_[member.region].source < 0 &&
+        regions_[member.region].state == State::waiting) {
+      claims.push_back({false, member.region});
+    }
+  }
+  refuse(std::move(claims), refusal);
 }
 
 void ConsistencySearch::place_family(std::size_t first) {
@@ -161,34 +194,19 @@ void ConsistencySearch::place_family(std::size_t first) {
     refuse({{false, first}}, {"its elements form no group of that symbol", {}});
     return;
   }
-  std::map<std::size_t, std::pair<int, std::vector<int>>> given;  // of regions that were trimmed: shape and faces
-  std::vector<Claim> takers;                                      // of what those gave up
+  GivenUp given_up;
   Family family;
   Verdict refusal;
   std::size_t regions_before = 0;
-  bool alike = true;  // whether all members have given up the same
   for (bool again = true; again;) {
     regions_before = regions_.size();
     const int shapes_before = shapes_.count();
     family = {};
     refusal = gather(first, family);
-    again = !refusal && !alike;
-    if (again) {  // what is left is looked at once more
-      std::vector<std::size_t> members;
-      for (const Member& member : family.members) {
-        if (member.region >= regions_before) continue;
-        members.push_back(member.region);
-        given.try_emplace(member.region, regions_[member.region].shape, regions_[member.region].region.faces);
-      }
-      alike = trim_alike(family);
-      regions_.resize(regions_before);
-      shapes_.keep(shapes_before);
-      if (alike) {
-        for (const std::size_t region : members) regions_[region].shape = shapes_.add(regions_[region].region.faces);
-        continue;
-      }
-      refusal = Refusal{"its images overlap others differently", {}};
-      break;
+    if (!refusal && !given_up.alike) {
+      again = give_up_alike(family, regions_before, shapes_before, given_up);
+      if (!again) refusal = Refusal{"its images overlap others differently", {}};
+      continue;
     }
     if (!refusal) refusal = accept_family(family);
     if (!refusal) break;
@@ -196,26 +214,17 @@ void ConsistencySearch::place_family(std::size_t first) {
     shapes_.keep(shapes_before);
     again = false;
     if (refusal->across && *refusal->across < regions_before && refusal->shape < shapes_before) {
-      const KnownRegion& across = regions_[*refusal->across];
-      given.try_emplace(*refusal->across, across.shape, across.region.faces);
+      given_up.remember(*refusal->across, regions_[*refusal->across]);
       again = trim(*refusal->across, refusal->shape);
-      alike = alike && !again;
-      takers.insert(takers.end(), refusal->by.begin(), refusal->by.end());
+      given_up.alike = given_up.alike && !again;
+      given_up.takers.insert(given_up.takers.end(), refusal->by.begin(), refusal->by.end());
     }
   }
   if (refusal) {
-    for (auto& [region, before] : given) std::tie(regions_[region].shape, regions_[region].region.faces) = before;
-    std::vector<Claim> claims;
-    for (const Member& member : family.members) {
-      if (member.region < regions_before && regions_[member.region].source < 0 &&
-          regions_[member.region].state == State::waiting) {
-        claims.push_back({false, member.region});
-      }
-    }
-    refuse(std::move(claims), *refusal);
+    refuse_family(family, regions_before, given_up, *refusal);
     return;
   }
-  if (!given.empty()) note_given_up(family, takers);
+  if (!given_up.before.empty()) note_given_up(family, given_up.takers);
   for (const std::size_t other : family.replaced) {
     if (regions_[other].state == State::waiting) {
       leave_out_region(other, "an image of " + label(first) + " takes its place");

@@ -34,7 +34,8 @@ struct ConsistentAnnotation {
 /// does not meet another. Then going to and fro between them carries a point ever farther, and nothing keeps both. An
 /// annotation is consistent where, for every region or pattern A, every motion g of A and every region B that shares
 /// faces with A and does not hold all of it, there is a region C that is the image of B: C has B's group, placed by g
-/// exactly, and holds what g makes of the faces that A and B share (docs/method.md 3).
+/// exactly, and holds what g makes of the faces that A and B share (docs/method.md 3). Of continuous groups that hold
+/// all of a pattern's instance there is an image as well.
 /// Shared planes and axes, axes in planes and right angles are the cases in which C is B itself.
 ///
 /// Regions are taken largest first. Each comes with all its images under those already taken (its family); images that

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "orbifit/model/motion.h"
+
+#include "consistency/group_place.h"
+
+namespace orbifit {
+
+/// Elements at most of the group that keeps a pattern's instance: one that has more does not close.
+inline constexpr std::size_t kMaxStabilisers = 120;
+
+/// How far two motions are apart on a shape, mesh units.
+inline double distance(const Motion& a, const Motion& b, const Extent& extent) {
+  return motion_distance(a, b, extent.centre, extent.reach);
+}
+
+/// All products of the generators, the identity first, as far as they are few. Those nearer than `same` are one.
+inline std::vector<Motion> closure(const std::vector<Motion>& generators, const Extent& extent, double same) {
+  std::vector<Motion> result{Motion{}};
+  for (std::size_t head = 0; head < result.size() && result.size() < kMaxStabilisers; ++head) {
+    for (const Motion& generator : generators) {
+      const Motion product = generator * result[head];
+      if (std::ranges::none_of(result, [&](const Motion& m) { return distance(m, product, extent) <= same; })) {
+        result.push_back(product);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace orbifit
