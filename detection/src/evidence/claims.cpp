@@ -92,6 +92,9 @@ class Images {
          double tolerance)
       : prepared_(prepared), claims_(claims), atoms_(atoms), tolerance_(tolerance), families_(claims.size()) {
     areas_.assign(claims.size(), 0);
+    for (const SymmetryClaim& claim : claims) {
+      moments_.push_back(claim.region != nullptr ? surface_moments(prepared, claim.region->faces) : SurfaceMoments{});
+    }
     for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
       witnesses_.push_back(witnesses(atoms.faces(atom)));
       atom_areas_.push_back(area_of(prepared, atoms.faces(atom)));
@@ -168,9 +171,9 @@ class Images {
   }
 
   bool takes(std::size_t from, const Motion& motion, std::size_t to) const {
-    const Region& target = *claims_[to].region;
-    const SurfaceMoments moments = surface_moments(prepared_, target.faces);
-    return takes_group(*claims_[from].region, motion, target, moments.centroid, moments.radius, tolerance_);
+    const SurfaceMoments& moments = moments_[to];
+    return takes_group(*claims_[from].region, motion, *claims_[to].region, moments.centroid, moments.radius,
+                       tolerance_);
   }
 
   const PreparedMesh& prepared_;
@@ -180,6 +183,7 @@ class Images {
   DisjointSets families_;
   std::vector<std::vector<Vector3d>> witnesses_;  // by atom
   std::vector<double> atom_areas_, areas_;        // by atom, by claim
+  std::vector<SurfaceMoments> moments_;           // by claim, of regions
 };
 
 }  // namespace
