@@ -22,6 +22,9 @@ test_packages=( # for the baselines, the adapters, the Python package, the tests
 fuzz_packages=( # for tests/fuzz.sh
   clang-14 libclang-rt-14-dev llvm-14
 )
+mutation_packages=( # for tests/mutants.sh
+  python3-clang-14
+)
 editor_packages=( # to build the editor's page anew, and to try it in a browser
   emscripten libnanoflann-dev nodejs chromium
 )

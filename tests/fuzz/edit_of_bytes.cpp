@@ -178,20 +178,25 @@ std::vector<Handle> handles(ByteSource& bytes, const Mesh& mesh, double size) {
   return result;
 }
 
-// Of every vertex under a motion the vertex that is its image, or -1, and how far off it is at most.
-std::vector<int> images_of_vertices(const Mesh& mesh, const Region& region, const Motion& motion, double same) {
+// The region's vertices within `same` of a place. Parts may touch: of several there any may be the image of one.
+std::vector<int> vertices_at(const Mesh& mesh, const Region& region, const Vector3d& place, double same) {
   std::vector<int> result;
   for (const int face : region.faces) {
     for (Index k = 0; k < 3; ++k) {
-      const Vector3d image = motion(mesh.vertices.row(mesh.faces(face, k)).transpose());
-      int found = -1;
-      for (const int other : region.faces) {
-        for (Index l = 0; l < 3 && found < 0; ++l) {
-          const int v = mesh.faces(other, l);
-          if ((mesh.vertices.row(v).transpose() - image).norm() <= same) found = v;
-        }
-      }
-      result.push_back(found);
+      const int v = mesh.faces(face, k);
+      if ((mesh.vertices.row(v).transpose() - place).norm() <= same) result.push_back(v);
+    }
+  }
+  return result;
+}
+
+// Of the region's corners, face by face, the vertices where a motion takes them.
+std::vector<std::vector<int>> images_of_corners(const Mesh& mesh, const Region& region, const Motion& motion,
+                                                double same) {
+  std::vector<std::vector<int>> result;
+  for (const int face : region.faces) {
+    for (Index k = 0; k < 3; ++k) {
+      result.push_back(vertices_at(mesh, region, motion(mesh.vertices.row(mesh.faces(face, k)).transpose()), same));
     }
   }
   return result;
@@ -204,14 +209,16 @@ void require_kept(const Mesh& mesh, const SymmetryAnnotation& annotation, const 
   for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
     const Region& region = annotation.regions[r];
     for (std::size_t g = 0; g < region.elements.size(); ++g) {
-      const std::vector<int> image = images_of_vertices(mesh, region, region.elements[g], same);
-      if (std::ranges::find(image, -1) != image.end()) continue;
+      const auto images = images_of_corners(mesh, region, region.elements[g], same);
+      if (std::ranges::any_of(images, [](const auto& there) { return there.empty(); })) continue;
       const Motion& motion = deformed.regions.at(r).elements.at(g);
-      for (std::size_t i = 0; i < image.size(); ++i) {
+      for (std::size_t i = 0; i < images.size(); ++i) {
         const int v = mesh.faces(region.faces[i / 3], static_cast<Index>(i % 3));
-        const double off =
-            (motion(edited.vertices.row(v).transpose()) - edited.vertices.row(image[i]).transpose()).norm();
-        if (!(off <= allowed)) throw std::logic_error("the edit broke " + region.group.symbol());
+        const Vector3d image = motion(edited.vertices.row(v).transpose());
+        const auto off = [&](int other) { return (image - edited.vertices.row(other).transpose()).norm(); };
+        if (!std::ranges::any_of(images[i], [&](int other) { return off(other) <= allowed; })) {
+          throw std::logic_error("the edit broke " + region.group.symbol());
+        }
       }
     }
   }

@@ -81,13 +81,6 @@ void refuse_other_batch(const BatchOptions& options) {
   }
 }
 
-void write_note(const BatchOptions& options, std::uint64_t items) {
-  const nlohmann::ordered_json note{{"format", "orbifit-batch"},     {"version", 1},
-                                    {"task", options.task},          {"shard", options.shard.index},
-                                    {"shards", options.shard.count}, {"items", items}};
-  write_file(note_file(options.out, options.shard), note.dump() + "\n");
-}
-
 // SIGCHLD waits to be asked for while this lives.
 class ChildSignals {
  public:
@@ -114,7 +107,7 @@ class ChildSignals {
   sigset_t set_{}, before_{};
 };
 
-// The shard's folder for results that are not complete yet; what a killed batch left there goes.
+// The shard's folder for files that are not complete yet; what a killed batch left there goes.
 class WorkFolder {
  public:
   explicit WorkFolder(fs::path path) : path_(std::move(path)) {
@@ -136,10 +129,23 @@ class WorkFolder {
     make_folders(folder);
     return folder;
   }
+  const fs::path& path() const { return path_; }
 
  private:
   fs::path path_;
 };
+
+// Made in the work folder and then renamed: a batch that is killed meanwhile leaves nothing anywhere else.
+void write_note(const BatchOptions& options, const WorkFolder& work, std::uint64_t items) {
+  const nlohmann::ordered_json note{{"format", "orbifit-batch"},     {"version", 1},
+                                    {"task", options.task},          {"shard", options.shard.index},
+                                    {"shards", options.shard.count}, {"items", items}};
+  const fs::path unfinished = work.path() / "note", file = note_file(options.out, options.shard);
+  write_file(unfinished, note.dump() + "\n");
+  std::error_code code;
+  fs::rename(unfinished, file, code);
+  if (code) throw InputError(file.string(), "", "cannot be written: " + code.message());
+}
 
 class Run {
  public:
@@ -157,7 +163,7 @@ class Run {
   }
 
   BatchCounts run() {
-    write_note(options_, manifest_.size());
+    write_note(options_, work_, manifest_.size());
     begin_ = Clock::now();
     while (fill() > 0) {
       tell();

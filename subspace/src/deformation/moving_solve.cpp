@@ -20,11 +20,21 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMaxTurn = 0.35;    // radians in one iteration
+constexpr int kAttempts = 5;         // at a turn, each half as far: the last is a degree at most
+constexpr double kRounded = 1e-9;    // of an energy: what holds the coordinates, and rounding, may add as much
 constexpr double kConflict = 1e-12;  // of the diagonal
 
 }  // namespace
 
-// One solve on its way: how the groups stand, the state with them, and the samples' local rotations.
+// How the groups stand, and what follows from it: the basis, the samples' local rotations, the handles' points.
+struct MovingSolve::Stand {
+  ConjugatedRegions::Turns turns;
+  std::shared_ptr<const ConjugatedBasis> basis;
+  std::vector<Eigen::Matrix3d> local;  // by sample
+  HandlePoints points;
+};
+
+// One solve on its way.
 class MovingSolve::Run {
  public:
   Run(const MovingSolve& of, const HandleRows& handles, double alpha, const std::vector<Motion>& motions,
@@ -36,12 +46,15 @@ class MovingSolve::Run {
   Deformation finish();
 
  private:
-  void turn_groups(const Points& before, const VectorXd& wanted);
-  void accept(const ConjugatedRegions::Turns& next, std::shared_ptr<const ConjugatedBasis> basis);
-  void follow(const Points& before, const VectorXd& wanted);
-  Points turned_coordinates() const;
-  ContactRows contact_rows(const SmallTurns* small) const;
-  Points lifted() const;
+  VectorXd turns_wanted(const Points& before) const;
+  SampleEnergy::Solution turn_groups(const Points& before);
+  void accept(const SampleEnergy::Solution& solution, const Points& before);
+  Stand turned(const ConjugatedRegions::Turns& turns, std::shared_ptr<const ConjugatedBasis> basis) const;
+  HandlePoints points_of(const std::shared_ptr<const ConjugatedBasis>& basis) const;
+  SampleEnergy::Terms terms(const Stand& stand) const;
+  Points turned_coordinates(const Stand& stand) const;
+  ContactRows contact_rows(const Stand& stand, const SmallTurns* small) const;
+  Points lifted(const SubspaceState& state) const;
   int region_of(std::size_t sample) const;
 
   const MovingSolve& of_;
@@ -50,14 +63,13 @@ class MovingSolve::Run {
   const ConjugatedRegions& regions_;
   const HandleRows& handles_;
   const RunContext& context_;
-  LiftWeights spread_;  // handles' points by samples
+  LiftWeights spread_;  // handles' points by samples: how turns carry them, to first order
   SampleEnergy energy_;
   VectorXd targets_;
   Turning still_;  // no way of turning
-  ConjugatedRegions::Turns turns_;
-  std::vector<Eigen::Matrix3d> local_;  // by sample
+  Stand stand_;
   Deformation result_;
-  SubspaceState& state_ = result_.state;
+  VectorXd& q_ = result_.state.q;
 };
 
 MovingSolve::Run::Run(const MovingSolve& of, const HandleRows& handles, double alpha,
@@ -69,86 +81,100 @@ MovingSolve::Run::Run(const MovingSolve& of, const HandleRows& handles, double a
       handles_(handles),
       context_(context),
       spread_(lift_weights(handles.rest(), corotation_.rest, subspace_->sampling.radius, RunContext{})),
-      energy_(corotation_, spread_, handles.weights(), alpha),
-      targets_(handles.targets(motions)),
-      turns_(regions_.rest()),
-      local_(static_cast<std::size_t>(corotation_.rest.rows()), Eigen::Matrix3d::Identity()) {
+      energy_(corotation_, handles.weights(), alpha),
+      targets_(handles.targets(motions)) {
   const Eigen::Index coordinates = corotation_.rest.size();
   still_ = {MatrixXd(coordinates, 0), MatrixXd(coordinates, 0), MatrixXd(targets_.size(), 0)};
 }
 
 void MovingSolve::Run::begin(const SubspaceState& start) {
+  stand_.local.assign(static_cast<std::size_t>(corotation_.rest.rows()), Eigen::Matrix3d::Identity());
   if (start.basis && start.q.size() == start.basis->columns.cols()) {
-    turns_ = regions_.turns_of(start.basis->rotations);
-    state_ = start;
-    local_ = local_rotations(corotation_, corotation_.rest + sample_displacements(subspace_, state_), local_);
+    q_ = start.q;
+    const Points there = corotation_.rest + sample_displacements(subspace_, start);
+    stand_ = {regions_.turns_of(start.basis->rotations), start.basis, local_rotations(corotation_, there, stand_.local),
+              points_of(start.basis)};
     return;
   }
-  turns_ = of_.first_turns(handles_, targets_);
-  const auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns_)));
-  state_ = {VectorXd::Zero(basis->columns.cols()), basis};
-  if (start.q.size() == state_.q.size()) state_.q = start.q;
-  for (std::size_t k = 0; k < local_.size(); ++k) {
+  const ConjugatedRegions::Turns turns = of_.first_turns(handles_, targets_);
+  const auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns)));
+  q_ = start.q.size() == basis->columns.cols() ? start.q : VectorXd(VectorXd::Zero(basis->columns.cols()));
+  stand_ = {turns, basis, std::move(stand_.local), points_of(basis)};
+  for (std::size_t k = 0; k < stand_.local.size(); ++k) {
     const int region = region_of(k);
-    if (region >= 0) local_[k] = basis->rotations[static_cast<std::size_t>(region)];
+    if (region >= 0) stand_.local[k] = basis->rotations[static_cast<std::size_t>(region)];
   }
-  follow(sample_displacements(subspace_, state_), targets_);
+  accept(energy_.solve(terms(stand_), still_), sample_displacements(subspace_, SubspaceState{q_, basis}));
 }
 
 void MovingSolve::Run::iterate() {
-  const Points before = sample_displacements(subspace_, state_);
-  // Where the lift differs from mere Gaussians about the samples, the handles' targets make up for it.
-  const VectorXd wanted = targets_ - stacked(lifted()) + VectorXd(applied(spread_, stacked(before)));
-  if (regions_.freedom() > 0) turn_groups(before, wanted);
-  follow(before, wanted);
-}
-
-// Coordinates and groups together, to first order; of that the groups' turns are kept, where they contradict nothing.
-void MovingSolve::Run::turn_groups(const Points& before, const VectorXd& wanted) {
-  const Points turned_delta = turned_coordinates();
-  const MatrixXd turning = regions_.columns(turns_, corotation_.rest + before, region_centres(subspace_, state_));
-  // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
-  const Turning all{turning, regions_.columns(turns_, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
-                    regions_.arms(turns_, spread_, handles_.rest() - spread_ * corotation_.rest)};
-  const SmallTurns small{regions_, turns_, turning};
-  const VectorXd both = energy_
-                            .solve(state_.basis->columns, all, state_.basis->offset,
-                                   stacked(turned_delta - corotation_.delta), wanted, contact_rows(&small))
-                            .z;
-  VectorXd angles = both.tail(turning.cols());
-  const double largest = angles.cwiseAbs().maxCoeff();
   context_.check();
-  if (largest > kMaxTurn) angles *= kMaxTurn / largest;
-  const ConjugatedRegions::Turns next = regions_.turned(turns_, angles);
-  auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(next)));
-  if (basis->conflict <= kConflict * subspace_->diagonal) accept(next, std::move(basis));
+  const Points before = sample_displacements(subspace_, SubspaceState{q_, stand_.basis});
+  accept(regions_.freedom() > 0 ? turn_groups(before) : energy_.solve(terms(stand_), still_), before);
 }
 
-void MovingSolve::Run::accept(const ConjugatedRegions::Turns& next, std::shared_ptr<const ConjugatedBasis> basis) {
-  for (std::size_t k = 0; k < local_.size(); ++k) {
+// The best coordinates for groups that turn as they should to first order, or less far where the energy grows, or not
+// at all where they contradict one another.
+SampleEnergy::Solution MovingSolve::Run::turn_groups(const Points& before) {
+  VectorXd angles = turns_wanted(before);
+  context_.check();
+  const double energy = energy_.value(terms(stand_), q_);
+  for (int attempt = 0; attempt < kAttempts; ++attempt, angles /= 2) {
+    const ConjugatedRegions::Turns turns = regions_.turned(stand_.turns, angles);
+    auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns)));
+    if (!(basis->conflict <= kConflict * subspace_->diagonal)) break;
+    Stand next = turned(turns, std::move(basis));
+    SampleEnergy::Solution solution = energy_.solve(terms(next), still_);
+    if (!(solution.energy <= energy * (1 + kRounded))) continue;
+    stand_ = std::move(next);
+    return solution;
+  }
+  return energy_.solve(terms(stand_), still_);
+}
+
+// Coordinates and groups together, to first order: the groups' turns of that, radians.
+VectorXd MovingSolve::Run::turns_wanted(const Points& before) const {
+  const SubspaceState state{q_, stand_.basis};
+  const Points turned_delta = turned_coordinates(stand_);
+  const MatrixXd turning = regions_.columns(stand_.turns, corotation_.rest + before, region_centres(subspace_, state));
+  // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
+  const Turning all{
+      turning, regions_.columns(stand_.turns, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
+      applied(spread_, turning) + regions_.arms(stand_.turns, spread_, handles_.rest() - spread_ * corotation_.rest)};
+  const SmallTurns small{regions_, stand_.turns, turning};
+  SampleEnergy::Terms both = terms(stand_);
+  both.contacts = contact_rows(stand_, &small);
+  VectorXd angles = energy_.solve(both, all).z.tail(turning.cols());
+  const double largest = angles.cwiseAbs().maxCoeff();
+  if (largest > kMaxTurn) angles *= kMaxTurn / largest;
+  return angles;
+}
+
+MovingSolve::Stand MovingSolve::Run::turned(const ConjugatedRegions::Turns& turns,
+                                            std::shared_ptr<const ConjugatedBasis> basis) const {
+  Stand next{turns, std::move(basis), stand_.local, {}};
+  next.points = points_of(next.basis);
+  for (std::size_t k = 0; k < next.local.size(); ++k) {
     const int region = region_of(k);
     if (region < 0) continue;
     const auto r = static_cast<std::size_t>(region);
-    local_[k] = basis->rotations[r] * state_.basis->rotations[r].transpose() * local_[k];
+    next.local[k] = next.basis->rotations[r] * stand_.basis->rotations[r].transpose() * stand_.local[k];
   }
-  turns_ = next;
-  state_.basis = std::move(basis);
+  return next;
 }
 
-// The best coordinates for groups that stand as they do, and the local rotations to them.
-void MovingSolve::Run::follow(const Points& before, const VectorXd& wanted) {
-  context_.check();
-  const auto solution = energy_.solve(state_.basis->columns, still_, state_.basis->offset,
-                                      stacked(turned_coordinates() - corotation_.delta), wanted, contact_rows(nullptr));
-  state_.q = solution.z;
+// Takes coordinates up, and the local rotations to them.
+void MovingSolve::Run::accept(const SampleEnergy::Solution& solution, const Points& before) {
+  q_ = solution.z;
   result_.energy = solution.energy;
-  const Points after = sample_displacements(subspace_, state_);
+  const Points after = sample_displacements(subspace_, SubspaceState{q_, stand_.basis});
   result_.last_change = (after - before).rowwise().norm().maxCoeff();
-  local_ = local_rotations(corotation_, corotation_.rest + after, local_);
+  stand_.local = local_rotations(corotation_, corotation_.rest + after, stand_.local);
 }
 
 Deformation MovingSolve::Run::finish() {
-  const VectorXd missed = stacked(lifted()) - targets_;
+  result_.state.basis = stand_.basis;
+  const VectorXd missed = stacked(lifted(result_.state)) - targets_;
   double squares = 0;
   for (Eigen::Index i = 0; i < missed.size(); ++i) {
     squares += handles_.weights()[static_cast<std::size_t>(i / 3)] * missed[i] * missed[i];
@@ -157,25 +183,55 @@ Deformation MovingSolve::Run::finish() {
   return std::move(result_);
 }
 
-Points MovingSolve::Run::turned_coordinates() const {
+SampleEnergy::Terms MovingSolve::Run::terms(const Stand& stand) const {
+  return {stand.basis->columns,
+          stand.basis->offset,
+          stand.points,
+          stacked(turned_coordinates(stand) - corotation_.delta),
+          targets_,
+          contact_rows(stand, nullptr)};
+}
+
+Points MovingSolve::Run::turned_coordinates(const Stand& stand) const {
   Points turned(corotation_.delta.rows(), 3);
   for (Eigen::Index k = 0; k < turned.rows(); ++k) {
-    turned.row(k) = (local_[static_cast<std::size_t>(k)] * corotation_.delta.row(k).transpose()).transpose();
+    turned.row(k) = (stand.local[static_cast<std::size_t>(k)] * corotation_.delta.row(k).transpose()).transpose();
   }
   return turned;
 }
 
-ContactRows MovingSolve::Run::contact_rows(const SmallTurns* small) const {
+ContactRows MovingSolve::Run::contact_rows(const Stand& stand, const SmallTurns* small) const {
   if (of_.contacts_.empty()) {
-    return {MatrixXd(0, state_.q.size() + (small != nullptr ? small->columns.cols() : 0)), VectorXd(0)};
+    return {MatrixXd(0, q_.size() + (small != nullptr ? small->columns.cols() : 0)), VectorXd(0)};
   }
-  return contact_rows_at(of_.contacts_, of_.contact_weight_, subspace_, state_, vertex_displacements(subspace_, state_),
-                         local_, small);
+  const SubspaceState state{q_, stand.basis};
+  return contact_rows_at(of_.contacts_, of_.contact_weight_, subspace_, state, vertex_displacements(subspace_, state),
+                         stand.local, small);
+}
+
+// How the handles' points follow the coordinates: by the lift itself, whatever it makes of the samples.
+HandlePoints MovingSolve::Run::points_of(const std::shared_ptr<const ConjugatedBasis>& basis) const {
+  const Eigen::Index freedom = basis->columns.cols();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < handles_.vertices().size(); ++i) {
+    Eigen::Matrix3Xd rows = Eigen::Matrix3Xd::Zero(3, freedom);
+    add_vertex_rows(subspace_, *basis, handles_.vertices()[i], rows);
+    for (Eigen::Index j = 0; j < freedom; ++j) {
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        if (rows(c, j) != 0) entries.emplace_back(3 * static_cast<Eigen::Index>(i) + c, j, rows(c, j));
+      }
+    }
+  }
+  HandlePoints points;
+  points.rows.resize(3 * handles_.rest().rows(), freedom);
+  points.rows.setFromTriplets(entries.begin(), entries.end());
+  points.offset = stacked(lifted({VectorXd::Zero(freedom), basis}));
+  return points;
 }
 
 // Displacements of the handles' points.
-Points MovingSolve::Run::lifted() const {
-  return vertex_displacements(subspace_, state_)(handles_.vertices(), Eigen::all);
+Points MovingSolve::Run::lifted(const SubspaceState& state) const {
+  return vertex_displacements(subspace_, state)(handles_.vertices(), Eigen::all);
 }
 
 int MovingSolve::Run::region_of(std::size_t sample) const {

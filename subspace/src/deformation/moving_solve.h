@@ -25,6 +25,7 @@ class MovingSolve {
                     const SubspaceState& start, const RunContext& context) const;
 
  private:
+  struct Stand;
   class Run;
 
   ConjugatedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;

@@ -42,25 +42,23 @@ void add_lower_gram(const SparseRows& rows, Eigen::Ref<MatrixXd> gram) {
 
 }  // namespace
 
-SampleEnergy::SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights,
-                           double alpha)
-    : laplacian_(thrice(corotation.laplacian)), points_(thrice(points)) {
-  weights_.resize(points_.rows());
-  for (Eigen::Index i = 0; i < weights_.size(); ++i)
+SampleEnergy::SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha)
+    : laplacian_(thrice(corotation.laplacian)), weights_(3 * static_cast<Eigen::Index>(weights.size())) {
+  for (Eigen::Index i = 0; i < weights_.size(); ++i) {
     weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
-  points_ = weights_.asDiagonal() * points_;
+  }
 }
 
-SampleEnergy::Solution SampleEnergy::solve(const SparseRows& columns, const Turning& turning, const VectorXd& offset,
-                                           const VectorXd& laplace, const VectorXd& targets,
-                                           const ContactRows& contacts) const {
-  const Eigen::Index rest = columns.cols();
+SampleEnergy::Solution SampleEnergy::solve(const Terms& terms, const Turning& turning) const {
+  const Eigen::Index rest = terms.columns.cols();
   const Eigen::Index turns = turning.samples.cols();
-  const Part parts[] = {
-      {laplacian_ * columns, laplacian_ * turning.samples - turning.along, laplace - laplacian_ * offset},
-      {points_ * columns, points_ * turning.samples + weights_.asDiagonal() * turning.arms,
-       weights_.cwiseProduct(targets) - points_ * offset},
-      {contacts.rows.leftCols(rest).sparseView(), contacts.rows.rightCols(turns), contacts.right}};
+  const HandlePoints& handles = terms.handles;
+  const ContactRows& contacts = terms.contacts;
+  const Part parts[] = {{laplacian_ * terms.columns, laplacian_ * turning.samples - turning.along,
+                         terms.laplace - laplacian_ * terms.offset},
+                        {weights_.asDiagonal() * handles.rows, weights_.asDiagonal() * turning.handles,
+                         weights_.cwiseProduct(terms.targets - handles.offset)},
+                        {contacts.rows.leftCols(rest).sparseView(), contacts.rows.rightCols(turns), contacts.right}};
   MatrixXd normal = MatrixXd::Zero(rest + turns, rest + turns);
   VectorXd side = VectorXd::Zero(rest + turns);
   VectorXd own;  // however firm contacts are, what holds the unknowns is measured by the rest
@@ -86,6 +84,13 @@ SampleEnergy::Solution SampleEnergy::solve(const SparseRows& columns, const Turn
         (part.rows * solution.z.head(rest) + part.turns * solution.z.tail(turns) - part.right).squaredNorm();
   }
   return solution;
+}
+
+double SampleEnergy::value(const Terms& terms, const VectorXd& z) const {
+  const VectorXd moved = terms.handles.rows * z + terms.handles.offset;
+  return (laplacian_ * (terms.columns * z + terms.offset) - terms.laplace).squaredNorm() +
+         weights_.cwiseProduct(moved - terms.targets).squaredNorm() +
+         (terms.contacts.rows * z - terms.contacts.right).squaredNorm();
 }
 
 }  // namespace orbifit

@@ -5,36 +5,52 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "basis/lift.h"
 #include "deformation/contact_energy.h"
 #include "deformation/corotation.h"
 
 namespace orbifit {
 
 /// How displacements start to change as the groups turn: of the samples, of the Laplace coordinates asked for, and of
-/// the handles' points about the samples that they follow. Columns by ways of turning.
+/// the handles' points. Columns by ways of turning.
 struct Turning {
-  Eigen::MatrixXd samples, along, arms;
+  Eigen::MatrixXd samples, along, handles;
 };
 
-/// The energy |L u - b|^2 + alpha |A u - a|_W^2 over displacements u = columns z + offset, and the contacts'.
+/// The handles' points move by rows z + offset, to first order of turns by Turning::handles besides.
+struct HandlePoints {
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows;  ///< 3 #points by DoF
+  Eigen::VectorXd offset;                             ///< 3 #points
+};
+
+/// The energy |L u - b|^2 + alpha |v - a|_W^2 over displacements u = columns z + offset of the samples and v of the
+/// handles' points, and the contacts'.
 class SampleEnergy {
  public:
   using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  /// \param points  A, handles' points by samples \param weights  W, of the points
-  SampleEnergy(const Corotation& corotation, const LiftWeights& points, const std::vector<double>& weights,
-               double alpha);
+  /// \param weights  W, of the handles' points
+  SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha);
 
   struct Solution {
     Eigen::VectorXd z;  ///< the last unknowns are turns, radians
     double energy = 0;
   };
 
-  /// \param laplace  b \param targets  a
+  /// What it is made of where the groups stand somewhere.
+  struct Terms {
+    const Eigen::SparseMatrix<double>& columns;
+    const Eigen::VectorXd& offset;
+    const HandlePoints& handles;
+    Eigen::VectorXd laplace;         ///< b
+    const Eigen::VectorXd& targets;  ///< a
+    ContactRows contacts;
+  };
+
   /// \throw NoResultError  the system cannot be factorised
-  Solution solve(const SparseRows& columns, const Turning& turning, const Eigen::VectorXd& offset,
-                 const Eigen::VectorXd& laplace, const Eigen::VectorXd& targets, const ContactRows& contacts) const;
+  Solution solve(const Terms& terms, const Turning& turning) const;
+
+  /// Of coordinates, without turns.
+  double value(const Terms& terms, const Eigen::VectorXd& z) const;
 
  private:
   struct Part {
@@ -43,8 +59,8 @@ class SampleEnergy {
     Eigen::VectorXd right;
   };
 
-  SparseRows laplacian_, points_;  // by coordinates, the points weighted
-  Eigen::VectorXd weights_;
+  SparseRows laplacian_;     // by coordinates
+  Eigen::VectorXd weights_;  // square roots of what the points' coordinates weigh
 };
 
 }  // namespace orbifit
