@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kSamePiece = 0.0125;  // of the diagonal: 2.5 usual tolerances, as consistency's `reach`
+constexpr std::size_t kMarks = 32;     // of a place's faces, spread over it, tell it from its twins
 constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
 
 // Places that have no image yet, and those that are no image.
@@ -78,6 +79,49 @@ PieceMoments DomainMap::common_piece(int a, int b) const {
   return result;
 }
 
+// Two pinwheels at one place that turn opposite ways have the same moments: only their surfaces tell them apart.
+void DomainMap::find_twins(const Mesh& mesh) {
+  std::vector<PieceMoments> moments;
+  for (int place = 0; place < places(); ++place) moments.push_back(moments_of_faces(mesh, at(place).faces, origin_));
+  const auto alike = [&](int p, int q) {
+    return (p < count()) == (q < count()) && at(p).faces != at(q).faces &&
+           separation(moments[static_cast<std::size_t>(p)], Motion{}, moments[static_cast<std::size_t>(q)], size_) <=
+               kSamePiece;
+  };
+  const auto mark = [&](int place) {
+    std::vector<Eigen::Vector3d>& marks = twins_[place];
+    if (!marks.empty()) return;
+    for (const int face : at(place).faces) {
+      marks.push_back(mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean().transpose());
+    }
+  };
+  for (int p = 0; p < places(); ++p) {
+    for (int q = 0; q < p; ++q) {
+      if (!alike(p, q)) continue;
+      mark(p);
+      mark(q);
+    }
+  }
+}
+
+// Of places that have twins: from the image of the one, some faces of it, to the other on the average, as a fraction of
+// the diagonal. 0 of others.
+double DomainMap::piece_distance(int from, const Motion& motion, int to) const {
+  const auto a = twins_.find(from);
+  const auto b = twins_.find(to);
+  if (a == twins_.end() || b == twins_.end()) return 0;
+  const std::size_t step = 1 + (a->second.size() - 1) / kMarks;
+  double sum = 0;
+  double marks = 0;
+  for (std::size_t i = 0; i < a->second.size(); i += step, ++marks) {
+    const Eigen::Vector3d image = motion(a->second[i]);
+    double nearest = kFar;
+    for (const Eigen::Vector3d& mark : b->second) nearest = std::min(nearest, (mark - image).squaredNorm());
+    sum += std::sqrt(nearest);
+  }
+  return sum / marks / size_;
+}
+
 bool DomainMap::around(int outer, int inner) const {
   return std::ranges::binary_search(around_[static_cast<std::size_t>(inner)], outer);
 }
@@ -131,12 +175,12 @@ DomainMap::Images DomainMap::find_images(int place, int element) const {
   const auto same_kind = [&](int p, int q) { return (p < count()) == (q < count()); };
   pair_nearest(open, result.pairs, [&](int p, int q) {  // instances of patterns have no group
     if (!same_kind(p, q) || (p < count() && !group_goes_to(p, motion, q))) return kFar;
-    return separation(common_moments(place, p), told, common_moments(arrival, q), size_);
+    return separation(common_moments(place, p), told, common_moments(arrival, q), size_) + piece_distance(p, motion, q);
   });
   pair_nearest(open, result.pairs, [&](int p, int q) {
     if (!same_kind(p, q)) return kFar;
     const double off = separation(common_piece(place, p), told, common_piece(arrival, q), size_);
-    return off <= kSamePiece ? off : kFar;
+    return off <= kSamePiece ? off + piece_distance(p, motion, q) : kFar;
   });
   std::ranges::sort(result.pairs);
   return result;

@@ -92,6 +92,7 @@ DomainMap::DomainMap(const Mesh& mesh, const SymmetryAnnotation& annotation,
   moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
   images_.resize(places_.size());
   find_meeting(mesh);
+  find_twins(mesh);
 }
 
 void DomainMap::find_sets(const Mesh& mesh) {
