@@ -25,7 +25,8 @@ tried() {
   /usr/bin/python3 "$root/tests/mutants/run_mutants.py" "$work/$name.tsv" "$work/release/$program"
   for source in "$@"; do cp "$root/${source#"$copy"/}" "$source"; done # the next one's tests run without these
 }
-(cd "$copy" && cmake --preset release -B "$work/release" -Wno-dev -DORBIFIT_BUILD_TESTS=ON -DORBIFIT_BUILD_BASELINES=ON >"$work/release.log")
+(cd "$copy" && cmake --preset release -B "$work/release" -Wno-dev -DORBIFIT_BUILD_TESTS=ON -DORBIFIT_BUILD_BASELINES=ON \
+  -DCMAKE_CXX_FLAGS=-D_GLIBCXX_ASSERTIONS >"$work/release.log") # what reaches past an end is noticed
 tried groups model_test tests/detection/model/model_test "$copy"/detection/model/src/groups/*.cpp
 tried verification detection_test tests/detection/detection_test "$copy"/detection/src/group/*.cpp
 tried subspace subspace_test tests/subspace/subspace_test "$copy"/subspace/src/{basis,symmetry,sampling,rest_shape,deformation}/*.cpp

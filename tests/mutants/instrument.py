@@ -102,8 +102,8 @@ def main():
     for number, (path, begin, at, end, name, mutant) in reversed(list(enumerate(taken))):
         text = texts[path]
         left, right = text[begin:at], text[at + len(name):end]
-        texts[path] = (f"{text[:begin]}(orbifit_mutants::lives({number}) ? ({left} {mutant} {right}) : "
-                       f"({left} {name} {right})){text[end:]}")
+        texts[path] = (f"{text[:begin]}(orbifit_mutants::lives({number}) ? (({left}) {mutant} ({right})) : "
+                       f"(({left}) {name} ({right}))){text[end:]}")
     for path in {one[0] for one in taken}:
         header = os.path.join(os.path.dirname(os.path.abspath(__file__)), "mutant.h")
         with open(path, "w", encoding="latin-1") as file:

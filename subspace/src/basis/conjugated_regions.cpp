@@ -243,8 +243,24 @@ ConjugatedRegions::Turns ConjugatedRegions::turned(const Turns& turns, const Eig
 }
 
 MatrixXd ConjugatedRegions::columns(const Turns& turns, const Points& samples, const Points& centres) const {
+  return columns_of(turns, samples_, samples, centres);
+}
+
+MatrixXd ConjugatedRegions::vertex_columns(const Turns& turns, const std::vector<int>& vertices, const Points& points,
+                                           const Points& centres) const {
+  Held held(samples_.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (const int place : subspace_->regions->set_places(set_of_vertex(subspace_->orbits, vertices[i]))) {
+      if (place < subspace_->regions->count()) held[static_cast<std::size_t>(place)].push_back(static_cast<int>(i));
+    }
+  }
+  return columns_of(turns, held, points, centres);
+}
+
+MatrixXd ConjugatedRegions::columns_of(const Turns& turns, const Held& held, const Points& points,
+                                       const Points& centres) const {
   const std::vector<Matrix3d> now = rotations(turns);
-  MatrixXd result = MatrixXd::Zero(3 * samples.rows(), freedom_);
+  MatrixXd result = MatrixXd::Zero(3 * points.rows(), freedom_);
   Eigen::Index at = 0;
   for (const Family& family : families_) {
     for (Eigen::Index d = 0; d < family.free.cols(); ++d, ++at) {
@@ -252,8 +268,8 @@ MatrixXd ConjugatedRegions::columns(const Turns& turns, const Points& samples, c
         const int outer = around_[static_cast<std::size_t>(member.region)];
         Vector3d rotation = member.from_first * family.free.col(d);
         if (outer >= 0) rotation = now[static_cast<std::size_t>(outer)] * rotation;
-        for (const int k : samples_[static_cast<std::size_t>(member.region)]) {
-          const Vector3d arm = (samples.row(k) - centres.row(member.region)).transpose();
+        for (const int k : held[static_cast<std::size_t>(member.region)]) {
+          const Vector3d arm = (points.row(k) - centres.row(member.region)).transpose();
           result.block<3, 1>(3 * Eigen::Index{k}, at) += rotation.cross(arm);
         }
       }

@@ -53,6 +53,11 @@ class ConjugatedRegions {
   /// \param centres   #regions by 3, where the regions' centres are now
   Eigen::MatrixXd columns(const Turns& turns, const Points& samples, const Points& centres) const;
 
+  /// The same of vertices: they turn with the regions that hold them. 3#vertices by freedom().
+  /// \param points  of the vertices, where they are now
+  Eigen::MatrixXd vertex_columns(const Turns& turns, const std::vector<int>& vertices, const Points& points,
+                                 const Points& centres) const;
+
   /// How turning moves points that follow samples by weights, besides moving those: omega x (p - sum of w x), omega
   /// that of the samples, blended. 3#P by freedom().
   /// \param spread  #P by #S \param missing  p - sum of w x, #P by 3
@@ -67,6 +72,8 @@ class ConjugatedRegions {
     std::vector<Member> members;
     Eigen::MatrixXd free;  ///< 3 by 0..3, orthonormal: the first member's rotation vectors
   };
+  using Held = std::vector<std::vector<int>>;  ///< of each region, ascending
+  Eigen::MatrixXd columns_of(const Turns& turns, const Held& held, const Points& points, const Points& centres) const;
   void keep_agreeing(const RunContext& context);
   void gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
               std::vector<char>& taken);
@@ -74,9 +81,9 @@ class ConjugatedRegions {
   bool overlap(int a, int b) const;
 
   const Subspace& subspace_;
-  std::vector<std::vector<int>> samples_;  ///< of each region, ascending
-  std::vector<int> around_;                ///< smallest region around each; -1: none
-  std::vector<Family> families_;           ///< those of larger regions first
+  Held samples_;
+  std::vector<int> around_;       ///< smallest region around each; -1: none
+  std::vector<Family> families_;  ///< those of larger regions first
   int freedom_ = 0;
 };
 

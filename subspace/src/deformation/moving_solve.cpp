@@ -8,7 +8,6 @@
 
 #include <Eigen/SVD>
 
-#include "basis/lift.h"
 #include "basis/subspace_parts.h"
 #include "deformation/sample_energy.h"
 
@@ -19,10 +18,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMaxTurn = 0.35;    // radians in one iteration
-constexpr int kAttempts = 5;         // at a turn, each half as far: the last is a degree at most
-constexpr double kRounded = 1e-9;    // of an energy: what holds the coordinates, and rounding, may add as much
-constexpr double kConflict = 1e-12;  // of the diagonal
+constexpr double kMaxTurn = 0.35;         // radians in one iteration
+constexpr double kLeastShare = 1.0 / 16;  // of a turn that is tried: a degree at most
+constexpr double kRounded = 1e-9;         // of an energy: what holds the coordinates, and rounding, may add as much
+constexpr double kConflict = 1e-12;       // of the diagonal
 
 }  // namespace
 
@@ -32,6 +31,13 @@ struct MovingSolve::Stand {
   std::shared_ptr<const ConjugatedBasis> basis;
   std::vector<Eigen::Matrix3d> local;  // by sample
   HandlePoints points;
+};
+
+// The best coordinates for groups that stand so, and the local rotations to them.
+struct MovingSolve::Solved {
+  Stand stand;
+  VectorXd q;
+  double energy = 0;
 };
 
 // One solve on its way.
@@ -47,8 +53,9 @@ class MovingSolve::Run {
 
  private:
   VectorXd turns_wanted(const Points& before) const;
-  SampleEnergy::Solution turn_groups(const Points& before);
-  void accept(const SampleEnergy::Solution& solution, const Points& before);
+  Solved turn_groups(const Points& before);
+  Solved solved(Stand stand) const;
+  void accept(Solved next, const Points& before);
   Stand turned(const ConjugatedRegions::Turns& turns, std::shared_ptr<const ConjugatedBasis> basis) const;
   HandlePoints points_of(const std::shared_ptr<const ConjugatedBasis>& basis) const;
   SampleEnergy::Terms terms(const Stand& stand) const;
@@ -63,10 +70,10 @@ class MovingSolve::Run {
   const ConjugatedRegions& regions_;
   const HandleRows& handles_;
   const RunContext& context_;
-  LiftWeights spread_;  // handles' points by samples: how turns carry them, to first order
   SampleEnergy energy_;
   VectorXd targets_;
-  Turning still_;  // no way of turning
+  Turning still_;     // no way of turning
+  double share_ = 1;  // of the turns wanted, that the next iteration tries first
   Stand stand_;
   Deformation result_;
   VectorXd& q_ = result_.state.q;
@@ -80,7 +87,6 @@ MovingSolve::Run::Run(const MovingSolve& of, const HandleRows& handles, double a
       regions_(of.regions_),
       handles_(handles),
       context_(context),
-      spread_(lift_weights(handles.rest(), corotation_.rest, subspace_->sampling.radius, RunContext{})),
       energy_(corotation_, handles.weights(), alpha),
       targets_(handles.targets(motions)) {
   const Eigen::Index coordinates = corotation_.rest.size();
@@ -104,43 +110,51 @@ void MovingSolve::Run::begin(const SubspaceState& start) {
     const int region = region_of(k);
     if (region >= 0) stand_.local[k] = basis->rotations[static_cast<std::size_t>(region)];
   }
-  accept(energy_.solve(terms(stand_), still_), sample_displacements(subspace_, SubspaceState{q_, basis}));
+  accept(solved(stand_), sample_displacements(subspace_, SubspaceState{q_, basis}));
 }
 
 void MovingSolve::Run::iterate() {
   context_.check();
   const Points before = sample_displacements(subspace_, SubspaceState{q_, stand_.basis});
-  accept(regions_.freedom() > 0 ? turn_groups(before) : energy_.solve(terms(stand_), still_), before);
+  accept(regions_.freedom() > 0 ? turn_groups(before) : solved(stand_), before);
 }
 
 // The best coordinates for groups that turn as they should to first order, or less far where the energy grows, or not
 // at all where they contradict one another.
-SampleEnergy::Solution MovingSolve::Run::turn_groups(const Points& before) {
-  VectorXd angles = turns_wanted(before);
-  context_.check();
+MovingSolve::Solved MovingSolve::Run::turn_groups(const Points& before) {
+  const VectorXd angles = turns_wanted(before);
   const double energy = energy_.value(terms(stand_), q_);
-  for (int attempt = 0; attempt < kAttempts; ++attempt, angles /= 2) {
-    const ConjugatedRegions::Turns turns = regions_.turned(stand_.turns, angles);
+  for (; share_ >= kLeastShare; share_ /= 2) {
+    context_.check();
+    const ConjugatedRegions::Turns turns = regions_.turned(stand_.turns, share_ * angles);
     auto basis = std::make_shared<const ConjugatedBasis>(conjugated_basis(subspace_, regions_.rotations(turns)));
-    if (!(basis->conflict <= kConflict * subspace_->diagonal)) break;
-    Stand next = turned(turns, std::move(basis));
-    SampleEnergy::Solution solution = energy_.solve(terms(next), still_);
-    if (!(solution.energy <= energy * (1 + kRounded))) continue;
-    stand_ = std::move(next);
-    return solution;
+    if (!(basis->conflict <= kConflict * subspace_->diagonal)) return solved(stand_);
+    Solved next = solved(turned(turns, std::move(basis)));
+    if (!(energy_.value(terms(next.stand), next.q) <= energy * (1 + kRounded))) continue;
+    share_ = std::min(1.0, 2 * share_);
+    return next;
   }
-  return energy_.solve(terms(stand_), still_);
+  share_ = kLeastShare;  // the next iteration tries once
+  return solved(stand_);
+}
+
+MovingSolve::Solved MovingSolve::Run::solved(Stand stand) const {
+  SampleEnergy::Solution solution = energy_.solve(terms(stand), still_);
+  const Points there = corotation_.rest + sample_displacements(subspace_, SubspaceState{solution.z, stand.basis});
+  stand.local = local_rotations(corotation_, there, stand.local);
+  return {std::move(stand), std::move(solution.z), solution.energy};
 }
 
 // Coordinates and groups together, to first order: the groups' turns of that, radians.
 VectorXd MovingSolve::Run::turns_wanted(const Points& before) const {
   const SubspaceState state{q_, stand_.basis};
   const Points turned_delta = turned_coordinates(stand_);
-  const MatrixXd turning = regions_.columns(stand_.turns, corotation_.rest + before, region_centres(subspace_, state));
+  const Points centres = region_centres(subspace_, state);
+  const MatrixXd turning = regions_.columns(stand_.turns, corotation_.rest + before, centres);
   // What a group turns takes its Laplace coordinates along, so that turning as such costs nothing.
   const Turning all{
       turning, regions_.columns(stand_.turns, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
-      applied(spread_, turning) + regions_.arms(stand_.turns, spread_, handles_.rest() - spread_ * corotation_.rest)};
+      regions_.vertex_columns(stand_.turns, handles_.vertices(), handles_.rest() + lifted(state), centres)};
   const SmallTurns small{regions_, stand_.turns, turning};
   SampleEnergy::Terms both = terms(stand_);
   both.contacts = contact_rows(stand_, &small);
@@ -163,13 +177,12 @@ MovingSolve::Stand MovingSolve::Run::turned(const ConjugatedRegions::Turns& turn
   return next;
 }
 
-// Takes coordinates up, and the local rotations to them.
-void MovingSolve::Run::accept(const SampleEnergy::Solution& solution, const Points& before) {
-  q_ = solution.z;
-  result_.energy = solution.energy;
+void MovingSolve::Run::accept(Solved next, const Points& before) {
+  stand_ = std::move(next.stand);
+  q_ = std::move(next.q);
+  result_.energy = next.energy;
   const Points after = sample_displacements(subspace_, SubspaceState{q_, stand_.basis});
   result_.last_change = (after - before).rowwise().norm().maxCoeff();
-  stand_.local = local_rotations(corotation_, corotation_.rest + after, stand_.local);
 }
 
 Deformation MovingSolve::Run::finish() {

@@ -26,6 +26,7 @@ class MovingSolve {
 
  private:
   struct Stand;
+  struct Solved;
   class Run;
 
   ConjugatedRegions::Turns first_turns(const HandleRows& handles, const Eigen::VectorXd& targets) const;
