@@ -1,5 +1,7 @@
 #include "orbifit/model/point_group.h"
 
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -81,13 +83,26 @@ TEST_P(FiniteGroup, WithoutOneElementItIsNoGroup) {
   EXPECT_EQ(found.has_value() ? found->group.symbol() : "none", group_.order() == 2 ? "C1" : "none");
 }
 
+TEST_P(FiniteGroup, IsClosedAboutAnyCentreButNotWithoutAnElementNorWithOneAside) {
+  std::vector<Motion> motions;
+  const Eigen::Vector3d centre(0.3, -0.2, 0.5);
+  for (const Eigen::Matrix3d& linear : elements(group_, frame_)) motions.push_back(Motion::about(linear, centre));
+  EXPECT_TRUE(closed(motions, 1, 1e-9));
+  std::vector<Motion> aside = motions;
+  aside.back().translation[0] += 1e-3;
+  EXPECT_EQ(closed(aside, 1, 1e-9), GetParam() == "Ci");  // an inversion is one about any centre
+  motions.pop_back();
+  EXPECT_EQ(closed(motions, 1, 1e-9), group_.order() == 2);
+}
+
 std::string test_name(const testing::TestParamInfo<std::string>& info) {
   return info.param;
 }
 INSTANTIATE_TEST_SUITE_P(All, FiniteGroup, testing::ValuesIn(finite_symbols()), test_name);
 
 TEST(PointGroup, RefusesWhatIsNoSymbol) {
-  for (const char* text : {"", "C", "C0", "C01", "Cx", "S3", "S2", "Dv", "C4x", "D3v", "c4", "Th2", "C4v ", "D-2"}) {
+  for (const char* text :
+       {"", "C", "C0", "C01", "Cx", "S3", "S2", "Dv", "C4x", "D3v", "c4", "Th2", "C4v ", "D-2", "C1000001"}) {
     EXPECT_FALSE(PointGroup::parse(text).has_value()) << text;
   }
 }
@@ -100,6 +115,47 @@ TEST(PointGroup, ContinuousGroupsHaveOrderZero) {
     EXPECT_EQ(group->order(), 0);
     EXPECT_EQ(group->symbol(), text);
     EXPECT_FALSE(generators(*group).empty());
+  }
+}
+
+// Of each kind of orthogonal map that keeps an axis, to which groups about it belong. Source: the groups' definitions.
+TEST(PointGroup, ContinuousGroupsHoldWhatKeepsTheirAxisAndSense) {
+  Random random(11, "continuous");
+  const Eigen::Matrix3d frame = random.rotation();
+  const Eigen::Vector3d axis = frame.col(2);
+  const Eigen::Matrix3d turn = axis_rotation(axis, 0.7);
+  const Eigen::Matrix3d half_turn = axis_rotation(frame.col(0), std::numbers::pi);
+  const Eigen::Matrix3d inversion = -Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d upright = inversion * half_turn;
+  const Eigen::Matrix3d level = inversion * axis_rotation(axis, std::numbers::pi);
+  const struct {
+    const char* name;
+    Eigen::Matrix3d linear;
+    std::string groups;
+  } cases[] = {{"turn", turn, "Cinf Cinfv Cinfh Dinf Dinfh K Kh "},
+               {"half turn", turn * half_turn, "Dinf Dinfh K Kh "},
+               {"upright mirror", turn * upright, "Cinfv Dinfh Kh "},
+               {"level mirror", turn * level, "Cinfh Dinfh Kh "},
+               {"inversion", inversion, "Cinfh Dinfh Kh "},
+               {"tilt", axis_rotation(frame.col(0), 0.1), "K Kh "},
+               {"tilted mirror", axis_rotation(frame.col(0), 0.1) * level, "Kh "}};
+  for (const auto& one : cases) {
+    std::string groups;
+    for (const char* text : {"Cinf", "Cinfv", "Cinfh", "Dinf", "Dinfh", "K", "Kh"}) {
+      if (belongs_to_continuous(one.linear, *PointGroup::parse(text), axis, 1e-3)) groups += std::string(text) + " ";
+    }
+    EXPECT_EQ(groups, one.groups) << one.name;
+  }
+}
+
+// So that products of icosahedral elements are exact to the last digit.
+TEST(PointGroup, IcosahedralGeneratorsAreInClosedForm) {
+  const double phi = std::numbers::phi;
+  for (const Eigen::Matrix3d& generator : generators(*PointGroup::parse("I"))) {
+    for (const double entry : generator.reshaped()) {
+      const double value = std::abs(entry);
+      EXPECT_TRUE(value == 0 || value == 1 || value == 0.5 || value == phi / 2 || value == (phi - 1) / 2) << entry;
+    }
   }
 }
 
