@@ -512,7 +512,8 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
                    : kept_without_what_follows(prepared, mesh, std::move(annotation), options.explanation, context);
   const std::vector<std::vector<std::size_t>> families =
       list_by_importance(prepared, annotation, options.all, options.explanation, context);
-  name_by_shape_and_place(prepared, families, options.up, annotation, options.explanation);
+  const PartNames names(options.named_parts, static_cast<std::size_t>(mesh.faces.rows()));
+  name_by_shape_and_place(prepared, families, options.up, names, annotation, options.explanation);
   context.progress("regions", 1);
   return annotation;
 }

@@ -77,11 +77,49 @@ std::size_t components_in(const PreparedMesh& prepared, const std::vector<int>& 
 }
 
 // "ring", or "group of 12 parts".
-std::string noun_of(const PreparedMesh& prepared, const std::vector<int>& faces, const Region* region) {
+std::string shape_noun(const PreparedMesh& prepared, const std::vector<int>& faces, const Region* region) {
   if (region != nullptr && region->group.continuous()) return std::string(round_noun(prepared, *region));
   const std::size_t parts = components_in(prepared, faces);
   if (parts > 1) return "group of " + std::to_string(parts) + " parts";
   return std::string(angular_noun(surface_moments(prepared, faces)));
+}
+
+struct Noun {
+  std::string text;
+  std::string several;  // after a number
+  bool given = false;   // the file's name
+};
+
+// By the file's names, or by the shape: "leg", "group of 4 x leg", "plate of door", "ring".
+Noun noun_of(const PreparedMesh& prepared, const PartNames& names, const std::vector<int>& faces,
+             const Region* region) {
+  const auto named = names.of(faces);
+  if (named && named->whole && named->parts == 1) return {named->text, named->text, true};
+  if (named && named->whole) {
+    const std::string group = "of " + std::to_string(named->parts) + " x " + named->text;
+    return {"group " + group, "groups " + group, true};
+  }
+  const std::string shape = shape_noun(prepared, faces, region);
+  const std::string shapes = shape.starts_with("group") ? "groups" + shape.substr(5) : shape + "s";
+  const std::string of = named && named->parts == 1 ? " of " + named->text : "";
+  return {shape + of, shapes + of, false};
+}
+
+// What each region of a family is called: all by one noun and their number, unless the file gives them names of their
+// own.
+std::vector<std::string> names_of_family(const PreparedMesh& prepared, const PartNames& names,
+                                         const std::vector<const Region*>& family) {
+  std::vector<Noun> nouns;
+  for (const Region* region : family) nouns.push_back(noun_of(prepared, names, region->faces, region));
+  const bool alike = std::ranges::all_of(nouns, [&](const Noun& noun) { return noun.text == nouns.front().text; });
+  const bool own = family.size() == 1 || (!alike && std::ranges::all_of(nouns, &Noun::given));
+  const std::string shared = alike ? nouns.front().text : shape_noun(prepared, family.front()->faces, family.front());
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < family.size(); ++i) {
+    result.push_back(own ? nouns[i].text
+                         : shared + " " + std::to_string(i + 1) + " of " + std::to_string(family.size()));
+  }
+  return result;
 }
 
 /// Words for the sides of the mesh.
@@ -117,10 +155,8 @@ class Sides {
   double low_[3], high_[3];
 };
 
-std::string pattern_name(const Pattern& pattern, const std::string& noun) {
-  const std::string count = std::to_string(pattern.instances.size());
-  const std::string items =
-      count + " " + (noun.starts_with("group") ? "g" + noun.substr(1, 4) + "s" + noun.substr(5) : noun + "s");
+std::string pattern_name(const Pattern& pattern, const Noun& noun) {
+  const std::string items = std::to_string(pattern.instances.size()) + " " + noun.several;
   switch (pattern.kind) {
     case Pattern::Kind::translation_1d:
       return "row of " + items;
@@ -140,7 +176,8 @@ std::string pattern_name(const Pattern& pattern, const std::string& noun) {
 }  // namespace
 
 void name_by_shape_and_place(const PreparedMesh& prepared, const std::vector<std::vector<std::size_t>>& families,
-                             const Vector3d& up, SymmetryAnnotation& annotation, Explanation* explanation) {
+                             const Vector3d& up, const PartNames& names, SymmetryAnnotation& annotation,
+                             Explanation* explanation) {
   const Sides sides(prepared, up);
   std::vector<std::string> taken;  // names, to tell equal ones apart
   const auto told_apart = [&](std::string name) {
@@ -153,27 +190,27 @@ void name_by_shape_and_place(const PreparedMesh& prepared, const std::vector<std
     name = std::move(now);
   };
   for (const std::vector<std::size_t>& family : families) {
-    std::string noun;  // of the family's first
+    std::vector<const Region*> members;
+    for (const std::size_t r : family) members.push_back(&annotation.regions[r]);
+    const std::vector<std::string> own = names_of_family(prepared, names, members);
     for (std::size_t i = 0; i < family.size(); ++i) {
       Region& region = annotation.regions[family[i]];
       const std::string what = region.group.symbol() + " on ";
       const SurfaceMoments moments = surface_moments(prepared, region.faces);
-      if (i == 0) noun = noun_of(prepared, region.faces, &region);
       const std::string side = sides.of(moments.centroid);
       if (moments.area >= kOfWhole * prepared.area) {
         rename(region.name, told_apart("whole"), what);
       } else if (family.size() == 1) {
-        rename(region.name, told_apart(side + noun), what);
+        rename(region.name, told_apart(side + own[i]), what);
       } else {
         const std::string where = side.empty() ? "" : ", " + side.substr(0, side.size() - 1);
-        rename(region.name,
-               told_apart(noun + " " + std::to_string(i + 1) + " of " + std::to_string(family.size()) + where), what);
+        rename(region.name, told_apart(own[i] + where), what);
       }
     }
   }
   for (Pattern& pattern : annotation.patterns) {
     const std::vector<int>& first = pattern.instances.front().faces;
-    rename(pattern.name, told_apart(pattern_name(pattern, noun_of(prepared, first, nullptr))),
+    rename(pattern.name, told_apart(pattern_name(pattern, noun_of(prepared, names, first, nullptr))),
            to_string(pattern.kind) + " of ");
   }
 }

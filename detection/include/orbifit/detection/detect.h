@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "orbifit/detection/explanation.h"
@@ -8,6 +11,12 @@
 #include "orbifit/model/run_context.h"
 
 namespace orbifit {
+
+/// What a mesh's file calls the parts of it: Appearance::parts.
+struct NamedParts {
+  std::vector<int> part_of_face;   ///< #F, -1 for none; empty: no face has a name
+  std::vector<std::string> names;  ///< may be repeated
+};
 
 struct DetectOptions {
   /// Largest distance between g(S) and S that still counts as symmetric, as a fraction of the mesh's diagonal.
@@ -23,6 +32,8 @@ struct DetectOptions {
   bool all = false;
   /// Which way is up, for the names of regions ("upper ring").
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // not zero
+  /// Names that go before those by shape.
+  NamedParts named_parts;
   /// Where to note what each stage kept and dropped; null: nowhere.
   Explanation* explanation = nullptr;
 
@@ -35,7 +46,8 @@ struct DetectOptions {
 /// element of a returned group was verified against the surface, and the groups agree with one another exactly
 /// (consistent_annotation()). Ordered by importance, what each saves of the surface given those before it; images of
 /// one another follow one another and have the importance of all. What follows from those before it, and is no main
-/// part, is left out. Named by what and where they are; parents set. The result is the same for any number of threads.
+/// part, is left out. Named by their parts'
+/// names or by what they are, and by where; parents set. The result is the same for any number of threads.
 /// Costs O(F log F), for each region too, for meshes finer than the tolerance asks for; the search itself depends on
 /// how much shape there is at the size of the tolerance.
 /// \throw InputError when
