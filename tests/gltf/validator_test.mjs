@@ -139,5 +139,28 @@ mirrorAnnotation("quantised.json", "quantised.glb");
 await validate("deform quantised.glb quantised.json --handles handles.json -o edited-quantised.glb", "edited-quantised.glb");
 await validate("convert quantised.glb flat-quantised.glb", "flat-quantised.glb");
 
+// What is written plainly: instances as nodes, sparse accessors filled.
+const instanced = new Gltf();
+instanced.root.extensionsUsed = instanced.root.extensionsRequired = ["EXT_mesh_gpu_instancing"];
+instanced.node({ name: "row", mesh: instanced.mesh(instanced.primitive(shape)), extensions: { EXT_mesh_gpu_instancing: {
+  attributes: { TRANSLATION: instanced.accessor([[-3, 0, 0], [0, 0, 0], [3, 0, 0]], Float32Array, { target: 0 }),
+                ROTATION: instanced.accessor([[0, 0, 0, 32767], [0, 0, 23170, 23170], [0, 0, 0, 32767]], Int16Array,
+                                             { target: 0, normalized: true }) } } } });
+const sparse = new Gltf();
+const partly = sparse.primitive(shape);
+for (const [accessor, value] of [[partly.attributes.POSITION, [0, 0, 0.4]], [partly.attributes.NORMAL, [1, 0, 0]]]) {
+  const numbers = [sparse.accessor([7], Uint16Array, { target: 0 }), sparse.accessor([value], Float32Array, { target: 0 })]
+    .map(number => sparse.root.accessors[number].bufferView);
+  sparse.root.accessors[accessor].sparse = { count: 1, indices: { bufferView: numbers[0], componentType: 5123 },
+                                             values: { bufferView: numbers[1] } };
+}
+sparse.node({ mesh: sparse.mesh(partly) });
+for (const [name, gltf] of [["instanced", instanced], ["sparse", sparse]]) {
+  await writeRight(`${name}.glb`, gltf.glb());
+  mirrorAnnotation(`${name}.json`, `${name}.glb`);
+  await validate(`deform ${name}.glb ${name}.json --handles handles.json -o edited-${name}.glb`, `edited-${name}.glb`);
+  await validate(`convert ${name}.glb flat-${name}.glb`, `flat-${name}.glb`);
+}
+
 console.log(failures ? `${failures} failed` : "all passed");
 process.exit(failures ? 1 : 0);
