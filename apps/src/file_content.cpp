@@ -1,12 +1,14 @@
 #include "file_content.h"
 
 #include <algorithm>
+#include <set>
 
 #include "orbifit/model/appearance.h"
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
-#include "rewrite/gltf_file.h"
+#include "files/gltf_file.h"
+#include "files/three_mf.h"
 
 namespace orbifit {
 
@@ -37,6 +39,28 @@ void add_gltf(const std::string& file, Json& content) {
   content["unit"] = "metre";
 }
 
+// What 3MF has and an Appearance has not.
+void add_three_mf(const std::string& file, Json& content) {
+  MeshBuilder builder(file);
+  const ThreeMfContent told = read_three_mf_content(file, read_file(file), builder);
+  content["unit"] = told.unit;
+  content["build_items"] = told.items;
+  content["parts"] = told.parts.size();
+  std::set<std::int64_t> meshes;
+  for (const ThreeMfPart& part : told.parts) meshes.insert(part.object);
+  content["meshes"] = meshes.size();
+}
+
+// Names of parts, each once, in the file's order.
+Json names(const Appearance& look, std::string Part::*of) {
+  Json result = Json::array();
+  std::set<std::string> known;
+  for (const Part& part : look.parts) {
+    if (!(part.*of).empty() && known.insert(part.*of).second) result.push_back(part.*of);
+  }
+  return result;
+}
+
 }  // namespace
 
 Json file_content(const std::string& file, const Mesh& mesh) {
@@ -56,9 +80,12 @@ Json file_content(const std::string& file, const Mesh& mesh) {
       }
       content["materials"].push_back(entry);
     }
+    content["objects"] = names(look, &Part::object);
+    content["groups"] = names(look, &Part::group);
     content["warnings"] = look.warnings;
     content["unit"] = nullptr;
     if (ending == ".gltf" || ending == ".glb") add_gltf(file, content);
+    if (ending == ".3mf") add_three_mf(file, content);
   } catch (const InputError& error) {
     content["problem"] = error.what();
   }

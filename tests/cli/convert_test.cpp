@@ -11,6 +11,7 @@
 #include "orbifit/model/mesh_io.h"
 
 #include "cube.h"
+#include "picture.h"
 #include "program.h"
 
 namespace orbifit {
@@ -111,6 +112,57 @@ TEST_F(OrbifitConvert, MakesOneMeshOfCongruentParts) {
   const Mesh instanced = read_mesh(file("fan.glb"));
   EXPECT_EQ(instanced.faces.rows(), fan.faces.rows());
   EXPECT_NEAR(face_areas(instanced).sum(), face_areas(fan).sum(), 1e-5 * face_areas(fan).sum());
+}
+
+TEST_F(OrbifitConvert, InstancesAreSmallerByWhatRepeatsAndLookTheSame) {
+  ASSERT_EQ(program_.run("generate desk_fan -o .").code, 0);
+  ASSERT_EQ(program_.run("convert desk_fan.ply plain.glb").code, 0);
+  ASSERT_EQ(program_.run("convert desk_fan.annotation.json fan.glb --mesh desk_fan.ply --as instances").code, 0);
+  const json info = json::parse(program_.run("info fan.glb --json").output);
+  const auto of_meshes = [&] {  // corners that the file has, those of an instanced mesh once
+    const std::string bytes = content("fan.glb");
+    const auto length = static_cast<unsigned char>(bytes[12]) + 256U * static_cast<unsigned char>(bytes[13]);
+    const json root = json::parse(bytes.substr(20, length));
+    double corners = 0;
+    for (const json& mesh : root["meshes"]) {
+      for (const json& primitive : mesh["primitives"]) {
+        corners += root["accessors"][primitive["indices"].get<std::size_t>()]["count"].get<double>();
+      }
+    }
+    return corners;
+  };
+  const double kept = of_meshes() / (3 * info["faces"].get<double>());
+  EXPECT_LT(kept, 0.6);
+  const auto size = [&](const char* name) { return static_cast<double>(std::filesystem::file_size(file(name))); };
+  EXPECT_LT(size("fan.glb"), (kept + 0.05) * size("plain.glb") + 8000);  // and the text of nodes and meshes
+
+  for (const char* name : {"desk_fan.ply", "fan.glb", "obj_000007.ply"}) {
+    const std::string line = std::string("render ") + name + " -o " + name + ".png --width 400 --height 300";
+    ASSERT_EQ(program_.run(line).code, 0);
+  }
+  const Picture before = read_picture(file("desk_fan.ply.png"));
+  EXPECT_LT(share_that_differs(before, read_picture(file("fan.glb.png")), 8), 0.002);
+  EXPECT_GT(share_that_differs(before, read_picture(file("obj_000007.ply.png")), 8), 0.1);
+}
+
+TEST_F(OrbifitConvert, KeepsTheNamesOfObjectsAndGroups) {
+  program_.folder().write("a.obj",
+                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 9 9 9\no roof\ng top\nf 1 2 3\ng side\nf 1 2 4\n"
+                          "o floor\nf 2 3 4\n");
+  ASSERT_EQ(program_.run("convert a.obj a.glb").code, 0);
+  const json glb = json::parse(program_.run("info a.glb --json").output);
+  EXPECT_EQ(glb["content"]["objects"], json({"roof", "floor"}));
+  EXPECT_EQ(glb["content"]["groups"], json({"top", "side"}));
+  EXPECT_EQ(glb["content"]["nodes"], 3);
+  ASSERT_EQ(program_.run("convert a.glb b.obj").code, 0);
+  EXPECT_NE(content("b.obj").find("o roof\ng top\nf 1 2 3\no roof\ng side\nf 4 5 6\no floor\ng default\nf 7 8 9\n"),
+            std::string::npos)
+      << content("b.obj");
+  ASSERT_EQ(program_.run("convert a.obj c.obj").code, 0);
+  EXPECT_NE(content("c.obj").find("o roof\ng top\nf 1 2 3\no roof\ng side\nf 1 2 4\no floor\ng default\nf 2 3 4\n"),
+            std::string::npos)
+      << content("c.obj");
+  EXPECT_NE(program_.run("convert a.obj a.stl").errors.find("names of objects and groups"), std::string::npos);
 }
 
 TEST_F(OrbifitConvert, WritesQualityForMeshLab) {

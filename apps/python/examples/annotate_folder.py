@@ -13,7 +13,7 @@ from typing import List
 
 import orbifit
 
-ENDINGS = {".obj", ".off", ".ply", ".stl", ".glb", ".gltf"}
+ENDINGS = {".obj", ".off", ".ply", ".stl", ".glb", ".gltf", ".3mf"}
 MOST_PICTURES = 8
 
 

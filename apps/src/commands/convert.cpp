@@ -34,9 +34,9 @@ bool is_scan_file(const std::string& file) {
 
 CommandBody convert(CLI::App& app) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  app.add_option(
-         "IN", arguments->input,
-         "Mesh (.obj, .off, .ply, .stl, .gltf, .glb), scan (.ply, .pcd, .xyz, .pts), or with --mesh an annotation")
+  app.add_option("IN", arguments->input,
+                 "Mesh (.obj, .off, .ply, .stl, .gltf, .glb, .3mf), scan (.ply, .pcd, .xyz, .pts), or with --mesh an "
+                 "annotation")
       ->required()
       ->type_name("FILE");
   app.add_option("OUT", arguments->output,

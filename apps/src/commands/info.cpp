@@ -73,7 +73,7 @@ std::string to_text(const std::string& file, const Mesh& mesh, const MeshReport&
 
 CommandBody info(CLI::App& app) {
   const auto file = std::make_shared<std::string>();
-  app.add_option("MESH", *file, "Mesh: .obj, .off, .ply, .stl, .gltf or .glb")->required()->type_name("FILE");
+  app.add_option("MESH", *file, "Mesh: .obj, .off, .ply, .stl, .gltf, .glb or .3mf")->required()->type_name("FILE");
   return [file](CommandContext& context) {
     const Mesh mesh = read_mesh(*file);
     context.run.check();

@@ -101,7 +101,15 @@ void add_accessors(BadInputs& files, const std::string& whole) {
   change("position_missing", "POSITION", "NORMAL");
   change("position_beyond", R"("POSITION":0)", R"("POSITION":7)");
   change("draco", R"("indices":1})", R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}}})");
+  change("draco_of_other_bytes", R"("indices":1})",
+         R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}})");
+  change("draco_without_view", R"("indices":1})",
+         R"("indices":1,"extensions":{"KHR_draco_mesh_compression":{"attributes":{"POSITION":0}}}})");
   change("instancing", R"({"mesh":0})", R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}})");
+  change("instancing_by_indices", R"({"mesh":0})",
+         R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":1}}}})");
+  change("instancing_by_positions", R"({"mesh":0})",
+         R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}})");
   change("indices_beyond", R"("indices":1)", R"("indices":2)");
   change("indices_float", "5123", "5126");
   change("indices_absent", R"(,"indices":1)", "");
@@ -117,6 +125,15 @@ void add_accessors(BadInputs& files, const std::string& whole) {
   change("accessor_component", "5126", "5130");
   change("accessor_bytes_as_positions", "5126", "5120");
   change("accessor_sparse", R"("type":"VEC3")", R"("type":"VEC3","sparse":{"count":1})");
+  const auto sparse = [&](const std::string& what, const std::string& count, const std::string& type) {
+    change("accessor_sparse_" + what, R"("type":"VEC3")",
+           R"("type":"VEC3","sparse":{"count":)" + count + R"(,"indices":{"bufferView":1,"componentType":)" + type +
+               R"(},"values":{"bufferView":0}})");
+  };
+  sparse("whole", "2", "5123");
+  sparse("of_bytes", "2", "5120");
+  sparse("huge", "4000000000", "5123");
+  sparse("many", "3000", "5121");
   change("accessor_without_view", R"({"bufferView":0,)", "{");
   change("accessor_view_beyond", R"({"bufferView":0,)", R"({"bufferView":9,)");
   change("accessor_offset_beyond", R"({"bufferView":0,)", R"({"bufferView":0,"byteOffset":36,)");

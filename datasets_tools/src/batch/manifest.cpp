@@ -23,7 +23,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array kMeshEndings{".obj", ".off", ".ply", ".stl", ".gltf", ".glb"};
+constexpr std::array kMeshEndings{".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3mf"};
 
 std::string string_of(const json& value, const char* key) {
   const auto found = value.find(key);

@@ -10,6 +10,7 @@
 
 #include "files/binary.h"
 #include "files/gltf_document.h"
+#include "files/gltf_plain.h"
 #include "files/mesh_formats.h"
 
 namespace orbifit {
@@ -26,7 +27,7 @@ constexpr std::int64_t kMaxVertices = 200'000'000;
 class GltfReader {
  public:
   GltfReader(const fs::path& file, std::string_view content, MeshBuilder& builder)
-      : document_(file, content), builder_(builder) {}
+      : plain_(plain(file, content)), document_(file, plain_.text(content)), builder_(builder) {}
 
   void read() {
     const Json* asset = Document::find(document_.root(), "asset");
@@ -101,10 +102,6 @@ class GltfReader {
         document_.refuse(where, "is reached twice: the nodes must form a tree");
       entered_[static_cast<std::size_t>(open.node)] = true;
       const Eigen::Matrix4d world = open.parent * transform(node, where);
-      const Json* extensions = Document::find(node, "extensions");
-      if (extensions != nullptr && Document::find(*extensions, "EXT_mesh_gpu_instancing") != nullptr) {
-        document_.refuse(where, "the extension EXT_mesh_gpu_instancing is not read");
-      }
       if (const std::int64_t mesh = document_.integer(node, "mesh", -1, where); mesh >= 0)
         add_mesh(open.node, mesh, world);
       const auto children = document_.node_list(node, "children", where);
@@ -128,17 +125,12 @@ class GltfReader {
     const std::int64_t mode = document_.integer(primitive, "mode", kTriangles, where);
     if (mode < kTriangles) return;  // points and lines
     if (mode > kFan) document_.refuse(where + ".mode", "is " + std::to_string(mode) + ": modes go from 0 to 6");
-    const Json* extensions = Document::find(primitive, "extensions");
-    if (extensions != nullptr && Document::find(*extensions, "KHR_draco_mesh_compression") != nullptr) {
-      document_.refuse(
-          where, "is compressed with Draco (KHR_draco_mesh_compression), which is not read: export it uncompressed");
-    }
     const Json* attributes = Document::find(primitive, "attributes");
     const std::int64_t position =
         attributes == nullptr ? -1 : document_.integer(*attributes, "POSITION", -1, where + ".attributes");
     if (position < 0) document_.refuse(where, "has no POSITION");
     const std::int64_t first = builder_.vertices();
-    const Accessor points = document_.accessor(position, 3);
+    const Accessor points = document_.accessor(position, 3, "positions");
     if (first + points.count > kMaxVertices) document_.refuse(where, "too many vertices");
     const bool moved = !world.isIdentity(0);
     for (std::int64_t v = 0; v < points.count; ++v) {
@@ -165,7 +157,7 @@ class GltfReader {
   std::vector<std::int64_t> corners_of(const Json& primitive, const std::string& where, std::int64_t vertices) {
     std::vector<std::int64_t> corners;
     if (const std::int64_t indices = document_.integer(primitive, "indices", -1, where); indices >= 0) {
-      const Accessor numbers = document_.accessor(indices, 1);
+      const Accessor numbers = document_.accessor(indices, 1, "indices");
       if (numbers.type == kFloat || numbers.type == kByte || numbers.type == kShort) {
         document_.refuse("accessors[" + std::to_string(indices) + "].componentType",
                          "is " + std::to_string(numbers.type) + ": indices must be unsigned");
@@ -186,6 +178,7 @@ class GltfReader {
     return corners;
   }
 
+  Plain plain_;
   Document document_;
   MeshBuilder& builder_;
   const Json* nodes_ = nullptr;

@@ -95,45 +95,113 @@ std::vector<std::int64_t> Document::node_list(const Json& object, const char* ke
   return result;
 }
 
-Accessor Document::accessor(std::int64_t number, std::size_t components) {
+Accessor Document::accessor(std::int64_t number, std::size_t components, const char* what) {
+  constexpr std::array<const char*, 5> kTypes{"", "SCALAR", "VEC2", "VEC3", "VEC4"};
   const std::string where = "accessors[" + std::to_string(number) + "]";
   const Json& entry = item("accessors", number, where);
   const Json* type = find(entry, "type");
-  if (type == nullptr || *type != (components == 3 ? "VEC3" : "SCALAR")) {
-    refuse(where + ".type", components == 3 ? "must be VEC3 for positions" : "must be SCALAR for indices");
+  if (type == nullptr || *type != kTypes[components]) {
+    refuse(where + ".type", "must be " + std::string(kTypes[components]) + " for " + what);
   }
-  if (find(entry, "sparse") != nullptr) refuse(where, "sparse accessors are not read");
+  if (find(entry, "sparse") != nullptr) refuse(where, std::string("is sparse, which is not read of ") + what);
   Accessor result;
-  result.type = integer(entry, "componentType", -1, where);
-  result.size = component_size(result.type);
-  if (result.size == 0) refuse(where + ".componentType", "is " + std::to_string(result.type) + ": unknown");
+  result.components = components;
   result.count = integer(entry, "count", 0, where);
+  result.type = integer(entry, "componentType", -1, where);
   const Json* normalised = find(entry, "normalized");
   result.normalised = normalised != nullptr && normalised->is_boolean() && normalised->get<bool>();
+  locate(entry, where, result);
+  return result;
+}
 
-  const std::int64_t view_number = integer(entry, "bufferView", -1, where);
-  if (view_number < 0) refuse(where, "has no bufferView");
-  const std::string view_where = "bufferViews[" + std::to_string(view_number) + "]";
-  const Json& view = item("bufferViews", view_number, where);
+int Document::components(const Json& accessor, const std::string& where) const {
+  constexpr std::array<const char*, 4> kTypes{"SCALAR", "VEC2", "VEC3", "VEC4"};
+  const Json* type = find(accessor, "type");
+  const auto* const found =
+      std::ranges::find_if(kTypes, [&](const char* name) { return type != nullptr && *type == name; });
+  if (found == kTypes.end()) refuse(where + ".type", "must be SCALAR, VEC2, VEC3 or VEC4");
+  return static_cast<int>(found - kTypes.begin()) + 1;
+}
+
+std::string_view Document::view(std::int64_t number, const std::string& user) {
+  const std::string where = "bufferViews[" + std::to_string(number) + "]";
+  const Json& view = item("bufferViews", number, user);
   const Json* extensions = find(view, "extensions");
   if (extensions != nullptr && (find(*extensions, "EXT_meshopt_compression") != nullptr ||
                                 find(*extensions, "KHR_meshopt_compression") != nullptr)) {
-    refuse(view_where, "is compressed (EXT_meshopt_compression), which is not read: export it uncompressed");
+    refuse(where, "is compressed (EXT_meshopt_compression), which is not read: export it uncompressed");
   }
-  const std::string_view bytes = buffer(integer(view, "buffer", -1, view_where), view_where);
-  const auto offset = static_cast<std::size_t>(integer(view, "byteOffset", 0, view_where));
-  const auto length = static_cast<std::size_t>(integer(view, "byteLength", 0, view_where));
-  if (offset > bytes.size() || length > bytes.size() - offset) refuse(view_where, "reaches beyond its buffer");
+  const std::string_view bytes = buffer(integer(view, "buffer", -1, where), where);
+  const auto offset = static_cast<std::size_t>(integer(view, "byteOffset", 0, where));
+  const auto length = static_cast<std::size_t>(integer(view, "byteLength", 0, where));
+  if (offset > bytes.size() || length > bytes.size() - offset) refuse(where, "reaches beyond its buffer");
+  return bytes.substr(offset, length);
+}
+
+// Where the numbers are that an entry with a bufferView names. Their count, type and components are known.
+void Document::locate(const Json& entry, const std::string& where, Accessor& result) {
+  result.size = component_size(result.type);
+  if (result.size == 0) refuse(where + ".componentType", "is " + std::to_string(result.type) + ": unknown");
+  const std::int64_t number = integer(entry, "bufferView", -1, where);
+  if (number < 0) refuse(where, "has no bufferView");
+  const std::string_view bytes = view(number, where);
+  const std::string view_where = "bufferViews[" + std::to_string(number) + "]";
   const auto inner = static_cast<std::size_t>(integer(entry, "byteOffset", 0, where));
-  const std::size_t row = components * result.size;
-  result.stride = static_cast<std::size_t>(integer(view, "byteStride", static_cast<std::int64_t>(row), view_where));
+  const std::size_t row = result.components * result.size;
+  result.stride = static_cast<std::size_t>(
+      integer(item("bufferViews", number, where), "byteStride", static_cast<std::int64_t>(row), view_where));
   if (result.stride < row || result.stride > 4096) refuse(view_where + ".byteStride", "does not fit its data");
   const auto rows = static_cast<std::size_t>(result.count);
-  if (rows > 0 && (inner > length || row > length - inner || rows - 1 > (length - inner - row) / result.stride)) {
+  if (rows > 0 &&
+      (inner > bytes.size() || row > bytes.size() - inner || rows - 1 > (bytes.size() - inner - row) / result.stride)) {
     refuse(where, "reaches beyond its bufferView: " + std::to_string(result.count) + " entries are announced");
   }
-  result.data = bytes.data() + offset + (rows > 0 ? inner : 0);
-  return result;
+  result.data = bytes.data() + (rows > 0 ? inner : 0);
+}
+
+Document::Rows Document::filled(std::int64_t number, std::size_t alignment) {
+  const std::string where = "accessors[" + std::to_string(number) + "]";
+  const Json& entry = item("accessors", number, where);
+  Accessor base;
+  base.components = static_cast<std::size_t>(components(entry, where));
+  base.count = integer(entry, "count", 0, where);
+  base.type = integer(entry, "componentType", -1, where);
+  locate(entry, where, base);
+
+  const std::string at = where + ".sparse";
+  const Json& sparse = entry.at("sparse");
+  const Json* indices = find(sparse, "indices");
+  const Json* values = find(sparse, "values");
+  if (indices == nullptr || values == nullptr) refuse(at, "needs indices and values");
+  Accessor places;
+  places.components = 1;
+  places.count = integer(sparse, "count", 0, at);
+  places.type = integer(*indices, "componentType", -1, at + ".indices");
+  if (places.type != kUnsignedByte && places.type != kUnsignedShort && places.type != kUnsignedInt) {
+    refuse(at + ".indices.componentType", "is " + std::to_string(places.type) + ": indices must be unsigned");
+  }
+  locate(*indices, at + ".indices", places);
+  Accessor changed = base;
+  changed.count = places.count;
+  locate(*values, at + ".values", changed);
+
+  Rows rows;
+  const std::size_t row = base.components * base.size;
+  rows.stride = (row + alignment - 1) / alignment * alignment;
+  rows.bytes.resize(static_cast<std::size_t>(base.count) * rows.stride);
+  for (std::size_t r = 0; r < static_cast<std::size_t>(base.count); ++r) {
+    std::copy_n(base.data + r * base.stride, row, rows.bytes.data() + r * rows.stride);
+  }
+  for (std::int64_t i = 0; i < places.count; ++i) {
+    const double place = places.value(i, 0);
+    if (place >= static_cast<double>(base.count)) {
+      refuse(at + ".indices", "entry " + std::to_string(static_cast<std::int64_t>(place)) +
+                                  " is changed, but there are " + std::to_string(base.count));
+    }
+    std::copy_n(changed.data + static_cast<std::size_t>(i) * changed.stride, row,
+                rows.bytes.data() + static_cast<std::size_t>(place) * rows.stride);
+  }
+  return rows;
 }
 
 std::string_view Document::buffer(std::int64_t number, const std::string& user) {

@@ -21,7 +21,8 @@ struct Accessor {
   const char* data = nullptr;
   std::int64_t count = 0;
   std::size_t stride = 0;
-  std::size_t size = 0;  ///< of one component
+  std::size_t size = 0;        ///< of one component
+  std::size_t components = 0;  ///< of a row
   std::int64_t type = 0;
   bool normalised = false;
 
@@ -66,12 +67,24 @@ class Document {
     return true;
   }
 
-  /// \param components  3 for positions, 1 for indices
-  Accessor accessor(std::int64_t number, std::size_t components);
+  /// \param what  its numbers are, for messages
+  Accessor accessor(std::int64_t number, std::size_t components, const char* what);
+  /// Numbers of a row of an accessor that holds scalars or vectors.
+  int components(const Json& accessor, const std::string& where) const;
+  /// The bytes of a buffer view.
+  std::string_view view(std::int64_t number, const std::string& user);
+
+  struct Rows {
+    std::string bytes;
+    std::size_t stride = 0;  ///< from row to row
+  };
+  /// All numbers of a sparse accessor. \param alignment  of rows, in bytes
+  Rows filled(std::int64_t number, std::size_t alignment);
 
  private:
   std::string_view split(std::string_view content);
   std::string_view buffer(std::int64_t number, const std::string& user);
+  void locate(const Json& entry, const std::string& where, Accessor& result);
 
   std::filesystem::path file_;
   Json root_;

@@ -18,6 +18,7 @@ void read_off(std::string_view content, MeshBuilder& builder);
 void read_ply_mesh(std::string_view content, MeshBuilder& builder);
 void read_stl(std::string_view content, MeshBuilder& builder);
 void read_gltf(const std::filesystem::path& file, std::string_view content, MeshBuilder& builder);
+void read_three_mf(const std::filesystem::path& file, std::string_view content, MeshBuilder& builder);
 
 // Writers: the file's bytes. `file` is for messages. \throw InputError when the format cannot hold a coordinate
 std::string obj_text(const Mesh& mesh);

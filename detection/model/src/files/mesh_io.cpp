@@ -39,6 +39,7 @@ std::string format_ending(const fs::path& file, std::string_view content) {
   const char begin = first == std::string_view::npos ? ' ' : content[first];
   if (line == "ply") return ".ply";
   if (content.starts_with("glTF")) return ".glb";
+  if (content.starts_with("PK\x03\x04")) return ".3mf";
   if (begin == '{') return ".gltf";
   if (line.ends_with("OFF") || line.starts_with("OFF")) return ".off";
   if (line.starts_with("# .PCD") || line.starts_with("VERSION")) return ".pcd";
@@ -54,6 +55,7 @@ MeshReader mesh_reader(const std::string& ending) {
   if (ending == ".ply") return read_content<read_ply_mesh>;
   if (ending == ".stl") return read_content<read_stl>;
   if (ending == ".gltf" || ending == ".glb") return read_gltf;
+  if (ending == ".3mf") return read_three_mf;
   return nullptr;
 }
 
@@ -72,7 +74,7 @@ Mesh read_mesh(const fs::path& file) {
   if (read == nullptr) {
     throw InputError(file.string(), "",
                      "unknown ending " + in_quotes(file.extension().string()) +
-                         ": meshes are read from .obj, .off, .ply, .stl, .gltf and .glb");
+                         ": meshes are read from .obj, .off, .ply, .stl, .gltf, .glb and .3mf");
   }
   MeshBuilder builder(file.string());
   read(file, content, builder);

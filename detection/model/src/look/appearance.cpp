@@ -85,7 +85,8 @@ Eigen::Vector3d plane_weights(const Eigen::Vector3d& p, const Eigen::Vector3d& a
 }  // namespace
 
 bool Appearance::empty() const {
-  return uvs.rows() == 0 && normals.rows() == 0 && colours.rows() == 0 && material_of_face.empty();
+  return uvs.rows() == 0 && normals.rows() == 0 && colours.rows() == 0 && material_of_face.empty() &&
+         part_of_face.empty();
 }
 
 bool within_folder(const fs::path& name) {
@@ -116,8 +117,9 @@ std::string image_type(std::string_view bytes) {
 Appearance read_appearance(const fs::path& file, const Mesh& mesh) {
   if (is_standard_stream(file)) return {};
   const std::string ending = lower_extension(file);
-  if (ending != ".obj" && ending != ".ply" && ending != ".gltf" && ending != ".glb") return {};
+  if (ending != ".obj" && ending != ".ply" && ending != ".gltf" && ending != ".glb" && ending != ".3mf") return {};
   const std::string content = read_file(file);
+  if (ending == ".3mf") return three_mf_look(file, content, mesh);
   if (ending == ".obj") return obj_look(file, content, mesh);
   if (ending == ".ply") return ply_look(file, content, mesh);
   return gltf_look(file, content, mesh);
@@ -127,8 +129,9 @@ std::vector<std::string> write_mesh(const fs::path& file, const Mesh& mesh, cons
   const std::string ending = lower_extension(file);
   if (!look.empty() && ending == ".obj") return write_obj_with_look(file, mesh, look);
   if (!look.empty() && ending == ".glb") {
-    write_file(file, glb_with_look(file, mesh, look));
-    return {};
+    std::vector<std::string> problems;
+    write_file(file, glb_with_look(file, mesh, look, problems));
+    return problems;
   }
   const bool coloured = look.colours.rows() > 0 && ending == ".ply";
   write_mesh(file, mesh, coloured ? std::optional<Points>(vertex_colours(mesh, look)) : std::nullopt);
@@ -140,6 +143,7 @@ std::vector<std::string> write_mesh(const fs::path& file, const Mesh& mesh, cons
   lose(look.normals.rows() > 0, "normals");
   lose(look.colours.rows() > 0 && !coloured, "colours");
   lose(!look.material_of_face.empty(), "materials");
+  lose(!look.part_of_face.empty(), "names of objects and groups");
   if (lost.empty()) return {};
   return {file.string() + " does not take the input's " + lost};
 }
@@ -149,6 +153,7 @@ Appearance transferred(const Appearance& look, const Mesh& source, const Mesh& m
                        const std::vector<int>& motion_of_face) {
   Appearance result;
   result.materials = look.materials;
+  result.parts = look.parts;
   result.warnings = look.warnings;
   const Index corners = 3 * mesh.faces.rows();
   if (look.uvs.rows() > 0) result.uvs.resize(corners, 2);
@@ -162,6 +167,9 @@ Appearance transferred(const Appearance& look, const Mesh& source, const Mesh& m
     const auto motion = static_cast<std::size_t>(motion_of_face[static_cast<std::size_t>(f)]);
     if (!look.material_of_face.empty()) {
       result.material_of_face.push_back(look.material_of_face[static_cast<std::size_t>(from)]);
+    }
+    if (!look.part_of_face.empty()) {
+      result.part_of_face.push_back(look.part_of_face[static_cast<std::size_t>(from)]);
     }
     const auto corner = [&](int k) -> Eigen::Vector3d {
       return source.vertices.row(source.faces(from, k)).transpose();

@@ -40,14 +40,25 @@ class GlbWriter {
       : file_(file), mesh_(mesh), look_(look) {
     root_["asset"] = {{"version", "2.0"}, {"generator", "Orbifit"}};
     root_["scene"] = 0;
-    root_["scenes"] = {{{"nodes", {0}}}};
-    root_["nodes"] = {{{"mesh", 0}}};
+    root_["scenes"] = {{{"nodes", Json::array()}}};
+    root_["nodes"] = Json::array();
+    root_["meshes"] = Json::array();
   }
 
-  std::string write() {
-    Json primitives = Json::array();
-    for (const auto& [material, faces] : faces_of_materials()) primitives.push_back(primitive(material, faces));
-    root_["meshes"] = {{{"primitives", primitives}}};
+  std::string write(std::vector<std::string>& problems) {
+    std::vector<Run> runs = runs_of_faces();
+    if (runs.size() > kMaxPrimitives) {
+      problems.push_back(file_.string() +
+                         " has its faces in the order of parts and materials, not in the input's: these"
+                         " change " +
+                         std::to_string(runs.size()) + " times");
+      runs = joined(runs);
+    }
+    const bool alone = runs.size() == 1;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      if (r == 0 || runs[r].part != runs[r - 1].part) add_node(runs[r].part);
+      root_["meshes"].back()["primitives"].push_back(primitive(runs[r], alone));
+    }
     for (const Material& material : look_.materials) add_material(material);
     root_["accessors"] = accessors_;
     root_["bufferViews"] = views_;
@@ -56,21 +67,58 @@ class GlbWriter {
   }
 
  private:
-  // Those that no face has are kept, so that materials keep their numbers.
-  std::map<int, std::vector<Index>> faces_of_materials() const {
-    std::map<int, std::vector<Index>> result;
+  // Each primitive takes some 1 KB of the file and a call of whatever draws it.
+  static constexpr std::size_t kMaxPrimitives = 4096;
+
+  // Faces that follow one another in the file, of one part and material.
+  struct Run {
+    int part = -1, material = -1;
+    std::vector<Index> faces;
+  };
+
+  std::vector<Run> runs_of_faces() const {
+    std::vector<Run> runs;
     for (Index f = 0; f < mesh_.faces.rows(); ++f) {
       const auto face = static_cast<std::size_t>(f);
-      result[look_.material_of_face.empty() ? -1 : look_.material_of_face[face]].push_back(f);
+      const int part = look_.part_of_face.empty() ? -1 : look_.part_of_face[face];
+      const int material = look_.material_of_face.empty() ? -1 : look_.material_of_face[face];
+      if (runs.empty() || runs.back().part != part || runs.back().material != material) {
+        runs.push_back({part, material, {}});
+      }
+      runs.back().faces.push_back(f);
     }
+    return runs;
+  }
+
+  static std::vector<Run> joined(const std::vector<Run>& runs) {
+    std::map<std::pair<int, int>, Run> all;
+    for (const Run& run : runs) {
+      Run& target = all.try_emplace({run.part, run.material}, Run{run.part, run.material, {}}).first->second;
+      target.faces.insert(target.faces.end(), run.faces.begin(), run.faces.end());
+    }
+    std::vector<Run> result;
+    for (auto& [key, run] : all) result.push_back(std::move(run));
     return result;
+  }
+
+  void add_node(int part) {
+    Json node = Json::object();
+    Json mesh = Json::object();
+    if (part >= 0) {
+      const Part& names = look_.parts[static_cast<std::size_t>(part)];
+      if (!names.object.empty()) node["name"] = names.object;
+      if (!names.group.empty()) mesh["name"] = names.group;
+    }
+    node["mesh"] = root_["meshes"].size();
+    mesh["primitives"] = Json::array();
+    root_["scenes"][0]["nodes"].push_back(root_["nodes"].size());
+    root_["nodes"].push_back(node);
+    root_["meshes"].push_back(mesh);
   }
 
   // Everything that a vertex of the file holds, as floats: place, normal, UV, colour.
   std::vector<float> row(Index corner) const {
-    std::vector<float> values;
-    const int vertex = mesh_.faces(corner / 3, corner % 3);
-    for (int k = 0; k < 3; ++k) values.push_back(to_float(file_, mesh_.vertices(vertex, k)));
+    std::vector<float> values = place(mesh_.faces(corner / 3, corner % 3));
     const auto number = [](double value, double otherwise) {
       return static_cast<float>(std::isfinite(value) ? value : otherwise);
     };
@@ -89,19 +137,46 @@ class GlbWriter {
     return values;
   }
 
-  Json primitive(int material, const std::vector<Index>& faces) {
+  std::vector<float> place(int vertex) const {
+    std::vector<float> values;
+    for (int k = 0; k < 3; ++k) values.push_back(to_float(file_, mesh_.vertices(vertex, k)));
+    return values;
+  }
+
+  // That of a vertex without a face.
+  std::vector<float> unused_row(int vertex) const {
+    std::vector<float> values = place(vertex);
+    if (look_.normals.rows() > 0) values.insert(values.end(), {0, 0, 1});
+    if (look_.uvs.rows() > 0) values.insert(values.end(), 2, 0);
+    if (look_.colours.rows() > 0) values.insert(values.end(), 4, 1);
+    return values;
+  }
+
+  // \param all  vertices, also those without a face
+  Json primitive(const Run& run, bool all) {
+    // Vertices of the mesh stay apart, even where they are in one place.
     std::map<std::pair<int, std::vector<float>>, std::uint32_t> numbers;
-    std::vector<std::vector<float>> rows;
-    std::string indices;
-    for (const Index f : faces) {
+    std::vector<decltype(numbers)::iterator> corners;
+    corners.reserve(3 * run.faces.size());
+    std::vector<bool> used(static_cast<std::size_t>(mesh_.vertices.rows()));
+    for (const Index f : run.faces) {
       for (int k = 0; k < 3; ++k) {
-        // Vertices of the mesh stay apart, even where they are in one place.
-        std::pair<int, std::vector<float>> key{mesh_.faces(f, k), row(3 * f + k)};
-        const auto [entry, added] = numbers.try_emplace(std::move(key), static_cast<std::uint32_t>(rows.size()));
-        if (added) rows.push_back(entry->first.second);
-        store(indices, entry->second);
+        const int vertex = mesh_.faces(f, k);
+        corners.push_back(numbers.try_emplace({vertex, row(3 * f + k)}, 0).first);
+        used[static_cast<std::size_t>(vertex)] = true;
       }
     }
+    for (int v = 0; all && v < static_cast<int>(used.size()); ++v) {
+      if (!used[static_cast<std::size_t>(v)]) numbers.try_emplace({v, unused_row(v)}, 0);
+    }
+    std::vector<std::vector<float>> rows;
+    rows.reserve(numbers.size());
+    for (auto& [key, number] : numbers) {
+      number = static_cast<std::uint32_t>(rows.size());
+      rows.push_back(key.second);
+    }
+    std::string indices;
+    for (const auto& corner : corners) store(indices, corner->second);
     Json attributes;
     std::size_t first = 0;
     const auto add = [&](const char* name, std::size_t width) {
@@ -116,9 +191,9 @@ class GlbWriter {
     result["indices"] = accessors_.size();
     accessors_.push_back({{"bufferView", add_view(indices, 34963)},
                           {"componentType", int{gltf::kUnsignedInt}},
-                          {"count", 3 * faces.size()},
+                          {"count", corners.size()},
                           {"type", "SCALAR"}});
-    if (material >= 0) result["material"] = material;
+    if (run.material >= 0) result["material"] = run.material;
     return result;
   }
 
@@ -192,8 +267,9 @@ class GlbWriter {
 
 }  // namespace
 
-std::string glb_with_look(const std::filesystem::path& file, const Mesh& mesh, const Appearance& look) {
-  return GlbWriter(file, mesh, look).write();
+std::string glb_with_look(const std::filesystem::path& file, const Mesh& mesh, const Appearance& look,
+                          std::vector<std::string>& problems) {
+  return GlbWriter(file, mesh, look).write(problems);
 }
 
 }  // namespace orbifit

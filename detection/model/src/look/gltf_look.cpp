@@ -9,9 +9,10 @@
 
 #include "files/file.h"
 #include "files/gltf.h"
+#include "files/gltf_file.h"
+#include "files/gltf_plain.h"
 #include "files/text.h"
 #include "look/look_formats.h"
-#include "rewrite/gltf_file.h"
 
 namespace orbifit {
 
@@ -22,11 +23,14 @@ namespace {
 using Json = GltfFile::Json;
 using Eigen::Index;
 
-
 class GltfLookReader {
  public:
   GltfLookReader(const fs::path& file, std::string_view content, const Mesh& mesh)
-      : file_(file), mesh_(mesh), gltf_(file, content), uses_(gltf::primitive_uses(file, content)) {}
+      : file_(file),
+        mesh_(mesh),
+        plain_(gltf::plain(file, content)),
+        gltf_(file, plain_.text(content)),
+        uses_(gltf::primitive_uses(file, content)) {}
 
   Appearance read() {
     for (std::size_t u = 0; u < uses_.size(); ++u) {
@@ -36,6 +40,12 @@ class GltfLookReader {
       first_face_ = face_;
     }
     if (look_.materials.empty()) look_.material_of_face.clear();
+    const bool named =
+        std::ranges::any_of(look_.parts, [](const Part& p) { return !p.object.empty() || !p.group.empty(); });
+    if (!named) {
+      look_.part_of_face.clear();
+      look_.parts.clear();
+    }
     return std::move(look_);
   }
 
@@ -44,56 +54,21 @@ class GltfLookReader {
     throw InputError(file_.string(), where, reason);
   }
 
-  static const Json* find(const Json& object, const char* key) {
-    if (!object.is_object()) return nullptr;
-    const auto found = object.find(key);
-    return found == object.end() ? nullptr : &*found;
-  }
+  static const Json* find(const Json& object, const char* key) { return GltfFile::find(object, key); }
 
-  // An entry of a list at the top level. \throw InputError where it is none
-  const Json& entry(const char* list, const Json& number, const std::string& user) {
-    const Json* all = find(gltf_.root(), list);
-    const std::size_t size = all != nullptr && all->is_array() ? all->size() : 0;
-    if (!number.is_number_integer() || number.get<double>() < 0 || number.get<double>() >= static_cast<double>(size)) {
-      refuse(user, "names an entry of " + std::string(list) + " that there is not");
-    }
-    const Json& result = (*all)[number.get<std::size_t>()];
-    if (!result.is_object()) refuse(std::string(list) + "[" + number.dump() + "]", "must be an object");
-    return result;
-  }
-
-  static bool whole(const Json& object, const char* key, bool needed) {
-    const Json* found = find(object, key);
-    return found == nullptr ? !needed
-                            : found->is_number_integer() && found->get<double>() >= 0 && found->get<double>() < 9e15;
-  }
-
-  // The rows of an attribute, or nothing where the primitive has none.
-  std::optional<GltfAttribute> attribute(const Json& primitive, const char* name, std::int64_t count,
-                                         const std::string& where) {
+  // The rows of an attribute, or nothing where the primitive has none. \throw InputError where they are no vectors of
+  // `least` to `most` components
+  std::optional<GltfAttribute> attribute(const Json& primitive, const char* name, int least, int most,
+                                         std::int64_t count, const std::string& where) {
     const Json* attributes = find(primitive, "attributes");
     const Json* number = attributes != nullptr ? find(*attributes, name) : nullptr;
     if (number == nullptr) return std::nullopt;
-    const Json& accessor = entry("accessors", *number, where + "." + name);
-    const std::string at = "accessors[" + number->dump() + "]";
-    const Json* type = find(accessor, "type");
-    if (type == nullptr || (*type != "VEC2" && *type != "VEC3" && *type != "VEC4")) refuse(at, "is no list of vectors");
-    if (find(accessor, "sparse") != nullptr || find(accessor, "bufferView") == nullptr) {
-      refuse(at, "sparse accessors are not read");
+    GltfAttribute result = gltf_.attribute(*number, count, where + "." + name);
+    if (result.components < least || result.components > most) {
+      refuse("accessors[" + number->dump() + "].type",
+             "is VEC" + std::to_string(result.components) + ", which " + name + " cannot be");
     }
-    const bool good = whole(accessor, "bufferView", true) && whole(accessor, "count", true) &&
-                      whole(accessor, "byteOffset", false) && whole(accessor, "componentType", true) &&
-                      gltf::component_size(accessor["componentType"].get<std::int64_t>()) > 0;
-    if (!good) refuse(at, "has a key that is no integer, or a component type that there is not");
-    if (accessor["count"].get<std::int64_t>() != count) {
-      refuse(at, "has " + accessor["count"].dump() + " rows for " + std::to_string(count) + " vertices");
-    }
-    const Json& view = entry("bufferViews", accessor["bufferView"], at);
-    if (!whole(view, "byteStride", false) || !whole(view, "byteOffset", false) || !whole(view, "buffer", true)) {
-      refuse(at, "is in a buffer view with a key that is no integer");
-    }
-    gltf_.view(accessor["bufferView"].get<std::int64_t>());
-    return gltf_.attribute(number->get<std::int64_t>());
+    return result;
   }
 
   template <class Rows>
@@ -107,9 +82,9 @@ class GltfLookReader {
     const Json& primitive = gltf_.root()["meshes"][static_cast<std::size_t>(use.mesh)]["primitives"]
                                         [static_cast<std::size_t>(use.primitive)];
     const Index corners = 3 * mesh_.faces.rows();
-    const auto uvs = attribute(primitive, "TEXCOORD_0", count, where);
-    const auto normals = attribute(primitive, "NORMAL", count, where);
-    const auto colours = attribute(primitive, "COLOR_0", count, where);
+    const auto uvs = attribute(primitive, "TEXCOORD_0", 2, 2, count, where);
+    const auto normals = attribute(primitive, "NORMAL", 3, 3, count, where);
+    const auto colours = attribute(primitive, "COLOR_0", 3, 4, count, where);
     if (uvs) fill(look_.uvs, 2, corners, kNone);
     if (normals) fill(look_.normals, 3, corners, kNone);
     if (colours) fill(look_.colours, 4, corners, 1);
@@ -122,7 +97,7 @@ class GltfLookReader {
         };
         const Index corner = 3 * f + k;
         if (uvs) look_.uvs.row(corner) << value(*uvs, 0), 1 - value(*uvs, 1);
-        if (normals && normals->components >= 3) {
+        if (normals) {
           const Eigen::Vector3d normal(value(*normals, 0), value(*normals, 1), value(*normals, 2));
           look_.normals.row(corner) = (turn * normal).normalized().transpose();
         }
@@ -131,12 +106,26 @@ class GltfLookReader {
         }
       }
     }
+    look_.part_of_face.resize(static_cast<std::size_t>(face_), part(use));
     const Json* number = find(primitive, "material");
     look_.material_of_face.resize(static_cast<std::size_t>(face_), number == nullptr ? -1 : material(*number, where));
   }
 
+  // Primitives of one node are one part, which has the node's and the mesh's names.
+  int part(const gltf::PrimitiveUse& use) {
+    if (look_.parts.empty() || use.node != node_) {
+      const auto name_of = [&](const char* list, std::int64_t number) -> std::string {
+        const Json* name = find(gltf_.root()[list][static_cast<std::size_t>(number)], "name");
+        return name != nullptr && name->is_string() ? name->get<std::string>() : "";
+      };
+      look_.parts.push_back({name_of("nodes", use.node), name_of("meshes", use.mesh)});
+      node_ = use.node;
+    }
+    return static_cast<int>(look_.parts.size()) - 1;
+  }
+
   int material(const Json& number, const std::string& where) {
-    const Json& entry_of = entry("materials", number, where);
+    const Json& entry_of = gltf_.entry("materials", number, where);
     const auto [known, added] =
         materials_.try_emplace(number.get<std::int64_t>(), static_cast<int>(look_.materials.size()));
     if (!added) return known->second;
@@ -157,14 +146,13 @@ class GltfLookReader {
   }
 
   void read_texture(const Json& number, Material& material) {
-    const Json* source = find(entry("textures", number, "materials"), "source");
+    const Json* source = find(gltf_.entry("textures", number, "materials"), "source");
     if (source == nullptr) return;
-    const Json& image = entry("images", *source, "textures[" + number.dump() + "]");
+    const Json& image = gltf_.entry("images", *source, "textures[" + number.dump() + "]");
     const Json* uri = find(image, "uri");
     if (const Json* view = find(image, "bufferView")) {
       const Json* name = find(image, "name");
-      if (!view->is_number_integer()) refuse("images[" + source->dump() + "].bufferView", "must be an integer");
-      material.image = gltf_.view(view->get<std::int64_t>());
+      material.image = gltf_.view(*view, "images[" + source->dump() + "].bufferView");
       if (name != nullptr && name->is_string()) material.texture = file_name(name->get<std::string>(), material.image);
     } else if (uri != nullptr && uri->is_string()) {
       const auto& text = uri->get_ref<const std::string&>();
@@ -188,11 +176,13 @@ class GltfLookReader {
 
   const fs::path& file_;
   const Mesh& mesh_;
+  gltf::Plain plain_;
   GltfFile gltf_;
   std::vector<gltf::PrimitiveUse> uses_;
   Appearance look_;
   std::map<std::int64_t, int> materials_;
   Index first_face_ = 0, face_ = 0;
+  std::int64_t node_ = -1;  // of the last part
 };
 
 }  // namespace

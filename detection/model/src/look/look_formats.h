@@ -17,6 +17,7 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 Appearance obj_look(const std::filesystem::path& file, std::string_view content, const Mesh& mesh);
 Appearance ply_look(const std::filesystem::path& file, std::string_view content, const Mesh& mesh);
 Appearance gltf_look(const std::filesystem::path& file, std::string_view content, const Mesh& mesh);
+Appearance three_mf_look(const std::filesystem::path& file, std::string_view content, const Mesh& mesh);
 
 /// An OBJ file and the material library that it names.
 struct ObjFiles {
@@ -24,8 +25,10 @@ struct ObjFiles {
 };
 ObjFiles obj_with_look(const Mesh& mesh, const Appearance& look, const std::string& library_name);
 
-/// A GLB with one primitive a material; a vertex for each that differs in place or look.
-std::string glb_with_look(const std::filesystem::path& file, const Mesh& mesh, const Appearance& look);
+/// A GLB with a node for each part and a primitive for each material, as they follow one another; a vertex for each
+/// that differs in place or look, in the order of the mesh's. \param[out] problems  a line is added for each
+std::string glb_with_look(const std::filesystem::path& file, const Mesh& mesh, const Appearance& look,
+                          std::vector<std::string>& problems);
 
 /// Whether the name of a file stays within the folder that it is looked for in.
 bool within_folder(const std::filesystem::path& name);

@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-
 std::string rest_of(std::string_view line, std::string_view keyword) {
   const std::size_t at = line.find(keyword) + keyword.size();
   const std::size_t first = line.find_first_not_of(" \t", at);
@@ -60,6 +59,8 @@ class ObjLookReader {
       normals_.push_back({coordinate(words, "vn"), coordinate(words, "vn"), coordinate(words, "vn")});
     if (keyword == "f" || keyword == "fo") read_face(words);
     if (keyword == "usemtl") use_material(rest_of(line, keyword));
+    if (keyword == "o") begin_part({rest_of(line, keyword), ""});
+    if (keyword == "g") begin_part({part_.object, group_name(rest_of(line, keyword))});
     if (keyword == "mtllib") read_library(rest_of(line, keyword));
   }
 
@@ -120,7 +121,22 @@ class ObjLookReader {
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
       for (const std::size_t c : {std::size_t{0}, k, k + 1}) corners_.push_back(corners[c]);
       look_.material_of_face.push_back(material_);
+      look_.part_of_face.push_back(part());
     }
+  }
+
+  static std::string group_name(const std::string& name) { return name == "default" ? "" : name; }
+
+  void begin_part(Part part) {
+    part_ = std::move(part);
+    begun_ = true;
+  }
+
+  // The number of that which faces are in now; lines that no face follows begin none.
+  int part() {
+    if (begun_) look_.parts.push_back(part_);
+    begun_ = false;
+    return static_cast<int>(look_.parts.size()) - 1;
   }
 
   void use_material(const std::string& name) {
@@ -188,6 +204,7 @@ class ObjLookReader {
       if (!target.texture.empty()) read_image(file_.parent_path(), target, look_.warnings);
     }
     if (look_.materials.empty()) look_.material_of_face.clear();
+    if (look_.parts.empty()) look_.part_of_face.clear();
     fill_corners();
     return std::move(look_);
   }
@@ -232,6 +249,8 @@ class ObjLookReader {
   std::map<std::string, int> materials_;
   std::map<std::string, Material> library_;
   int material_ = -1;
+  Part part_;
+  bool begun_ = false;  // a part that has no face yet
   bool coloured_ = false;
 };
 
@@ -262,10 +281,34 @@ class RowTable {
   std::map<std::vector<double>, int> numbers_;
 };
 
-std::string library_text(const std::vector<Material>& materials) {
-  std::string text;
+// A name as OBJ can hold it, which ends at its line's end or at a comment.
+std::string obj_name(std::string name, const char* otherwise) {
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '#' || c == '\\') c = '_';
+  }
+  const std::size_t first = name.find_first_not_of(' ');
+  if (first == std::string::npos) return otherwise;
+  return name.substr(first, name.find_last_not_of(' ') - first + 1);
+}
+
+// Names of materials, each another one, so that none takes another's place.
+std::vector<std::string> obj_names(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
   for (const Material& material : materials) {
-    text += "newmtl " + material.name + "\nKd";
+    const std::string name = obj_name(material.name, "unnamed");
+    std::string own = name;
+    for (int number = 2; !taken.insert(own).second; ++number) own = name + "-" + std::to_string(number);
+    names.push_back(own);
+  }
+  return names;
+}
+
+std::string library_text(const std::vector<Material>& materials, const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    const Material& material = materials[m];
+    text += "newmtl " + names[m] + "\nKd";
     for (std::size_t k = 0; k < 3; ++k) {
       text += ' ';
       append_number(text, material.base_colour[k]);
@@ -296,6 +339,16 @@ void append_vertices(std::string& text, const Mesh& mesh, const Appearance& look
   }
 }
 
+// The lines that begin a part. \param before  whose names faces have until then; null for none
+std::string part_lines(const Part& part, const Part* before) {
+  std::string text;
+  const bool had_object = before != nullptr && !before->object.empty();
+  const bool had_group = before != nullptr && !before->group.empty();
+  if (!part.object.empty() || had_object) text += "o " + obj_name(part.object, "unnamed") + "\n";
+  if (!part.group.empty() || had_group) text += "g " + obj_name(part.group, "default") + "\n";
+  return text;
+}
+
 }  // namespace
 
 Appearance obj_look(const fs::path& file, std::string_view content, const Mesh& mesh) {
@@ -304,8 +357,9 @@ Appearance obj_look(const fs::path& file, std::string_view content, const Mesh& 
 
 ObjFiles obj_with_look(const Mesh& mesh, const Appearance& look, const std::string& library_name) {
   ObjFiles files;
+  const std::vector<std::string> names = obj_names(look.materials);
   if (!library_name.empty()) {
-    files.library = library_text(look.materials);
+    files.library = library_text(look.materials, names);
     files.mesh += "mtllib " + library_name + "\n";
   }
   append_vertices(files.mesh, mesh, look);
@@ -316,11 +370,20 @@ ObjFiles obj_with_look(const Mesh& mesh, const Appearance& look, const std::stri
   for (Eigen::Index c = 0; c < look.uvs.rows(); ++c) uv_of.push_back(uvs.number(look.uvs.row(c)));
   for (Eigen::Index c = 0; c < look.normals.rows(); ++c) normal_of.push_back(normals.number(look.normals.row(c)));
   int material = -1;
+  int part = -1;
   for (const PolygonRange& range : polygon_ranges(mesh)) {
     const auto first = static_cast<std::size_t>(range.first_face);
+    const int own_part = look.part_of_face.empty() ? -1 : look.part_of_face[first];
+    if (own_part != part) {
+      const auto names_of = [&](int number) {
+        return number < 0 ? nullptr : &look.parts[static_cast<std::size_t>(number)];
+      };
+      files.mesh += part_lines(own_part < 0 ? Part{} : *names_of(own_part), names_of(part));
+      part = own_part;
+    }
     const int own = look.material_of_face.empty() ? -1 : look.material_of_face[first];
     if (own != material && own >= 0 && !library_name.empty()) {
-      files.mesh += "usemtl " + look.materials[static_cast<std::size_t>(own)].name + "\n";
+      files.mesh += "usemtl " + names[static_cast<std::size_t>(own)] + "\n";
     }
     material = own;
     files.mesh += 'f';

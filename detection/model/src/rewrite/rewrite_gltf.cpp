@@ -9,8 +9,9 @@
 #include <Eigen/LU>
 
 #include "files/gltf.h"
+#include "files/gltf_file.h"
+#include "files/gltf_plain.h"
 #include "files/mesh_formats.h"
-#include "rewrite/gltf_file.h"
 #include "rewrite/rewriters.h"
 #include "rewrite/turned_normals.h"
 
@@ -54,7 +55,8 @@ class GltfRewriter {
  public:
   explicit GltfRewriter(const MeshEdit& edit)
       : edit_(edit),
-        file_(edit.source, edit.content),
+        plain_(gltf::plain(edit.source, edit.content)),
+        file_(edit.source, plain_.text(edit.content)),
         turns_(vertex_normal_turns(edit.rest, edit.edited)),
         uses_(gltf::primitive_uses(edit.source, edit.content)) {}
 
@@ -80,9 +82,7 @@ class GltfRewriter {
     for (const auto& [name, kind] : {std::pair{"POSITION", Kind::position}, std::pair{"NORMAL", Kind::normal},
                                      std::pair{"TANGENT", Kind::tangent}}) {
       if (!primitive["attributes"].contains(name)) continue;
-      const auto accessor = primitive["attributes"][name].get<std::int64_t>();
-      if (file_.root()["accessors"][index(accessor)].contains("sparse")) continue;
-      ask(use, name, kind, accessor, rows);
+      ask(use, name, kind, primitive, rows);
     }
   }
 
@@ -101,9 +101,15 @@ class GltfRewriter {
     return rows;
   }
 
-  void ask(const PrimitiveUse& use, const char* name, Kind kind, std::int64_t accessor,
+  void ask(const PrimitiveUse& use, const char* name, Kind kind, const Json& primitive,
            const std::vector<std::size_t>& rows) {
-    const GltfAttribute rest = file_.attribute(accessor);
+    const Json& attributes = primitive["attributes"];
+    const auto position = index(attributes["POSITION"].get<std::int64_t>());
+    const GltfAttribute rest =
+        file_.attribute(attributes[name], file_.root()["accessors"][position]["count"].get<std::int64_t>(),
+                        "meshes[" + std::to_string(use.mesh) + "]." + name);
+    if (rest.components < 3) return;  // neither a normal nor a tangent
+    const auto accessor = attributes[name].get<std::int64_t>();
     std::vector<std::array<float, 4>> values;
     for (const std::size_t row : rows) values.push_back(edited(use, kind, rest, row));
     const auto agrees = [&](const Target& target) {
@@ -190,6 +196,7 @@ class GltfRewriter {
   static std::size_t index(std::int64_t number) { return static_cast<std::size_t>(number); }
 
   const MeshEdit& edit_;
+  gltf::Plain plain_;
   GltfFile file_;
   std::vector<NormalTurn> turns_;
   std::vector<PrimitiveUse> uses_;

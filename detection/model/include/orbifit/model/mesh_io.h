@@ -9,10 +9,10 @@
 
 namespace orbifit {
 
-/// Reads OBJ, OFF, PLY (ascii, little and big endian, float and double), STL (ascii and binary), glTF and GLB, by the
-/// file's ending. Order of vertices and faces and double precision are kept; polygons are cut into fans from their
+/// Reads OBJ, OFF, PLY (ascii, little and big endian, float and double), STL (ascii and binary), glTF, GLB and 3MF, by
+/// the file's ending. Order of vertices and faces and double precision are kept; polygons are cut into fans from their
 /// first corner. An STL's triangles have three vertices of their own each. glTF: the default scene's triangle
-/// primitives with their nodes' transforms applied, in node order.
+/// primitives with their nodes' transforms applied, in node order. 3MF: the build's items likewise.
 /// \throw InputError with file, line or element and
 /// reason: unreadable, empty, truncated, an index out of range, a
 ///        coordinate not finite or beyond 1e50, no vertices, no faces, an unknown ending

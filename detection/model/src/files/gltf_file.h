@@ -18,7 +18,7 @@ struct GltfAttribute {
 };
 
 /// A glTF or GLB file whose attributes can be changed; all that is not touched stays, in its order.
-/// \pre the file was read by read_gltf(): ranges and types are right
+/// \pre the file was read by read_gltf(): its JSON, positions and indices are right
 class GltfFile {
  public:
   using Json = nlohmann::ordered_json;
@@ -26,12 +26,19 @@ class GltfFile {
   /// \param content outlives this
   GltfFile(std::filesystem::path file, std::string_view content);
 
+  /// An object's entry, or null.
+  static const Json* find(const Json& object, const char* key);
+  /// An entry of a list at the top level, an object. \throw InputError where there is none
+  const Json& entry(const char* list, const Json& number, const std::string& user) const;
+
   Json& root() { return root_; }
 
-  GltfAttribute attribute(std::int64_t accessor);
+  /// The rows of an attribute. \param number  of its accessor \param user  what names it
+  /// \throw InputError where there is no such accessor, it has other than `count` rows, or these are not in its buffer
+  GltfAttribute attribute(const Json& number, std::int64_t count, const std::string& user);
 
   /// The bytes of a buffer view, such as an image. \throw InputError
-  std::string_view view(std::int64_t number);
+  std::string_view view(const Json& number, const std::string& user);
 
   /// Corners of a primitive, or nothing where its vertices follow one another.
   std::optional<std::vector<std::int64_t>> corners(const Json& primitive);
@@ -42,6 +49,8 @@ class GltfFile {
   void set(std::int64_t accessor, const GltfAttribute& attribute);
   /// Adds numbers at the file's end. \return the new accessor, which is as `like` but for where its numbers are
   std::int64_t add(std::int64_t like, const GltfAttribute& attribute);
+  /// Adds bytes at the file's end. \return the new buffer view
+  std::int64_t add_view(std::string_view bytes);
 
   std::string bytes() const;
 
@@ -54,6 +63,7 @@ class GltfFile {
   };
 
   Place place(std::int64_t accessor, int components) const;
+  [[noreturn]] void refuse(const std::string& where, const std::string& reason) const;
   const std::string& buffer(std::int64_t number);
   void set_bounds(std::int64_t accessor, const GltfAttribute& attribute);
   std::int64_t own_buffer();

@@ -1,4 +1,4 @@
-#include "rewrite/gltf_file.h"
+#include "files/gltf_file.h"
 
 #include <algorithm>
 #include <array>
@@ -19,8 +19,11 @@ using namespace gltf;
 
 namespace {
 
-constexpr std::size_t kHeader = 12;      // of a GLB, bytes
-constexpr std::size_t kChunkHeader = 8;  // bytes
+using Json = GltfFile::Json;
+
+constexpr std::size_t kMaxStride = 4096;  // bytes; glTF's own limit is 252
+constexpr std::size_t kHeader = 12;       // of a GLB, bytes
+constexpr std::size_t kChunkHeader = 8;   // bytes
 constexpr std::string_view kDataUri = "data:application/octet-stream;base64,";
 
 std::string base64(std::string_view bytes) {
@@ -44,6 +47,12 @@ void store_float(std::string& bytes, std::size_t offset, float number) {
   std::string text;
   store(text, number);
   bytes.replace(offset, text.size(), text);
+}
+
+bool whole(const Json& object, const char* key, bool needed) {
+  const Json* found = GltfFile::find(object, key);
+  return found == nullptr ? !needed
+                          : found->is_number_integer() && found->get<double>() >= 0 && found->get<double>() < 9e15;
 }
 
 void pad(std::string& bytes, char with) {
@@ -91,53 +100,96 @@ const std::string& GltfFile::buffer(std::int64_t number) {
   return bytes;
 }
 
+const Json* GltfFile::find(const Json& object, const char* key) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
+void GltfFile::refuse(const std::string& where, const std::string& reason) const {
+  throw InputError(file_.string(), where, reason);
+}
+
+const Json& GltfFile::entry(const char* list, const Json& number, const std::string& user) const {
+  const Json* all = find(root_, list);
+  const std::size_t size = all != nullptr && all->is_array() ? all->size() : 0;
+  if (!number.is_number_integer() || number.get<double>() < 0 || number.get<double>() >= static_cast<double>(size)) {
+    refuse(user, "names an entry of " + std::string(list) + " that there is not");
+  }
+  const Json& result = (*all)[number.get<std::size_t>()];
+  if (!result.is_object()) refuse(std::string(list) + "[" + number.dump() + "]", "must be an object");
+  return result;
+}
+
 GltfFile::Place GltfFile::place(std::int64_t accessor, int components) const {
   const Json& entry = root_["accessors"][static_cast<std::size_t>(accessor)];
   const Json& view = root_["bufferViews"][entry["bufferView"].get<std::size_t>()];
+  const Json* normalised = find(entry, "normalized");
   Place result;
   result.buffer = view["buffer"].get<std::int64_t>();
   result.offset = view.value("byteOffset", std::size_t{0}) + entry.value("byteOffset", std::size_t{0});
   result.type = entry["componentType"].get<std::int64_t>();
-  result.normalised = entry.value("normalized", false);
+  result.normalised = normalised != nullptr && normalised->is_boolean() && normalised->get<bool>();
   result.count = entry["count"].get<std::size_t>();
   result.stride = view.value("byteStride", static_cast<std::size_t>(components) * component_size(result.type));
   return result;
 }
 
-GltfAttribute GltfFile::attribute(std::int64_t accessor) {
-  GltfAttribute result;
-  const Json& entry = root_["accessors"][static_cast<std::size_t>(accessor)];
-  result.components = entry["type"] == "VEC4" ? 4 : entry["type"] == "VEC2" ? 2 : 3;
-  const Place from = place(accessor, result.components);
-  const std::string& bytes = buffer(from.buffer);
-  const std::size_t row = static_cast<std::size_t>(result.components) * component_size(from.type);
-  if (from.count > 0 && from.offset + (from.count - 1) * from.stride + row > bytes.size()) {
-    throw InputError(file_.string(), "accessors[" + std::to_string(accessor) + "]", "reaches beyond its buffer");
+GltfAttribute GltfFile::attribute(const Json& number, std::int64_t count, const std::string& user) {
+  const Json& accessor = entry("accessors", number, user);
+  const std::string where = "accessors[" + number.dump() + "]";
+  const Json* type = find(accessor, "type");
+  if (type == nullptr || (*type != "VEC2" && *type != "VEC3" && *type != "VEC4")) {
+    refuse(where, "is no list of vectors");
   }
+  const Json* view_number = find(accessor, "bufferView");
+  if (find(accessor, "sparse") != nullptr || view_number == nullptr) {
+    refuse(where, "has no bufferView: only what has numbers of its own is read");
+  }
+  const bool good = whole(accessor, "count", true) && whole(accessor, "byteOffset", false) &&
+                    whole(accessor, "componentType", true) &&
+                    component_size(accessor["componentType"].get<std::int64_t>()) > 0;
+  if (!good) refuse(where, "has a key that is no integer, or a component type that there is not");
+  if (accessor["count"].get<std::int64_t>() != count) {
+    refuse(where, "has " + accessor["count"].dump() + " rows for " + std::to_string(count) + " vertices");
+  }
+  const std::string_view bytes = view(*view_number, where);
+  if (!whole(entry("bufferViews", *view_number, where), "byteStride", false)) {
+    refuse("bufferViews[" + view_number->dump() + "].byteStride", "must be an integer");
+  }
+  GltfAttribute result;
+  result.components = *type == "VEC4" ? 4 : *type == "VEC2" ? 2 : 3;
+  const Place from = place(number.get<std::int64_t>(), result.components);
+  const std::size_t inner = accessor.value("byteOffset", std::size_t{0});
+  const std::size_t row = static_cast<std::size_t>(result.components) * component_size(from.type);
+  if (from.stride < row || from.stride > kMaxStride) {
+    refuse("bufferViews[" + view_number->dump() + "].byteStride", "does not fit its data");
+  }
+  if (from.count > 0 && (inner > bytes.size() || row > bytes.size() - inner ||
+                         from.count - 1 > (bytes.size() - inner - row) / from.stride)) {
+    refuse(where, "reaches beyond its bufferView: " + std::to_string(from.count) + " entries are announced");
+  }
+  result.values.reserve(from.count * static_cast<std::size_t>(result.components));
   for (std::size_t v = 0; v < from.count; ++v) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(result.components); ++k) {
-      const char* at = bytes.data() + from.offset + v * from.stride + k * component_size(from.type);
+      const char* at = bytes.data() + inner + v * from.stride + k * component_size(from.type);
       result.values.push_back(static_cast<float>(load_component(at, from.type, from.normalised)));
     }
   }
   return result;
 }
 
-std::string_view GltfFile::view(std::int64_t number) {
-  const std::string where = "bufferViews[" + std::to_string(number) + "]";
-  const std::size_t count = root_.contains("bufferViews") ? root_["bufferViews"].size() : 0;
-  if (number < 0 || number >= static_cast<std::int64_t>(count)) throw InputError(file_.string(), where, "is missing");
-  const Json& view = root_["bufferViews"][static_cast<std::size_t>(number)];
-  const auto from = view.value("buffer", std::int64_t{-1});
-  if (from < 0 || from >= static_cast<std::int64_t>(buffers_.size())) {
-    throw InputError(file_.string(), where, "names no buffer");
+std::string_view GltfFile::view(const Json& number, const std::string& user) {
+  const Json& view = entry("bufferViews", number, user);
+  const std::string where = "bufferViews[" + number.dump() + "]";
+  if (!whole(view, "buffer", true) || !whole(view, "byteOffset", false) || !whole(view, "byteLength", true)) {
+    refuse(where, "has a key that is missing or no integer");
   }
-  const std::string_view bytes = buffer(from);
+  entry("buffers", view["buffer"], where);
+  const std::string_view bytes = buffer(view["buffer"].get<std::int64_t>());
   const auto offset = view.value("byteOffset", std::size_t{0});
-  const auto length = view.value("byteLength", std::size_t{0});
-  if (offset > bytes.size() || length > bytes.size() - offset) {
-    throw InputError(file_.string(), where, "reaches beyond its buffer");
-  }
+  const auto length = view["byteLength"].get<std::size_t>();
+  if (offset > bytes.size() || length > bytes.size() - offset) refuse(where, "reaches beyond its buffer");
   return bytes.substr(offset, length);
 }
 
@@ -196,17 +248,25 @@ std::int64_t GltfFile::own_buffer() {
   return own_buffer_;
 }
 
-std::int64_t GltfFile::add(std::int64_t like, const GltfAttribute& attribute) {
+std::int64_t GltfFile::add_view(std::string_view added) {
   const auto number = static_cast<std::size_t>(own_buffer());
   std::string& bytes = buffers_[number];
   pad(bytes, '\0');
   const std::size_t offset = bytes.size();
-  for (const float value : attribute.values) store(bytes, value);
+  bytes += added;
   changed_[number] = true;
   root_["buffers"][number]["byteLength"] = bytes.size();
-  root_["bufferViews"].push_back({{"buffer", number}, {"byteOffset", offset}, {"byteLength", bytes.size() - offset}});
+  root_["bufferViews"].push_back({{"buffer", number}, {"byteOffset", offset}, {"byteLength", added.size()}});
+  return static_cast<std::int64_t>(root_["bufferViews"].size()) - 1;
+}
+
+std::int64_t GltfFile::add(std::int64_t like, const GltfAttribute& attribute) {
+  std::string numbers;
+  numbers.reserve(attribute.values.size() * sizeof(float));
+  for (const float value : attribute.values) store(numbers, value);
+  const std::int64_t view = add_view(numbers);
   Json entry = root_["accessors"][static_cast<std::size_t>(like)];
-  entry["bufferView"] = root_["bufferViews"].size() - 1;
+  entry["bufferView"] = view;
   entry["componentType"] = int{kFloat};
   entry.erase("byteOffset");
   entry.erase("normalized");
