@@ -12,12 +12,17 @@ constexpr std::size_t kLongest = 60;      // bytes of a name that is shown
 constexpr double kHeld = 0.5;             // of a part's faces: a region of more is the part, one of fewer is in it
 constexpr const char* kBetween = " ._-";  // what stands between a name and its number
 
-// "leg" of "leg_12"; what control characters there are goes, and nothing is left of a mere number.
-std::string stem_of(const std::string& name) {
-  std::string stem;
+std::string printable(const std::string& name) {
+  std::string result;
   for (const char c : name) {
-    if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) stem += c;
+    if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) result += c;
   }
+  return result;
+}
+
+// "leg" of "leg_12"; nothing is left of a mere number.
+std::string stem_of(const std::string& name) {
+  std::string stem = printable(name);
   const std::size_t number = stem.find_last_not_of("0123456789");
   if (number == std::string::npos) return {};
   const std::size_t end = stem.find_last_not_of(kBetween, number);
@@ -33,8 +38,17 @@ PartNames::PartNames(const NamedParts& parts, std::size_t faces) : parts_(parts)
   for (const int part : parts.part_of_face) {
     if (part >= 0) ++size_[static_cast<std::size_t>(part)];
   }
-  for (const std::string& name : parts.names) stems_.push_back(stem_of(name));
-  telling_ = std::ranges::any_of(size_, [&](std::size_t size) { return size > 0 && size < faces; });
+  std::map<std::string, int> parts_of_stem;
+  for (std::size_t part = 0; part < size_.size(); ++part) {
+    stems_.push_back(size_[part] > 0 ? stem_of(parts.names[part]) : std::string{});
+    if (!stems_.back().empty()) ++parts_of_stem[stems_.back()];
+  }
+  telling_ = parts_of_stem.size() > 1;
+  // Numbers count parts of one kind; of one of its kind it is in the name for another reason.
+  for (std::size_t part = 0; part < size_.size(); ++part) {
+    const bool alone = !stems_[part].empty() && parts_of_stem[stems_[part]] == 1;
+    if (alone && parts.names[part].size() <= kLongest) stems_[part] = printable(parts.names[part]);
+  }
 }
 
 std::optional<PartNames::Noun> PartNames::of(const std::vector<int>& faces) const {

@@ -11,7 +11,7 @@ namespace orbifit {
 /// What the mesh's file calls its parts, as names for regions.
 class PartNames {
  public:
-  /// \param parts  where all faces have one name, or none, they tell nothing apart \param faces  of the mesh
+  /// \param parts  names that are all the same but for numbers, or none, tell nothing \param faces  of the mesh
   PartNames(const NamedParts& parts, std::size_t faces);
 
   struct Noun {
@@ -27,7 +27,7 @@ class PartNames {
  private:
   const NamedParts& parts_;
   std::vector<std::size_t> size_;   // faces of each part
-  std::vector<std::string> stems_;  // of each part's name
+  std::vector<std::string> stems_;  // of each part's name: without the number that counts parts of one kind
   bool telling_ = false;
 };
 

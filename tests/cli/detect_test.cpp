@@ -1,7 +1,10 @@
 #include "orbifit/detection/detect.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -51,6 +54,48 @@ TEST(Detect, ListsByImportance) {
   EXPECT_GT(lines, 4U);
   EXPECT_LT(lines, list["regions"].size());
   EXPECT_NE(table.find("4 bars"), std::string::npos) << table;
+}
+
+// Boxes, each an object of its own: eight corners, twelve triangles.
+std::string named_boxes(const std::vector<std::pair<std::string, std::array<double, 6>>>& boxes) {
+  static constexpr int kSides[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  std::string text;
+  int first = 1;
+  for (const auto& [name, bounds] : boxes) {
+    text += "o " + name + "\n";
+    for (int corner = 0; corner < 8; ++corner) {
+      text += "v";
+      for (std::size_t k = 0; k < 3; ++k) text += " " + std::to_string(bounds[2 * k + (corner >> k & 1)]);
+      text += "\n";
+    }
+    for (const auto& side : kSides) {
+      text += "f";
+      for (const int corner : side) text += " " + std::to_string(first + corner);
+      text += "\n";
+    }
+    first += 8;
+  }
+  return text;
+}
+
+TEST(Detect, CallsRegionsAsTheFileCallsItsParts) {
+  const Program program;
+  write_file(program.folder().file("stool.obj"), named_boxes({{"seat", {-1, 1, -1, 1, 1, 1.2}},
+                                                              {"foot.001", {-1, -0.8, -1, -0.8, 0, 1}},
+                                                              {"foot.002", {0.8, 1, -1, -0.8, 0, 1}},
+                                                              {"foot.003", {-1, -0.8, 0.8, 1, 0, 1}},
+                                                              {"foot.004", {0.8, 1, 0.8, 1, 0, 1}}}));
+  const ProgramResult outcome = program.run("detect stool.obj --all --json --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.errors;
+  std::string names;
+  const nlohmann::json listed = nlohmann::json::parse(outcome.output);
+  for (const nlohmann::json& region : listed["regions"]) {
+    names += region.value("name", "?") + "; ";
+  }
+  EXPECT_NE(names.find("whole; "), std::string::npos) << names;
+  EXPECT_NE(names.find("upper seat; "), std::string::npos) << names;
+  EXPECT_NE(names.find("foot 1 of 4, "), std::string::npos) << names;
 }
 
 }  // namespace

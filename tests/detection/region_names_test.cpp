@@ -101,9 +101,12 @@ TEST_F(RegionNames, AreByShapeWhereTheFileSaysNothing) {
     return names({{0}}, Vector3d::UnitZ()).front();
   };
   EXPECT_EQ(named({"mesh"}, 0), "front left bar");
+  EXPECT_EQ(named({"part_1", "part_2", "part_3", "part_4", "part_5"}, 0), "front left bar");
   EXPECT_EQ(named({"1", "2", "3", "4", "5"}, 0), "front left bar");
   EXPECT_EQ(named({"a", "b", "c", "d", "e"}, 14), "front left bar");
   EXPECT_EQ(named({"a", "b", "c", "d", "e"}, 0), "front left b");
+  EXPECT_EQ(named({"a", "b2", "b3", "d", "e"}, 0), "front left b");
+  EXPECT_EQ(named({"a", "2 x 2", "c", "d", "e"}, 0), "front left 2 x 2");
 }
 
 TEST_F(RegionNames, AreExplained) {

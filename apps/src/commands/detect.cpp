@@ -19,6 +19,7 @@
 #include "orbifit/model/scan_io.h"
 
 #include "../commands.h"
+#include "../named_parts.h"
 #include "../picture_options.h"
 #include "../region_colours.h"
 #include "../region_listing.h"
@@ -172,6 +173,7 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
   Explanation explanation;
   DetectOptions chosen = arguments.options;
   chosen.up = picture_up(arguments.up, mesh, arguments.mesh, nullptr);
+  chosen.named_parts = named_parts(arguments.mesh, mesh);
   RunContext run = context.run;
   std::optional<StageTimes> times;
   if (!arguments.explain.empty()) {
