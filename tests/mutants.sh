@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # Mutation testing: do the tests of subspace, of point groups and of verification notice operators that are flipped?
-# `tests/mutants.sh [MOST] [SEED]`, from anywhere: MOST (100) mutants of each of the three, drawn with SEED (1), all compiled
-# at once in a copy of the sources (build/mutants) and tried one after another with the tests of their own folder. Prints
-# those that survive and a table. Some two hours on two cores; not part of CI.
+# `tests/mutants.sh [MOST [SEED [groups] [verification] [subspace]]]`, from anywhere: MOST (100) mutants of each, all three by
+# default, drawn with SEED (1), all compiled at once in a copy of the sources (build/mutants) and tried one after another
+# with the tests of their own folder. Prints those that survive and a table. Some two hours on two cores; not part of CI.
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
 most=${1:-100} seed=${2:-1}
+shift $(($# < 2 ? $# : 2))
+selected=" ${*:-groups verification subspace} "
 
 install_packages "${program_packages[@]}" "${test_packages[@]}" "${mutation_packages[@]}"
 work=$root/build/mutants
@@ -19,6 +21,7 @@ mkdir "$copy"
 tried() {
   local name=$1 target=$2 program=$3
   shift 3
+  [[ $selected == *" $name "* ]] || return 0
   echo "== $name"
   /usr/bin/python3 "$root/tests/mutants/instrument.py" "$work/flags/compile_commands.json" "$most" "$seed" "$work/$name.tsv" "$@"
   cmake --build "$work/release" --target "$target" >"$work/$name.log" 2>&1 || { tail -n 40 "$work/$name.log" >&2; exit 1; }

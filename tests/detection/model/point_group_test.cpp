@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "orbifit/model/annotation.h"
+
 #include "base/random.h"
 
 namespace orbifit {
@@ -105,6 +107,25 @@ TEST(PointGroup, RefusesWhatIsNoSymbol) {
        {"", "C", "C0", "C01", "Cx", "S3", "S2", "Dv", "C4x", "D3v", "c4", "Th2", "C4v ", "D-2", "C1000001"}) {
     EXPECT_FALSE(PointGroup::parse(text).has_value()) << text;
   }
+}
+
+TEST(PointGroup, OrdersGoUpToAMillion) {
+  EXPECT_TRUE(PointGroup::parse("C1000000").has_value());
+}
+
+// Of two regions on the same faces around a third one, the first.
+TEST(SetParents, TakesTheSmallestAroundAndOfEqualOnesTheFirst) {
+  std::vector<Region> regions(4);
+  for (int i = 0; i < 4; ++i) regions[static_cast<std::size_t>(i)].id = 10 + i;
+  regions[0].faces = {0, 1, 2, 3, 4};
+  regions[1].faces = {0, 1, 2};
+  regions[2].faces = {0, 1, 2};
+  regions[3].faces = {1, 2};
+  set_parents(regions);
+  EXPECT_EQ(regions[0].parent, std::nullopt);
+  EXPECT_EQ(regions[1].parent, 10);
+  EXPECT_EQ(regions[2].parent, 10);
+  EXPECT_EQ(regions[3].parent, 11);
 }
 
 TEST(PointGroup, ContinuousGroupsHaveOrderZero) {
