@@ -208,6 +208,16 @@ TEST_F(AppearanceOfFiles, WarnsOfWhatIsMissingAndKeepsItsName) {
   EXPECT_NE(read("look.obj").warnings.at(0).find("look.mtl"), std::string::npos);
   folder_.write("outside.obj", "mtllib ../other.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_NE(read("outside.obj").warnings.at(0).find("outside"), std::string::npos);
+  fs::create_directory(folder_.file("in"));
+  folder_.write("secret.png", kLookImage);
+  for (const std::string& name : {std::string("../secret.png"), folder_.file("secret.png").string()}) {
+    folder_.write("in/a.mtl", "newmtl red\nmap_Kd " + name + "\n");
+    folder_.write("in/a.obj", "mtllib a.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Appearance outside = read("in/a.obj");
+    EXPECT_EQ(outside.materials.at(0).image, "") << name;
+    EXPECT_EQ(outside.materials.at(0).texture, name);
+    EXPECT_NE(outside.warnings.at(0).find("is outside of the mesh's folder"), std::string::npos) << name;
+  }
 }
 
 TEST_F(AppearanceOfFiles, RefusesNumbersThatDisagree) {
