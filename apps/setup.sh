@@ -10,7 +10,7 @@ build=$root/build/release
 program_packages=( # to build orbifit and its libraries
   g++ cmake ninja-build
   libeigen3-dev libflann-dev liblz4-dev libembree-dev libtbb-dev
-  libcli11-dev nlohmann-json3-dev libstb-dev libsqlite3-dev libxxhash-dev libdraco-dev lib3mf-dev
+  libcli11-dev nlohmann-json3-dev libstb-dev libsqlite3-dev libxxhash-dev libdraco-dev lib3mf-dev libzip-dev
 )
 test_packages=( # for the baselines, the adapters, the Python package, the tests and cpack besides
   libceres-dev libpcl-dev libopenmesh-dev libgtest-dev

@@ -59,7 +59,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME ${package_of_development})
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "finds, keeps and fits the symmetries of 3D shapes: libraries and headers")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4), libembree-dev (>= 3.13), libtbb-dev, liblz4-dev, \
-libdraco-dev, lib3mf-dev")
+libdraco-dev, lib3mf-dev, libzip-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libpcl-dev, libopenmesh-dev")
 
 set(CPACK_DEBIAN_BASELINES_PACKAGE_NAME ${package_of_baselines})

@@ -30,13 +30,13 @@ done
 # What the program needs is declared, and nothing of it is under the GPL; that is the business of orbifit-compare.
 needs=$(dpkg-deb -f "$deb" Depends)
 echo "orbifit depends on $needs"
-for library in libc6 libstdc++6 libembree3 libtbb12 liblz4-1 libdraco7 lib3mf1; do
+for library in libc6 libstdc++6 libembree3 libtbb12 liblz4-1 libdraco7 lib3mf1 libzip4; do
   [[ $needs == *"$library"* ]] || fail "the dependency on $library is missing"
 done
 gpl='libceres|libcholmod|libspqr|libsuitesparse|libumfpack'
 [[ ! $needs =~ $gpl ]] || fail "orbifit must not depend on libraries under the GPL"
 [[ $(dpkg-deb -f "$compare" Depends) =~ $gpl ]] || fail "orbifit-compare should depend on Ceres"
-for name in libeigen3-dev libembree-dev libtbb-dev liblz4-dev libdraco-dev lib3mf-dev; do
+for name in libeigen3-dev libembree-dev libtbb-dev liblz4-dev libdraco-dev lib3mf-dev libzip-dev; do
   [[ $(dpkg-deb -f "$development" Depends) == *"$name"* ]] || fail "liborbifit-dev: the dependency on $name is missing"
 done
 

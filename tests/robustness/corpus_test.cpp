@@ -30,6 +30,7 @@ const std::map<std::string, Reader>& readers() {
                                                  {"stl", {BadInputKind::mesh, ".stl"}},
                                                  {"gltf", {BadInputKind::mesh, ".gltf"}},
                                                  {"glb", {BadInputKind::mesh, ".glb"}},
+                                                 {"3mf", {BadInputKind::mesh, ".3mf"}},
                                                  {"ply_scan", {BadInputKind::scan, ".ply"}},
                                                  {"pcd", {BadInputKind::scan, ".pcd"}},
                                                  {"xyz", {BadInputKind::scan, ".xyz"}},

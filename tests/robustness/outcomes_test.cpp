@@ -57,12 +57,12 @@ TEST(BadInput, EveryReaderStaysSoundOnEveryFile) {
   const TemporaryFolder folder;
   const ReadingContext context;
   const std::vector<std::pair<BadInputKind, std::string>> readers{
-      {BadInputKind::mesh, "a.obj"},       {BadInputKind::mesh, "a.off"},          {BadInputKind::mesh, "a.ply"},
-      {BadInputKind::mesh, "a.stl"},       {BadInputKind::mesh, "a.gltf"},         {BadInputKind::mesh, "a.glb"},
-      {BadInputKind::scan, "a.ply"},       {BadInputKind::scan, "a.pcd"},          {BadInputKind::scan, "a.xyz"},
-      {BadInputKind::scan, "a.pts"},       {BadInputKind::annotation, "a.json"},   {BadInputKind::handles, "a.json"},
-      {BadInputKind::landmarks, "a.json"}, {BadInputKind::radius_field, "a.json"}, {BadInputKind::basis, "a.basis"},
-      {BadInputKind::manifest, "a.jsonl"}};
+      {BadInputKind::mesh, "a.obj"},     {BadInputKind::mesh, "a.off"},       {BadInputKind::mesh, "a.ply"},
+      {BadInputKind::mesh, "a.stl"},     {BadInputKind::mesh, "a.gltf"},      {BadInputKind::mesh, "a.glb"},
+      {BadInputKind::mesh, "a.3mf"},     {BadInputKind::scan, "a.ply"},       {BadInputKind::scan, "a.pcd"},
+      {BadInputKind::scan, "a.xyz"},     {BadInputKind::scan, "a.pts"},       {BadInputKind::annotation, "a.json"},
+      {BadInputKind::handles, "a.json"}, {BadInputKind::landmarks, "a.json"}, {BadInputKind::radius_field, "a.json"},
+      {BadInputKind::basis, "a.basis"},  {BadInputKind::manifest, "a.jsonl"}};
   for (const BadInput& file : all_files(context)) {
     if (file.content.size() > 200'000) continue;
     SCOPED_TRACE(file.name);

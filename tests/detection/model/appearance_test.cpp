@@ -1,5 +1,6 @@
 #include "orbifit/model/appearance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -139,6 +140,57 @@ TEST_F(AppearanceOfFiles, OfPolygonsLeavesThemPolygons) {
   expect_same_look(read("look.obj"), read("again/look.obj"), false);
 }
 
+TEST_F(AppearanceOfFiles, InAGlbLeavesVerticesAndFacesInTheirOrder) {
+  folder_.write("order.obj", "v 5 5 5\nv 0 0 1\nv 0 1 0\nv 1 0 0\nv 0 0 0\no named\nf 5 4 3\nf 4 3 2\nf 5 2 3\n");
+  EXPECT_TRUE(convert("order.obj", "order.glb").empty());
+  const Mesh mesh = read_mesh(folder_.file("order.obj"));
+  EXPECT_EQ(read_mesh(folder_.file("order.glb")).vertices, mesh.vertices);  // also the one that no face has
+  EXPECT_EQ(read_mesh(folder_.file("order.glb")).faces, mesh.faces);
+  // Materials that change to and fro.
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  for (int f = 0; f < 12; ++f) {
+    text += f % 2 == 0 ? "usemtl a\n" : "usemtl b\n";
+    text += f % 3 == 0 ? "f 1 2 3\n" : "f 2 3 4\n";
+  }
+  folder_.write("turns.obj", text);
+  EXPECT_TRUE(convert("turns.obj", "turns.glb").empty());
+  const Mesh before = read_mesh(folder_.file("turns.obj"));
+  const Mesh after = read_mesh(folder_.file("turns.glb"));
+  ASSERT_EQ(after.faces.rows(), before.faces.rows());
+  for (Eigen::Index f = 0; f < before.faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(after.vertices.row(after.faces(f, k)), before.vertices.row(before.faces(f, k))) << f;
+    }
+  }
+  EXPECT_EQ(read("turns.glb").material_of_face, read("turns.obj").material_of_face);
+}
+
+TEST_F(AppearanceOfFiles, SaysWhereAGlbHasTheFacesInAnotherOrder) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int f = 0; f < 5000; ++f) text += f % 2 == 0 ? "usemtl a\nf 1 2 3\n" : "usemtl b\nf 1 3 2\n";
+  folder_.write("turns.obj", text);
+  const std::vector<std::string> problems = convert("turns.obj", "turns.glb");
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems.front().find("these change 5000 times"), std::string::npos) << problems.front();
+  const Appearance look = read("turns.glb");
+  EXPECT_EQ(std::count(look.material_of_face.begin(), look.material_of_face.end(), 0), 2500);
+}
+
+TEST_F(AppearanceOfFiles, HasMaterialsThatObjCannotNameUnderOthers) {
+  Mesh mesh;
+  mesh.vertices = Points::Identity(3, 3);
+  mesh.faces.resize(3, 3);
+  mesh.faces << 0, 1, 2, 1, 2, 0, 2, 0, 1;
+  Appearance look;
+  look.materials = {{"a#b", {1, 0, 0, 1}, "", ""}, {"a_b", {0, 1, 0, 1}, "", ""}, {"", {0, 0, 1, 1}, "", ""}};
+  look.material_of_face = {0, 1, 2};
+  EXPECT_TRUE(write_mesh(folder_.file("names.obj"), mesh, look).empty());
+  const Appearance again = read("names.obj");
+  ASSERT_EQ(again.materials.size(), 3U);
+  EXPECT_EQ(again.material_of_face, look.material_of_face);
+  for (std::size_t m = 0; m < 3; ++m) EXPECT_EQ(again.materials[m].base_colour, look.materials[m].base_colour) << m;
+}
+
 TEST_F(AppearanceOfFiles, SaysWhatAFormatDoesNotTake) {
   const std::vector<std::string> lost = convert("look.obj", "plain.stl");
   ASSERT_EQ(lost.size(), 1U);
@@ -156,6 +208,16 @@ TEST_F(AppearanceOfFiles, WarnsOfWhatIsMissingAndKeepsItsName) {
   EXPECT_NE(read("look.obj").warnings.at(0).find("look.mtl"), std::string::npos);
   folder_.write("outside.obj", "mtllib ../other.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_NE(read("outside.obj").warnings.at(0).find("outside"), std::string::npos);
+  fs::create_directory(folder_.file("in"));
+  folder_.write("secret.png", kLookImage);
+  for (const std::string& name : {std::string("../secret.png"), folder_.file("secret.png").string()}) {
+    folder_.write("in/a.mtl", "newmtl red\nmap_Kd " + name + "\n");
+    folder_.write("in/a.obj", "mtllib a.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Appearance outside = read("in/a.obj");
+    EXPECT_EQ(outside.materials.at(0).image, "") << name;
+    EXPECT_EQ(outside.materials.at(0).texture, name);
+    EXPECT_NE(outside.warnings.at(0).find("is outside of the mesh's folder"), std::string::npos) << name;
+  }
 }
 
 TEST_F(AppearanceOfFiles, RefusesNumbersThatDisagree) {

@@ -1,6 +1,8 @@
 #include "files/three_mf.h"
 
+#include <ostream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -117,7 +119,7 @@ TEST_F(ThreeMf, RefusesComponentsThatMultiplyBeyondBounds) {
   }
   sample.items = {{25, ThreeMfSample::at(0, 0, 0)}};
   sample.write(file_);
-  expect_refused("multiply to more than 200 million vertices or a million parts");
+  expect_refused("components that multiply to more than a million parts");
 }
 
 TEST_F(ThreeMf, RefusesWhatIsEmptyOrNoZip) {
@@ -126,10 +128,77 @@ TEST_F(ThreeMf, RefusesWhatIsEmptyOrNoZip) {
   sample.write(file_);
   expect_refused("has no vertices");
   write_file(file_, "PK\x03\x04 and no more");
-  expect_refused("cannot be read as 3MF: ");
+  expect_refused("is no 3MF, or damaged: its zip archive cannot be opened");
   write_file(file_, "v 0 0 0\n");
-  expect_refused("cannot be read as 3MF: ");
+  expect_refused("is no 3MF, or damaged: its zip archive cannot be opened");
 }
+
+struct BadModel {
+  std::string name, resources, build, reason;
+};
+
+void PrintTo(const BadModel& model, std::ostream* out) {
+  *out << model.name;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+// Objects of which each has two of the one before it, from a mesh of id 1 on.
+std::string doubled(int levels) {
+  std::string text;
+  for (int id = 2; id < 2 + levels; ++id) {
+    const std::string component = "<component objectid=\"" + std::to_string(id - 1) + "\"/>";
+    text += "<object id=\"" + std::to_string(id) + "\"><components>" + component + component + "</components></object>";
+  }
+  return text;
+}
+
+std::vector<BadModel> bad_models() {
+  const std::string mesh =
+      "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
+      "<vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>"
+      "</object>";
+  const std::string item = "<item objectid=\"1\"/>";
+  std::string items;
+  for (int i = 0; i < 31'000; ++i) items += item;
+  const std::string last = "<item objectid=\"200\"/>";
+  return {
+      {"IndexBeyond", replaced(mesh, "v3=\"2\"", "v3=\"3\""), item, "Invalid model node index"},
+      {"IndexNegative", replaced(mesh, "v3=\"2\"", "v3=\"-1\""), item, "Invalid model node index"},
+      {"IndexHuge", replaced(mesh, "v3=\"2\"", "v3=\"99999999999\""), item, "Invalid model node index"},
+      {"CoordinateNan", replaced(mesh, "x=\"1\"", "x=\"nan\""), item, "Invalid Model Coordinates"},
+      {"CoordinateWord", replaced(mesh, "x=\"1\"", "x=\"one\""), item, "a vertex whose x is no number: 'one'"},
+      {"CoordinateTooLarge", replaced(mesh, "x=\"1\"", "x=\"1e40\""), item, "Invalid Model Coordinates"},
+      {"ItemOfNoObject", mesh, "<item objectid=\"7\"/>", "Could not find Object associated to the Build item"},
+      {"ComponentOfItself", "<object id=\"1\"><components><component objectid=\"1\"/></components></object>", item,
+       "Could not find Object associated to Component"},
+      {"ComponentOfALaterObject",
+       "<object id=\"9\"><components><component objectid=\"1\"/></components></object>" + mesh, item,
+       "Could not find Object associated to Component"},
+      {"SameIdTwice", mesh + mesh, item, "Duplicate Resource ID"},
+      {"TransformTooShort", mesh, "<item objectid=\"1\" transform=\"1 0 0\"/>", "Not enough values"},
+      {"TransformNan", mesh, "<item objectid=\"1\" transform=\"nan 0 0 0 1 0 0 0 1 0 0 0\"/>", "is not finite"},
+      {"NoItems", mesh, "", "has no vertices"},
+      {"TextThatEnds", mesh + "<object id=", item, "cannot be read as 3MF: "},
+      {"ComponentsThatDouble", mesh + doubled(199), last, "components that multiply to more than a million parts"},
+      {"TooManyItems", mesh, items, "more than 30000 objects, components and items"},
+  };
+}
+
+class BadThreeMf : public ThreeMf, public testing::WithParamInterface<BadModel> {};
+
+TEST_P(BadThreeMf, IsRefusedWithItsReason) {
+  write_three_mf_of(file_,
+                    "<?xml version=\"1.0\"?><model unit=\"millimeter\" "
+                    "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>" +
+                        GetParam().resources + "</resources><build>" + GetParam().build + "</build></model>");
+  expect_refused(GetParam().reason);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadThreeMf, testing::ValuesIn(bad_models()),
+                         [](const auto& test) { return test.param.name; });
 
 TEST_F(ThreeMf, OfDamagedBytesIsAMeshOrAnError) {
   furniture().write(file_);

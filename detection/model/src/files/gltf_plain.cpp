@@ -98,7 +98,7 @@ class PlainFile {
     try {
       mesh = decode_draco(document_.view(document_.integer(draco, "bufferView", -1, at), at), requests);
     } catch (const DracoError& error) {
-      document_.refuse(at, error.what());
+      document_.refuse(at, std::string("cannot be decoded: ") + error.what());
     }
     for (std::size_t k = 0; k < names.size(); ++k) {
       target["attributes"][names[k]] = add_attribute(target["attributes"][names[k]], requests[k], mesh, k);

@@ -3,6 +3,7 @@
 #include "orbifit/model/errors.h"
 
 #include "files/mesh_formats.h"
+#include "files/three_mf_bounds.h"
 
 #ifdef ORBIFIT_PORTABLE
 
@@ -86,6 +87,7 @@ class ThreeMfReader {
  public:
   ThreeMfReader(const fs::path& file, std::string_view content, MeshBuilder& builder)
       : file_(file), builder_(builder), model_(get("", nullptr, NMR::lib3mf_createmodel)) {
+    check_three_mf_bounds(file, content);
     const Held reader = get("", model_.get(), NMR::lib3mf_model_queryreader, "3mf");
     std::string bytes(content);  // which lib3mf would be free to change
     const auto result = NMR::lib3mf_reader_readfrombuffer(reader.get(), reinterpret_cast<BYTE*>(bytes.data()),

@@ -48,9 +48,7 @@ class GlbWriter {
   std::string write(std::vector<std::string>& problems) {
     std::vector<Run> runs = runs_of_faces();
     if (runs.size() > kMaxPrimitives) {
-      problems.push_back(file_.string() +
-                         " has its faces in the order of parts and materials, not in the input's: these"
-                         " change " +
+      problems.push_back(file_.string() + " has its faces sorted by parts and materials: these change " +
                          std::to_string(runs.size()) + " times");
       runs = joined(runs);
     }
