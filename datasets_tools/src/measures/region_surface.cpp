@@ -16,6 +16,9 @@ constexpr double kSameSide = 0.2;
 // Width of the cells in which vertices are looked for, in reaches: most points have all that is in reach in one of
 // them.
 constexpr double kCell = 32;
+// Vertices that are nearer to one another than this share of the reach are at one place, and their normals tell them
+// apart; else the nearer one is meant.
+constexpr double kOnePlace = 1e-3;
 // How much further away, as a multiple of the reach, the side that faces the right way may be.
 constexpr double kThinness = 1e4;
 
@@ -84,9 +87,12 @@ int RegionSurface::vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d
   const Eigen::Vector3d first = low.array().floor();
   const Eigen::Vector3d last = high.array().floor();
   const std::size_t slots = first_of_slot_.size() - 1;
-  int best = -1;
-  double best_agreement = 0;
-  double best_distance = 0;
+  struct Candidate {
+    int vertex;
+    double distance;
+  };
+  std::vector<Candidate> near;
+  double least = reach_;
   for (double x = first.x(); x <= last.x(); ++x) {
     for (double y = first.y(); y <= last.y(); ++y) {
       for (double z = first.z(); z <= last.z(); ++z) {
@@ -97,17 +103,26 @@ int RegionSurface::vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d
           if (cell.key != key) continue;
           const double distance = (patch_.vertices.row(cell.vertex).transpose() - point).norm();
           if (distance > reach_) continue;
-          const double agreement = normals_.row(cell.vertex).dot(normal);
-          const bool tie = best >= 0 && std::abs(agreement - best_agreement) < 1e-9;
-          const bool better = tie ? distance < best_distance || (distance == best_distance && cell.vertex < best)
-                                  : best < 0 || agreement > best_agreement;
-          if (!better) continue;
-          best = cell.vertex;
-          best_agreement = agreement;
-          best_distance = distance;
+          near.push_back({cell.vertex, distance});
+          least = std::min(least, distance);
         }
       }
     }
+  }
+  int best = -1;
+  double best_agreement = 0;
+  double best_distance = 0;
+  for (const Candidate& candidate : near) {
+    if (candidate.distance > least + kOnePlace * reach_) continue;
+    const double agreement = normals_.row(candidate.vertex).dot(normal);
+    const bool tie = best >= 0 && std::abs(agreement - best_agreement) < 1e-9;
+    const bool better =
+        tie ? candidate.distance < best_distance || (candidate.distance == best_distance && candidate.vertex < best)
+            : best < 0 || agreement > best_agreement;
+    if (!better) continue;
+    best = candidate.vertex;
+    best_agreement = agreement;
+    best_distance = candidate.distance;
   }
   return best;
 }

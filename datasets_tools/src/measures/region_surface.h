@@ -30,8 +30,8 @@ class RegionSurface {
   const Points& normals() const { return normals_; }              ///< of vertices() within the region, #R by 3
   const Mesh& patch() const { return patch_; }                    ///< the faces alone, in their order, on vertices()
 
-  /// The vertex within reach, of several the one whose normal agrees best; else the nearest point of the faces, on
-  /// the side that faces as `normals` do where a thin part has both sides near.
+  /// The nearest vertex within reach, of several at one place the one whose normal agrees best; else the nearest point
+  /// of the faces, on the side that faces as `normals` do where a thin part has both sides near.
   std::vector<SurfacePlace> places(const Points& points, const Points& normals, const RunContext& context) const;
 
   Eigen::Vector3d point_at(const SurfacePlace& place) const { return place(mesh_); }

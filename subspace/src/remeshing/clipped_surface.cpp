@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <unordered_map>
@@ -36,8 +37,11 @@ class PlaneCut {
   PlaneCut(ClippedSurface& surface, const FundamentalDomain& domain, const Cut& cut, Vector3d normal, std::uint64_t bit)
       : surface_(surface), domain_(domain), cut_(cut), normal_(std::move(normal)), bit_(bit) {
     for (const Vector3d& point : surface.points) heights_.push_back(height(point));
+    within_.resize(surface.points.size(), 0);
     for (std::size_t v = 0; v < surface.points.size(); ++v) {
-      if (std::abs(heights_[v]) <= cut_.rounding) put_on(static_cast<int>(v), surface.points[v]);
+      if (std::abs(heights_[v]) > cut_.rounding) continue;
+      within_[v] = 1;
+      put_on(static_cast<int>(v), surface.points[v]);
     }
   }
 
@@ -70,12 +74,20 @@ class PlaneCut {
     }
   }
 
-  void keep_below() {
+  // \param owner  of a triangle within the plane: whether it is kept
+  template <class Owner>
+  void keep_below(const Owner& owner) {
     std::vector<Corners> old = std::move(surface_.triangles);
     std::vector<int> sources = std::move(surface_.sources);
     surface_.triangles.clear();
     surface_.sources.clear();
-    for (std::size_t t = 0; t < old.size(); ++t) add_part_below(old[t], sources[t]);
+    for (std::size_t t = 0; t < old.size(); ++t) {
+      if (lies_within(old[t]) && owner(old[t])) {
+        add(old[t], sources[t]);
+      } else {
+        add_part_below(old[t], sources[t]);
+      }
+    }
   }
 
   // Puts a vertex into every edge on a wall that crosses the plane.
@@ -173,15 +185,32 @@ class PlaneCut {
     surface_.walls.push_back(walls);
     surface_.cut.push_back(1);
     heights_.push_back(0);
+    inherit(low, high, entry->second);
     return entry->second;
   }
+
+  // What was known of an edge holds of its halves.
+  void inherit(int a, int b, int point) {
+    const auto known = surface_.continued.find(std::minmax(a, b));
+    if (known == surface_.continued.end()) return;
+    const std::uint64_t walls = known->second;
+    surface_.continued[std::minmax(a, point)] |= walls;
+    surface_.continued[std::minmax(point, b)] |= walls;
+  }
+
+  // Whether a triangle was in the plane before anything was moved onto it.
+  bool lies_within(const Corners& corners) const {
+    return std::ranges::all_of(corners, [&](int v) { return at(v) < within_.size() && within_[at(v)] != 0; });
+  }
+
+  void goes_on(int a, int b) { surface_.continued[std::minmax(a, b)] |= bit_; }
 
   void add(const Corners& corners, int source) {
     surface_.triangles.push_back(corners);
     surface_.sources.push_back(source);
   }
 
-  // Of a triangle of which some corner is below; one within the plane bounds nothing and is dropped.
+  // What of a triangle is below; where something of it is not, the edge on the plane is noted.
   void add_part_below(const Corners& corners, int source) {
     int below = 0;
     int above = 0;
@@ -189,9 +218,16 @@ class PlaneCut {
       below += heights_[at(corner)] < 0 ? 1 : 0;
       above += heights_[at(corner)] > 0 ? 1 : 0;
     }
-    if (below == 0) return;
-    if (above == 0) {
+    if (below > 0 && above == 0) {
       add(corners, source);
+      return;
+    }
+    if (below == 0) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int a = corners[k];
+        const int b = corners[(k + 1) % 3];
+        if (heights_[at(a)] == 0 && heights_[at(b)] == 0) goes_on(a, b);
+      }
       return;
     }
     std::vector<int> polygon;
@@ -201,6 +237,9 @@ class PlaneCut {
       if (heights_[at(a)] <= 0) polygon.push_back(a);
       if (heights_[at(a)] * heights_[at(b)] < 0) polygon.push_back(crossing(a, b));
     }
+    std::vector<int> on_plane;
+    std::ranges::copy_if(polygon, std::back_inserter(on_plane), [&](int v) { return heights_[at(v)] == 0; });
+    if (on_plane.size() == 2) goes_on(on_plane[0], on_plane[1]);
     const auto length = [&](std::size_t i, std::size_t j) {
       return (surface_.points[at(polygon[i])] - surface_.points[at(polygon[j])]).norm();
     };
@@ -214,6 +253,7 @@ class PlaneCut {
   Vector3d normal_;
   std::uint64_t bit_;
   std::vector<double> heights_;
+  std::vector<char> within_;  // by vertex: on the plane from the beginning
   std::unordered_map<std::uint64_t, int> crossings_;
 };
 
@@ -223,7 +263,14 @@ void clip(ClippedSurface& surface, const FundamentalDomain& domain, const Cut& c
   for (std::size_t w = 0; w < domain.walls.size(); ++w) {
     PlaneCut plane(surface, domain, cut, domain.walls[w].normal, wall_bit(w));
     plane.snap(0);
-    plane.keep_below();
+    const Wall& wall = domain.walls[w];
+    plane.keep_below([&](const std::array<int, 3>& corners) {
+      if (wall.mirror || wall.partner > static_cast<int>(w)) return true;
+      if (wall.partner < static_cast<int>(w)) return false;
+      Vector3d middle = Vector3d::Zero();
+      for (const int corner : corners) middle += (surface.points[at(corner)] - domain.centre) / 3;
+      return middle.dot(wall.half) > 0;
+    });
   }
   for (std::size_t w = 0; w < domain.walls.size(); ++w) {
     if (domain.walls[w].half.isZero()) continue;

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,6 +19,9 @@ struct ClippedSurface {
   std::vector<char> cut;             ///< of each point: 1 where it was put in, so that it is on the surface by a chord
   std::vector<std::array<int, 3>> triangles;
   std::vector<int> sources;  ///< of each triangle: the number it had before
+  /// Of edges, by their ends in ascending order: the walls beyond which the surface goes on there. However many
+  /// triangles of the domain meet at such an edge, it has to be welded; an edge that only touches a wall has not.
+  std::map<std::pair<int, int>, std::uint64_t> continued;
 };
 
 inline constexpr int kMaxWalls = 32;
@@ -27,9 +32,10 @@ constexpr std::uint64_t middle_bit(std::size_t wall) {
   return std::uint64_t{1} << (wall + kMaxWalls);
 }
 
-/// How a surface is cut. A vertex that is nearer to the cut, along an edge, than `snap` of that edge is moved onto it
-/// along the edge, so that no slivers arise, where this moves no face at it by more than `reach` out of its plane and
-/// turns none over.
+/// How a surface is cut. What lies in a wall belongs to one side: in a mirror, and in the first of a pair of walls, to
+/// the domain, else to its neighbour. A vertex that is nearer to the cut, along an edge, than `snap` of that edge is
+/// moved onto it along the edge, so that no slivers arise, where this moves no face at it by more than `reach` out of
+/// its plane and turns none over.
 struct Cut {
   double snap = 0.2;
   double reach = 0;     ///< mesh units

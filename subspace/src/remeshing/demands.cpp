@@ -1,10 +1,13 @@
 #include "remeshing/demands.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include "orbifit/model/errors.h"
 
@@ -28,7 +31,8 @@ constexpr double kAll = 0.9;
 constexpr int kScored = 2000;  // points of a region, each under every element
 constexpr int kMaxOrder = 64;  // of rotations that stand for a continuous group
 constexpr int kMinOrder = 8;
-constexpr double kVertex = 0.1;  // of a typical edge: an image as near as this to a vertex is that vertex
+constexpr double kOnAxis = 1e-6;  // of the diagonal: nearer to it a vertex has no angle about it
+constexpr double kVertex = 0.1;   // of a typical edge: an image as near as this to a vertex is that vertex
 
 class DemandSearch {
  public:
@@ -138,7 +142,7 @@ class DemandSearch {
     const auto turning = turning_region(region, places, reach, known_);
     // Off the axis an orbit has as many places as there are rotations: on thin parts finer ones may seem to fit.
     if (turning && turning->group.n <= static_cast<int>(places.rows())) return turning;
-    return alone(region, whole) ? chosen_group(region, places, edge) : std::nullopt;
+    return alone(region, whole) ? chosen_group(region) : std::nullopt;
   }
 
   // Mean of the triangles' shortest sides.
@@ -173,14 +177,34 @@ class DemandSearch {
     return true;
   }
 
-  // Of the same kind, with rotations about as fine as the edges at the largest circumference.
-  std::optional<Region> chosen_group(const Region& region, const Points& places, double edge) const {
-    using Family = PointGroup::Family;
-    double radius = 0;
-    for (Eigen::Index i = 0; i < places.rows(); ++i) {
-      radius = std::max(radius, (places.row(i).transpose() - region.centre).cross(region.axis).norm());
+  // The angle about the axis from one vertex to the next: of the triangles' widest ones the mean by area.
+  double step_about_axis(const Region& region) const {
+    double sum = 0;
+    double area = 0;
+    for (const int f : region.faces) {
+      std::array<Vector3d, 3> across;
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d from_centre = mesh_.vertices.row(mesh_.faces(f, k)).transpose() - region.centre;
+        across[static_cast<std::size_t>(k)] = from_centre - region.axis.dot(from_centre) * region.axis;
+      }
+      double widest = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vector3d& a = across[k];
+        const Vector3d& b = across[(k + 1) % 3];
+        if (!(a.norm() > kOnAxis * scale_ && b.norm() > kOnAxis * scale_)) continue;
+        widest = std::max(widest, std::atan2(a.cross(b).norm(), a.dot(b)));
+      }
+      sum += areas_[f] * widest;
+      area += areas_[f];
     }
-    const double turns = 2 * std::numbers::pi * radius / std::max(edge, 1e-12 * scale_);
+    return area > 0 ? sum / area : 0;
+  }
+
+  // Of the same kind, with as many rotations as the tessellation has steps about the axis, so that there are about as
+  // many triangles as before.
+  std::optional<Region> chosen_group(const Region& region) const {
+    using Family = PointGroup::Family;
+    const double turns = 2 * std::numbers::pi / std::max(step_about_axis(region), 1e-3);
     // Powers of two have one another's rotations, and an even order has half turns in its mirrors.
     int order = kMinOrder;
     while (2 * order <= std::min(turns, static_cast<double>(kMaxOrder))) order *= 2;

@@ -42,17 +42,14 @@ class Sewing {
  private:
   const Motion& element(std::size_t wall) const { return group_.elements[at(domain_.walls[wall].element)]; }
 
-  // Edges of one triangle, which are where the surface was cut, or ends.
+  // Edges beyond which the surface goes on, each with all of its triangles.
   void find_border() {
-    std::map<EdgeKey, int> uses;
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const EdgeKey edge = std::minmax(surface_.triangles[t][k], surface_.triangles[t][(k + 1) % 3]);
-        ++uses[edge];
-        border_[edge] = static_cast<int>(t);
+        if (surface_.continued.contains(edge)) border_[edge].push_back(static_cast<int>(t));
       }
     }
-    std::erase_if(border_, [&](const auto& entry) { return uses[entry.first] != 1; });
   }
 
   void pair_fixed_points() {
@@ -70,7 +67,7 @@ class Sewing {
   std::vector<WallCurve> curves_on(std::size_t w, int half) const {
     std::vector<std::array<int, 2>> edges;
     constexpr std::uint64_t all_walls = (std::uint64_t{1} << kMaxWalls) - 1;
-    for (const auto& [edge, triangle] : border_) {
+    for (const auto& [edge, triangles] : border_) {
       const std::uint64_t walls = surface_.walls[at(edge.first)] & surface_.walls[at(edge.second)];
       // An edge on two walls lies on an axis, whose points are paired with themselves.
       if ((walls & all_walls) != wall_bit(w) || (walls & middle_bit(w)) != 0) continue;
@@ -231,23 +228,30 @@ class Sewing {
     surface_.cut.push_back(2);
     const auto entry = border_.find(std::minmax(a, b));
     if (entry == border_.end()) return point;
-    const int triangle = entry->second;
+    const std::vector<int> triangles = std::move(entry->second);
     border_.erase(entry);
-    const std::array<int, 3> old = surface_.triangles[at(triangle)];
-    const int added = static_cast<int>(surface_.triangles.size());
-    std::array<int, 3> first = old;
-    std::array<int, 3> second = old;
-    std::ranges::replace(first, b, point);
-    std::ranges::replace(second, a, point);
-    surface_.triangles[at(triangle)] = first;
-    surface_.triangles.push_back(second);
-    surface_.sources.push_back(surface_.sources[at(triangle)]);
-    for (const int corner : old) {
-      if (corner == a || corner == b) continue;
-      if (const auto other = border_.find(std::minmax(b, corner)); other != border_.end()) other->second = added;
+    const std::uint64_t walls = surface_.continued[std::minmax(a, b)];
+    surface_.continued[std::minmax(a, point)] = walls;
+    surface_.continued[std::minmax(point, b)] = walls;
+    for (const int triangle : triangles) {
+      const std::array<int, 3> old = surface_.triangles[at(triangle)];
+      const int added = static_cast<int>(surface_.triangles.size());
+      std::array<int, 3> first = old;
+      std::array<int, 3> second = old;
+      std::ranges::replace(first, b, point);
+      std::ranges::replace(second, a, point);
+      surface_.triangles[at(triangle)] = first;
+      surface_.triangles.push_back(second);
+      surface_.sources.push_back(surface_.sources[at(triangle)]);
+      for (const int corner : old) {
+        if (corner == a || corner == b) continue;
+        if (const auto other = border_.find(std::minmax(b, corner)); other != border_.end()) {
+          std::ranges::replace(other->second, triangle, added);
+        }
+      }
+      border_[std::minmax(a, point)].push_back(triangle);
+      border_[std::minmax(point, b)].push_back(added);
     }
-    border_[std::minmax(a, point)] = triangle;
-    border_[std::minmax(point, b)] = added;
     return point;
   }
 
@@ -255,7 +259,7 @@ class Sewing {
   const FiniteGroup& group_;
   const FundamentalDomain& domain_;
   double snap_, reach_;
-  std::map<EdgeKey, int> border_;
+  std::map<EdgeKey, std::vector<int>> border_;
   Seams seams_;
 };
 

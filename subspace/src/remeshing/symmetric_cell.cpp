@@ -72,8 +72,12 @@ double image_distance(const ClippedSurface& surface, const FiniteGroup& group, c
 
 GluedImages symmetric_cell(const CellSurface& cell, const FiniteGroup& group, const CellCut& cut,
                            const RunContext& context) {
-  ClippedSurface whole{cell.points, std::vector<std::uint64_t>(cell.points.size(), 0),
-                       std::vector<char>(cell.points.size(), 0), cell.triangles, cell.sources};
+  ClippedSurface whole{cell.points,
+                       std::vector<std::uint64_t>(cell.points.size(), 0),
+                       std::vector<char>(cell.points.size(), 0),
+                       cell.triangles,
+                       cell.sources,
+                       {}};
   const SurfaceIndex index(mesh_of(cell));
   SewnDomain best;
   const std::vector<FundamentalDomain> domains = candidate_domains(group);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "orbifit/model/errors.h"
@@ -14,6 +16,7 @@
 #include "remeshing/cells.h"
 #include "remeshing/demands.h"
 #include "remeshing/indices.h"
+#include "remeshing/settled_place.h"
 #include "remeshing/symmetric_cell.h"
 
 namespace orbifit {
@@ -43,15 +46,13 @@ class Remeshing {
   SymmetricRemesh run() {
     AnnotationDemands asked = annotation_demands(mesh_, components_, annotation_, options_.min_score, context_);
     const double reach = kReach * annotation_.tolerance * scale_;
-    const Cells cells = find_cells(mesh_, components_, asked.demands, reach, context_);
+    Cells cells = find_cells(mesh_, components_, asked.demands, reach, context_);
+    while (!add_cells(cells, reach, asked)) cells = find_cells(mesh_, components_, asked.demands, reach, context_);
     for (std::size_t i = 0; i < asked.items.size(); ++i) {
       if (!cells.refused[i]) continue;
       asked.items[i].kept_as.clear();
       asked.items[i].reason = *cells.refused[i];
     }
-    result_.motions.emplace_back();
-    faces_of_component_.resize(components_.faces.size());
-    for (std::size_t c = 0; c < cells.cells.size(); ++c) add_cells_of(cells, static_cast<int>(c), reach);
     finish();
     result_.items = std::move(asked.items);
     annotate(asked);
@@ -60,19 +61,61 @@ class Remeshing {
   }
 
  private:
-  // A cell that is its own source, with all its images.
-  void add_cells_of(const Cells& cells, int source, double reach) {
-    const MeshCell& cell = cells.cells[at(source)];
-    if (cell.source != source) return;
-    const CellSurface surface = cell_surface(cell.components);
+  // All cells with their images. \return false where one cannot be cut, and a demand was given up for it
+  bool add_cells(const Cells& cells, double reach, AnnotationDemands& asked) {
+    points_.clear();
+    triangles_.clear();
+    cells_faces_.clear();
+    faces_of_component_.assign(components_.faces.size(), nullptr);
+    result_ = {};
+    result_.motions.emplace_back();
+    bool all = true;
+    for (const MeshCell& cell : cells.cells) {
+      if (&cells.cells[at(cell.source)] != &cell) continue;
+      try {
+        add_with_images(cells, cell, reach);
+      } catch (const NoResultError& error) {
+        give_up(cells, cell, error.what(), asked);
+        all = false;
+      }
+    }
+    return all;
+  }
+
+  // Of the demands that take a cell, or an image of it, to itself or another, the least important one.
+  void give_up(const Cells& cells, const MeshCell& cell, const std::string& reason, AnnotationDemands& asked) const {
+    std::set<int> orbit;
+    for (const MeshCell& other : cells.cells) {
+      if (&cells.cells[at(other.source)] == &cell) orbit.insert(other.components.begin(), other.components.end());
+    }
+    for (std::size_t d = asked.demands.size(); d-- > 0;) {
+      if (cells.refused[d]) continue;
+      std::vector<ComponentMotion>& motions = asked.demands[d].motions;
+      const bool acts = std::ranges::any_of(motions, [&](const ComponentMotion& motion) {
+        return std::ranges::any_of(motion.from, [&](int component) { return orbit.contains(component); });
+      });
+      if (!acts) continue;
+      motions.clear();
+      asked.items[d].kept_as.clear();
+      asked.items[d].reason = reason;
+      return;
+    }
+    throw NoResultError(reason);
+  }
+
+  void add_with_images(const Cells& cells, const MeshCell& cell, double reach) {
+    CellSurface surface = cell_surface(cell.components);
     GluedImages images;
+    Motion settled;
     if (cell.group.order() == 1) {
       images = {surface.points, surface.triangles, surface.sources, std::vector<int>(surface.triangles.size(), 0), 0};
     } else {
+      settled = settled_place(surface, cell.group);
+      for (Vector3d& point : surface.points) point = settled(point);
       images = symmetric_cell(surface, cell.group, {options_.snap, reach, scale_}, context_);
     }
-    for (std::size_t other = 0; other < cells.cells.size(); ++other) {
-      if (cells.cells[other].source == source) add_image(images, cell, cells.cells[other]);
+    for (const MeshCell& other : cells.cells) {
+      if (&cells.cells[at(other.source)] == &cell) add_image(images, cell, other, settled);
     }
   }
 
@@ -96,13 +139,14 @@ class Remeshing {
     return surface;
   }
 
-  void add_image(const GluedImages& images, const MeshCell& source, const MeshCell& cell) {
+  // \param settled  what moved the source's surface before it was cut
+  void add_image(const GluedImages& images, const MeshCell& source, const MeshCell& cell, const Motion& settled) {
     const int first = static_cast<int>(points_.size());
     for (const Vector3d& point : images.points) points_.push_back(cell.from_source(point));
     const bool turned = cell.from_source.linear.determinant() < 0;
     const int motion = static_cast<int>(result_.motions.size());
-    for (const Motion& element : source.group.elements) result_.motions.push_back(cell.from_source * element);
-    const bool own = &source == &cell;
+    for (const Motion& element : source.group.elements) result_.motions.push_back(cell.from_source * element * settled);
+    const bool as_it_is = &source == &cell && source.group.order() == 1;
     for (std::size_t t = 0; t < images.triangles.size(); ++t) {
       std::array<int, 3> corners = images.triangles[t];
       if (turned) std::swap(corners[1], corners[2]);
@@ -110,7 +154,7 @@ class Remeshing {
       cells_faces_[&cell].push_back(static_cast<int>(triangles_.size()));
       triangles_.push_back(corners);
       result_.source_face.push_back(images.sources[t]);
-      result_.motion_of_face.push_back(own && images.elements[t] == 0 ? 0 : motion + images.elements[t]);
+      result_.motion_of_face.push_back(as_it_is ? 0 : motion + images.elements[t]);
     }
     for (const int component : cell.components) faces_of_component_[at(component)] = &cells_faces_[&cell];
   }

@@ -56,14 +56,16 @@ void require_scores(const Mesh& mesh, const SymmetryAnnotation& annotation, cons
 /// images. (Components that have no counterpart of their own are taken together with others of their regions, as one
 /// surface.) What takes one to itself is a finite group: it is cut along the walls of a Dirichlet domain of it
 /// (docs/method.md 5.1), and the images of what is inside are welded along the walls by their numbers. Of some twenty
-/// domains the one is taken whose images are nearest to the surface: the best side, not a mean. At a mirror, cut
-/// vertices are their own images; elsewhere the curves along which the two sides meet get one another's vertices, and
-/// each place the mean of all that meet there.
+/// domains the one is taken whose images are nearest to the surface: the best side, not a mean. Before, the surface is
+/// moved as a whole to where its centroid and its tensor of inertia are as symmetric as the group asks. At a mirror,
+/// cut vertices are their own images; elsewhere the curves along which the two sides meet get one another's vertices,
+/// and each place the mean of all that meet there.
 ///
 /// A continuous group is kept as the finite one that the tessellation has, or else, where nothing else holds the same
-/// components, as one with rotations about as fine as its edges (a sphere as Ih).
+/// components, as one with about as many rotations as the tessellation has steps about the axis (a sphere as Ih).
 /// \pre the annotation is consistent
-/// \throw NoResultError where a region's score is below `min_score`, and where no domain's sides can be welded
+/// Where no domain's sides can be welded, the least important region or pattern that asks for that is left out.
+/// \throw NoResultError where a region's score is below `min_score`
 SymmetricRemesh symmetric_remesh(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                  const SymmetricRemeshOptions& options, const RunContext& context);
 
