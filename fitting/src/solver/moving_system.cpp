@@ -40,21 +40,6 @@ void add_lower_rows(Index first, const MatrixXd& before, const MatrixXd& own, Ei
   lower += rows;
 }
 
-LiftWeights rows_of(const LiftWeights& weights, const std::vector<int>& rows) {
-  LiftWeights result(static_cast<Index>(rows.size()), weights.cols());
-  Eigen::VectorXi sizes(result.rows());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    sizes[static_cast<Index>(i)] = static_cast<int>(weights.row(rows[i]).nonZeros());
-  }
-  result.reserve(sizes);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (LiftWeights::InnerIterator it(weights, rows[i]); it; ++it) {
-      result.insert(static_cast<Index>(i), it.col()) = it.value();
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts,
@@ -63,10 +48,9 @@ MovingSystem::MovingSystem(const Subspace& subspace, const Mesh& mesh, double st
       subspace_(subspace),
       mesh_(mesh),
       contacts_(std::move(contacts)),
-      regions_(subspace),
+      regions_(subspace, context),
       stiffness_(energy_.matrix()),
       rigid_(rigid_modes(subspace->sampling.points)),
-      spread_(lift_weights(mesh.vertices, subspace->sampling.points, subspace->sampling.radius, context)),
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)} {}
 
 VectorXd MovingSystem::at_rest(const VectorXd& coordinates) const {
@@ -153,10 +137,8 @@ MovingSystem::Linearised MovingSystem::linearised(const VectorXd& q, const RunCo
 
 VertexRows MovingSystem::rows_at(const Linearised& at, const std::vector<int>& touched,
                                  const RunContext& context) const {
-  const Points samples = subspace_->sampling.points + at.moved;
-  const LiftWeights spread = rows_of(spread_, touched);
-  const Points missing = at.deformed.vertices(touched, Eigen::all) - Points(spread * samples);
-  const MatrixXd turning = applied(spread, at.turn_columns) + regions_.arms(at.turns, spread, missing);
+  const Points now = at.deformed.vertices(touched, Eigen::all);
+  const MatrixXd turning = regions_.vertex_columns(at.turns, touched, now, region_centres(subspace_, at.now));
   VertexRows rows(subspace_, *at.now.basis);
   rows.prepare(touched, context);
   const int dof = subspace_.degrees_of_freedom();

@@ -73,7 +73,6 @@ class MovingSystem final : public DeformationSystem {
   ConjugatedRegions regions_;
   Eigen::SparseMatrix<double> stiffness_;  // K, of the samples
   Eigen::MatrixXd rigid_;                  // rigid_modes() of the samples
-  LiftWeights spread_;                     // samples -> vertices
   ScanStep step_;
   struct KnownBasis {
     ConjugatedRegions::Turns turns;
