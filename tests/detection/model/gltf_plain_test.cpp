@@ -246,6 +246,12 @@ TEST_F(PlainGltf, RefusesDamagedDraco) {
   expect_refused(with([](GltfSample::Json& d) { d["attributes"]["POSITION"] = 9; }), "there is no attribute 9 in it");
   expect_refused(with([](GltfSample::Json& d) { d["attributes"].erase("POSITION"); }), "has no bufferView");
   GltfSample sample = draco_sample(polygon_mesh(), true, 11);
+  sample.root["accessors"][0]["componentType"] = 5130;
+  expect_refused(sample, "accessors[0].componentType: is 5130: unknown");
+  sample = draco_sample(polygon_mesh(), true, 11);
+  sample.root["accessors"][0]["type"] = "MAT4";
+  expect_refused(sample, "accessors[0].type: must be SCALAR, VEC2, VEC3 or VEC4");
+  sample = draco_sample(polygon_mesh(), true, 11);
   const std::size_t begin = sample.data.find("DRACO");
   sample.data[begin] = 'X';
   expect_refused(sample, "KHR_draco_mesh_compression: ");

@@ -89,8 +89,11 @@ class PlainFile {
       const std::int64_t number = document_.integer(*attributes, name.c_str(), -1, where + ".attributes");
       if (number < 0) continue;  // in the compressed data, but none of the primitive's
       const auto& accessor = document_.item("accessors", number, where + ".attributes." + name);
-      const std::int64_t type = document_.integer(accessor, "componentType", kFloat, "accessors");
-      const int components = document_.components(accessor, "accessors[" + std::to_string(number) + "]");
+      const std::string of = "accessors[" + std::to_string(number) + "]";
+      const std::int64_t type = document_.integer(accessor, "componentType", -1, of);
+      if (component_size(type) == 0)
+        document_.refuse(of + ".componentType", "is " + std::to_string(type) + ": unknown");
+      const int components = document_.components(accessor, of);
       requests.push_back({document_.integer(*ids, name.c_str(), -1, at + ".attributes"), type, components});
       names.push_back(name);
     }
