@@ -221,6 +221,21 @@ TEST_F(PlainGltf, OfAnEditIsNoLongerCompressed) {
   EXPECT_EQ(read_appearance(folder_.file("edited.glb"), read_mesh(folder_.file("edited.glb"))).uvs.rows(), 24);
 }
 
+TEST_F(PlainGltf, HasTheBoundsOfWhatWasQuantised) {
+  Mesh mesh = polygon_mesh();
+  mesh.vertices *= 1.2345;
+  GltfSample sample = draco_sample(mesh, false, 6);
+  sample.root["accessors"][0]["min"] = sample.root["accessors"][0]["max"] = {0, 0, 0};
+  const Mesh decoded = read(sample);
+  const std::string bytes = *gltf::plain(file_, read_file(file_)).changed;
+  const auto length = static_cast<unsigned char>(bytes[12]) + 256U * static_cast<unsigned char>(bytes[13]);
+  const GltfSample::Json accessor = GltfSample::Json::parse(bytes.substr(20, length))["accessors"][0];
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(accessor["min"][static_cast<std::size_t>(k)].get<double>(), decoded.vertices.col(k).minCoeff());
+    EXPECT_EQ(accessor["max"][static_cast<std::size_t>(k)].get<double>(), decoded.vertices.col(k).maxCoeff());
+  }
+}
+
 TEST_F(PlainGltf, OfPrimitivesThatShareAccessorsHasTheNumbersOfEach) {
   Mesh other = polygon_mesh();
   other.vertices.array() += 50;
@@ -246,6 +261,12 @@ TEST_F(PlainGltf, RefusesDamagedDraco) {
   expect_refused(with([](GltfSample::Json& d) { d["attributes"]["POSITION"] = 9; }), "there is no attribute 9 in it");
   expect_refused(with([](GltfSample::Json& d) { d["attributes"].erase("POSITION"); }), "has no bufferView");
   GltfSample sample = draco_sample(polygon_mesh(), true, 11);
+  sample.root["accessors"][0]["componentType"] = 5130;
+  expect_refused(sample, "accessors[0].componentType: is 5130: unknown");
+  sample = draco_sample(polygon_mesh(), true, 11);
+  sample.root["accessors"][0]["type"] = "MAT4";
+  expect_refused(sample, "accessors[0].type: must be SCALAR, VEC2, VEC3 or VEC4");
+  sample = draco_sample(polygon_mesh(), true, 11);
   const std::size_t begin = sample.data.find("DRACO");
   sample.data[begin] = 'X';
   expect_refused(sample, "KHR_draco_mesh_compression: ");

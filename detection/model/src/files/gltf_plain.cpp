@@ -89,8 +89,11 @@ class PlainFile {
       const std::int64_t number = document_.integer(*attributes, name.c_str(), -1, where + ".attributes");
       if (number < 0) continue;  // in the compressed data, but none of the primitive's
       const auto& accessor = document_.item("accessors", number, where + ".attributes." + name);
-      const std::int64_t type = document_.integer(accessor, "componentType", kFloat, "accessors");
-      const int components = document_.components(accessor, "accessors[" + std::to_string(number) + "]");
+      const std::string of = "accessors[" + std::to_string(number) + "]";
+      const std::int64_t type = document_.integer(accessor, "componentType", -1, of);
+      if (component_size(type) == 0)
+        document_.refuse(of + ".componentType", "is " + std::to_string(type) + ": unknown");
+      const int components = document_.components(accessor, of);
       requests.push_back({document_.integer(*ids, name.c_str(), -1, at + ".attributes"), type, components});
       names.push_back(name);
     }
@@ -131,6 +134,7 @@ class PlainFile {
     accessor["bufferView"] = view;
     accessor["count"] = mesh.points;
     accessor.erase("byteOffset");
+    set_bounds(accessor, request, mesh.attributes[k]);
     if (decoded_.insert(result).second) {
       file_.root()["accessors"][result] = accessor;
     } else {
@@ -138,6 +142,25 @@ class PlainFile {
       file_.root()["accessors"].push_back(accessor);
     }
     return result;
+  }
+
+  // Where they are stated: what has been quantised is not quite within those of before.
+  static void set_bounds(Json& accessor, const DracoRequest& request, const std::string& numbers) {
+    const std::size_t size = component_size(request.type);
+    const auto components = static_cast<std::size_t>(request.components);
+    for (const char* key : {"min", "max"}) {
+      if (!accessor.contains(key) || numbers.empty()) continue;
+      Json bounds = Json::array();
+      for (std::size_t c = 0; c < components; ++c) {
+        double bound = load_component(numbers.data() + c * size, request.type, false);
+        for (std::size_t at = c * size; at < numbers.size(); at += components * size) {
+          const double number = load_component(numbers.data() + at, request.type, false);
+          bound = std::string_view(key) == "min" ? std::min(bound, number) : std::max(bound, number);
+        }
+        bounds.push_back(request.type == kFloat ? Json(bound) : Json(static_cast<std::int64_t>(bound)));
+      }
+      accessor[key] = bounds;
+    }
   }
 
   void make_nodes(const Document::Json& node, std::size_t n) {
