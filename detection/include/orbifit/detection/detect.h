@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "orbifit/detection/explanation.h"
+#include "orbifit/detection/surface_colours.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
@@ -23,6 +26,11 @@ struct DetectOptions {
   bool all = false;
   /// Which way is up, for the names of regions ("upper ring").
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // not zero
+  /// Colours that take part: of each symmetry of the shape the largest subgroup that keeps them is listed; null, or one
+  /// colour everywhere: the shape alone counts.
+  const SurfaceColours* colours = nullptr;
+  /// Where to list what of the shape's symmetries the colours break; null: nowhere.
+  std::vector<BrokenByColours>* broken_by_colours = nullptr;
   /// Where to note what each stage kept and dropped; null: nowhere.
   Explanation* explanation = nullptr;
 
