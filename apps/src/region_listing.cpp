@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "orbifit/apps/report.h"
+#include "orbifit/model/annotation_io.h"
 
 #include "command.h"
 
@@ -82,9 +83,32 @@ std::string pattern_table(const SymmetryAnnotation& found) {
   return table.text();
 }
 
+std::string broken_text(const std::vector<BrokenByColours>& all) {
+  std::string text;
+  for (const BrokenByColours& broken : all) {
+    text += "Broken by colours: " + broken.group + " of " + broken.name + ", of which " +
+            (broken.kept_as.empty() ? "nothing" : broken.kept_as) + " is left; up to " + percent(broken.differing) +
+            " % of its surface would change colour.\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json broken_json(const std::vector<BrokenByColours>& all) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const BrokenByColours& broken : all) {
+    list.push_back(
+        {{"name", broken.name},
+         {"group", broken.group},
+         {"kept_as", broken.kept_as.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(broken.kept_as)},
+         {"differing", broken.differing}});
+  }
+  return list;
+}
+
 }  // namespace
 
-nlohmann::ordered_json listing_json(const SymmetryAnnotation& found, const Mesh& mesh) {
+nlohmann::ordered_json listing_json(const SymmetryAnnotation& found, const std::vector<BrokenByColours>& broken,
+                                    const Mesh& mesh) {
   const Eigen::VectorXd areas = face_areas(mesh);
   nlohmann::ordered_json regions = nlohmann::ordered_json::array();
   for (const Region& region : found.regions) {
@@ -106,17 +130,29 @@ nlohmann::ordered_json listing_json(const SymmetryAnnotation& found, const Mesh&
                         {"importance", importance(pattern.importance)},
                         {"residual", {{"rms", pattern.residual.rms}, {"max", pattern.residual.max}}}});
   }
-  return {{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
+  nlohmann::ordered_json result{{"tolerance", found.tolerance}, {"regions", regions}, {"patterns", patterns}};
+  if (!broken.empty()) result["broken_by_colours"] = broken_json(broken);
+  return result;
 }
 
-std::string listing(const SymmetryAnnotation& found, const Mesh& mesh) {
+std::string annotation_text(const SymmetryAnnotation& found, const std::vector<BrokenByColours>& broken) {
+  std::string text = to_json(found);
+  if (broken.empty()) return text;
+  text.erase(text.rfind('}'));
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return text + ",\n  \"broken_by_colours\": " +
+         broken_json(broken).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n}\n";
+}
+
+std::string listing(const SymmetryAnnotation& found, const std::vector<BrokenByColours>& broken, const Mesh& mesh) {
   if (found.regions.empty() && found.patterns.empty()) {
-    return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal.\n";
+    return "No symmetry within " + short_number(100 * found.tolerance) + " % of the diagonal" +
+           (broken.empty() ? "" : " that colours keep") + ".\n" + broken_text(broken);
   }
   std::string text = found.regions.empty() ? "" : region_table(found, face_areas(mesh));
   if (!found.patterns.empty()) text += (text.empty() ? "" : "\n") + pattern_table(found);
   return text + "Saves: of the surface that does not follow from the lines before. Residuals are in percent of the\n" +
-         "diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n";
+         "diagonal, " + short_number(diagonal(mesh.vertices), 6) + ".\n" + broken_text(broken);
 }
 
 nlohmann::ordered_json point_listing_json(const SymmetryAnnotation& found) {

@@ -17,8 +17,10 @@
 #include "orbifit/model/errors.h"
 
 #include "annotate.h"
+#include "evidence/colour_samples.h"
 #include "evidence/cut_discs.h"
 #include "evidence/importance.h"
+#include "evidence/kept_by_colours.h"
 #include "evidence/noise_check.h"
 #include "group/candidates.h"
 #include "group/verification.h"
@@ -450,6 +452,21 @@ std::optional<CoarseMesh> proxy_mesh_of(const PreparedMesh& fine, double noise, 
   return coarse;
 }
 
+// What was found as users see it: consistent, without what follows from the rest unless all is asked for, in the order
+// of importance, and named.
+SymmetryAnnotation listed(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation annotation,
+                          const DetectOptions& options, const RunContext& context) {
+  annotation = options.all
+                   ? kept_consistent(mesh, annotation, options.explanation, context)
+                   : kept_without_what_follows(prepared, mesh, std::move(annotation), options.explanation, context);
+  const std::vector<std::vector<std::size_t>> families =
+      list_by_importance(prepared, annotation, options.all, options.explanation, context);
+  const PartNames names(options.named_parts, static_cast<std::size_t>(mesh.faces.rows()));
+  name_by_shape_and_place(prepared, families, options.up, names, annotation, options.explanation);
+  context.progress("regions", 1);
+  return annotation;
+}
+
 }  // namespace
 
 void DetectOptions::validate() const {
@@ -507,15 +524,16 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
-  annotation = options.all
-                   ? kept_consistent(mesh, annotation, options.explanation, context)
-                   : kept_without_what_follows(prepared, mesh, std::move(annotation), options.explanation, context);
-  const std::vector<std::vector<std::size_t>> families =
-      list_by_importance(prepared, annotation, options.all, options.explanation, context);
-  const PartNames names(options.named_parts, static_cast<std::size_t>(mesh.faces.rows()));
-  name_by_shape_and_place(prepared, families, options.up, names, annotation, options.explanation);
-  context.progress("regions", 1);
-  return annotation;
+  const SymmetryAnnotation by_shape = listed(prepared, mesh, annotation, options, context);
+  if (options.colours == nullptr || options.colours->uniform()) return by_shape;
+  context.progress("colours", 0);
+  const ColourSamples samples(mesh, *options.colours, options.tolerance * diagonal(mesh.vertices), context);
+  SymmetryAnnotation result =
+      listed(prepared, mesh, kept_by_colours(mesh, annotation, samples, context).annotation, options, context);
+  if (options.broken_by_colours != nullptr) {
+    *options.broken_by_colours = kept_by_colours(mesh, by_shape, samples, context).broken;
+  }
+  return result;
 }
 
 }  // namespace orbifit

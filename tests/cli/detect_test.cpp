@@ -10,9 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/appearance.h"
 #include "orbifit/model/mesh_io.h"
 
+#include "cube.h"
 #include "files/file.h"
+#include "painted.h"
 #include "program.h"
 
 namespace orbifit {
@@ -96,6 +99,39 @@ TEST(Detect, CallsRegionsAsTheFileCallsItsParts) {
   EXPECT_NE(names.find("whole; "), std::string::npos) << names;
   EXPECT_NE(names.find("upper seat; "), std::string::npos) << names;
   EXPECT_NE(names.find("foot 1 of 4, "), std::string::npos) << names;
+}
+
+// What colours break is told in the text, in JSON and in the annotation, which others read all the same.
+TEST(Detect, TellsWhatColoursBreak) {
+  const Program program;
+  const TemporaryFolder& folder = program.folder();
+  const Mesh cube = cube_mesh(8);
+  const auto half = [](const Eigen::Vector3d& p) {
+    return p.x() > 0 ? Eigen::Vector3d(0.8, 0.1, 0.1) : Eigen::Vector3d(1, 1, 1);
+  };
+  write_mesh(folder.file("cube.ply"), cube, test::painted(cube, test::Paint::vertices, half));
+  const ProgramResult told = program.run("detect cube.ply --colours -o cube.json");
+  ASSERT_EQ(told.code, 0) << told.errors;
+  EXPECT_NE(told.output.find("Broken by colours: Oh of"), std::string::npos) << told.output;
+  EXPECT_NE(told.output.find("of which C4v is left"), std::string::npos) << told.output;
+  const nlohmann::json listed = nlohmann::json::parse(program.run("detect cube.ply --colours --json --quiet").output);
+  EXPECT_EQ(listed["broken_by_colours"][0]["group"], "Oh");
+  EXPECT_EQ(listed["broken_by_colours"][0]["kept_as"], "C4v");
+  const nlohmann::json file = nlohmann::json::parse(read_file(folder.file("cube.json")));
+  EXPECT_EQ(file["broken_by_colours"], listed["broken_by_colours"]);
+  const SymmetryAnnotation found = read_annotation(folder.file("cube.json"), cube);
+  ASSERT_FALSE(found.regions.empty());
+  EXPECT_EQ(found.regions.front().group.symbol(), "C4v");
+  EXPECT_EQ(program.run("detect cube.ply --json --quiet").output.find("broken_by_colours"), std::string::npos);
+}
+
+TEST(Detect, SaysThatThereAreNoColours) {
+  const Program program;
+  write_mesh(program.folder().file("cube.ply"), cube_mesh());
+  const ProgramResult plain = program.run("detect cube.ply --colours -o cube.json");
+  EXPECT_EQ(plain.code, 0);
+  EXPECT_NE(plain.errors.find("no colours"), std::string::npos) << plain.errors;
+  EXPECT_EQ(program.run("detect cube.ply --colours --points").code, 2);
 }
 
 }  // namespace

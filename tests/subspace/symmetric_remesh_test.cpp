@@ -233,6 +233,72 @@ TEST(SymmetricRemesh, TakesContinuousGroupsAsFiniteOnes) {
   EXPECT_TRUE(checked(result).vertices_onto_vertices);
   EXPECT_LE(checked(result).worst_floor, 1e-12);
   EXPECT_TRUE(inspect(result.mesh).watertight);
+  EXPECT_LT(result.mesh.faces.rows(), 3 * part.faces.rows());  // as many rotations as steps, each cut in half
+}
+
+// Both sides of a sheet as faces on the same vertices: four meet at every edge, and none stays open where it is cut.
+TEST(SymmetricRemesh, WeldsDoubledFaces) {
+  GeneratedModel model = bumpy_ball(group("C3"));
+  const Index count = model.mesh.faces.rows();
+  model.mesh.faces.conservativeResize(2 * count, 3);
+  model.mesh.faces.bottomRows(count) = model.mesh.faces.topRows(count).rowwise().reverse();
+  model.truth = empty_annotation(model.mesh, 0.005);
+  std::vector<int> faces(static_cast<std::size_t>(2 * count));
+  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = static_cast<int>(f);
+  const Region single = bumpy_ball(group("C3")).truth.regions.front();
+  Region region = single;
+  region.faces = faces;
+  model.truth.regions.push_back(region);
+  const SymmetricRemesh result = symmetric_remesh(model.mesh, model.truth, {}, RunContext{});
+  const MeshReport found = inspect(result.mesh);
+  EXPECT_EQ(found.boundary_edges, 0);
+  EXPECT_EQ(found.components, 1);
+  EXPECT_EQ(found.duplicate_faces, found.faces / 2);
+  EXPECT_TRUE(checked(result).vertices_onto_vertices);
+  EXPECT_LE(checked(result).worst_floor, 1e-12);
+}
+
+SymmetricRemesh mirrored(const Mesh& mesh, const Vector3d& point) {
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  std::vector<int> faces(static_cast<std::size_t>(mesh.faces.rows()));
+  for (std::size_t f = 0; f < faces.size(); ++f) faces[f] = static_cast<int>(f);
+  annotation.regions.push_back(make_region(group("Cs"), point, frame_about(Vector3d::UnitX()), faces, "whole"));
+  return symmetric_remesh(mesh, annotation, {}, RunContext{});
+}
+
+// A fin is a sheet in the mirror: its own image, and there once.
+TEST(SymmetricRemesh, KeepsWhatLiesInAMirror) {
+  Mesh mesh = octasphere(3);
+  Mesh fin;
+  fin.vertices.resize(4, 3);
+  fin.vertices << 0, -0.5, 1.2, 0, 0.5, 1.2, 0, 0.5, 1.8, 0, -0.5, 1.8;
+  fin.faces.resize(2, 3);
+  fin.faces << 0, 1, 2, 0, 2, 3;
+  append(mesh, fin);
+  const SymmetricRemesh result = mirrored(mesh, Vector3d::Zero());
+  ASSERT_EQ(result.items.front().kept_as, "Cs");
+  EXPECT_EQ(inspect(result.mesh).components, 2);
+  EXPECT_EQ(inspect(result.mesh).duplicate_faces, 0);
+  EXPECT_NEAR(face_areas(result.mesh).sum(), face_areas(mesh).sum(), 1e-9);
+  EXPECT_EQ(inspect(result.mesh).boundary_edges, 4);
+}
+
+// A part that is thinner than the tolerance, off its mirror by a third of its width, keeps that.
+TEST(SymmetricRemesh, KeepsTheWidthOfThinParts) {
+  Mesh mesh = octasphere(3);
+  Mesh rod = octasphere(1);
+  rod.vertices.col(0) = 0.006 * rod.vertices.col(0).array() + 0.002;
+  rod.vertices.col(1) *= 0.006;
+  rod.vertices.col(2).array() += 2.5;
+  append(mesh, rod);
+  const SymmetricRemesh result = mirrored(mesh, Vector3d::Zero());
+  ASSERT_EQ(result.items.front().kept_as, "Cs");
+  double width = 0;
+  for (const auto& vertex : result.mesh.vertices.rowwise()) {
+    if (vertex.z() > 1.2) width = std::max(width, vertex.x());
+  }
+  EXPECT_NEAR(width, 0.006, 1e-5);
+  EXPECT_LE(checked(result).worst_floor, 1e-12);
 }
 
 TEST(SymmetricRemesh, CopiesThePartsOfPatterns) {

@@ -14,6 +14,7 @@
 #include "orbifit/apps/report.h"
 #include "orbifit/detection/detect_points.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/appearance.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/model/scan_io.h"
@@ -33,6 +34,7 @@ struct DetectArguments {
   std::string mesh, output, preview, colour, explain;
   std::vector<double> up;
   bool points = false;
+  bool colours = false;
   DetectOptions options;
 };
 
@@ -105,10 +107,20 @@ class StageTimes {
   std::vector<std::pair<std::string, double>> stages_;
 };
 
+// The mesh's colours, with what is wrong with them as messages; nothing where they tell nothing.
+std::optional<SurfaceColours> colours_of(const DetectArguments& arguments, const Mesh& mesh, const RunContext& run) {
+  SurfaceColours colours(mesh, read_appearance(arguments.mesh, mesh));
+  for (const std::string& problem : colours.problems()) run.message(problem);
+  if (!colours.uniform()) return colours;
+  run.message(arguments.mesh + " has no colours that differ: its shape alone counts");
+  return std::nullopt;
+}
+
 ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& context) {
   if (!arguments.preview.empty() || !arguments.colour.empty()) {
     throw UsageError("--preview and --colour show surfaces; they cannot be used with --points");
   }
+  if (arguments.colours) throw UsageError("--colours are those of a mesh; it cannot be used with --points");
   const PointCloud scan = read_scan(arguments.mesh);
   if (scan.dropped > 0) {
     context.run.message(count_of(scan.dropped, "point") + " not finite, left out and not numbered");
@@ -139,6 +151,9 @@ void add_options(CLI::App& app, DetectArguments& arguments) {
       "--points", arguments.points,
       "The file is a scan (PLY, PCD, XYZ, PTS), which may have been taken from one side only. In the annotation, face "
       "numbers are then point numbers, and the numbers of vertices and of faces are both the number of points");
+  app.add_flag("--colours,--colors", arguments.colours,
+               "Colours count, too (of vertices, faces, materials and textures): of each symmetry only what keeps them "
+               "is listed, and what they break is told");
   app.add_option("--time-budget", options.time_budget,
                  "Stop searching after so many seconds and keep what is verified by then; 0: no limit")
       ->capture_default_str()
@@ -180,6 +195,11 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
     chosen.explanation = &explanation;
     times.emplace(run);
   }
+  std::optional<SurfaceColours> colours;
+  if (arguments.colours) colours = colours_of(arguments, mesh, context.run);
+  std::vector<BrokenByColours> broken;
+  chosen.broken_by_colours = &broken;
+  if (colours) chosen.colours = &*colours;
   SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
   if (!arguments.up.empty()) found.up = to_direction("--up", arguments.up);
   if (times) {
@@ -188,9 +208,9 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
   }
   // The pictures take time: stopped meanwhile, the command leaves nothing.
   if (!arguments.preview.empty()) write_preview(arguments, mesh, found, context.run);
-  if (!arguments.output.empty()) write_annotation(arguments.output, found);
+  if (!arguments.output.empty()) write_file(arguments.output, annotation_text(found, broken));
   if (!arguments.colour.empty()) write_mesh(arguments.colour, mesh, region_face_colours(mesh, found.regions));
-  print(context, context.json ? listing_json(found, mesh).dump(2) + "\n" : listing(found, mesh));
+  print(context, context.json ? listing_json(found, broken, mesh).dump(2) + "\n" : listing(found, broken, mesh));
   return kDone;
 }
 

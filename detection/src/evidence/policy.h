@@ -26,6 +26,17 @@ struct QuotientResolution {
   double arrived = 0.5;       ///< share of a claim's area that must arrive in another for them to be images
 };
 
+/// When colours speak against a motion that the shape keeps.
+struct ColourPolicy {
+  /// Distance in sRGB, each of red, green and blue from 0 to 1, above which two colours are different.
+  double difference = 24.0 / 255;
+  /// Of a region's surface: as much as the shape may miss too under one element (VerificationLimits::worst).
+  double share = 0.03;
+  int samples = 400;  ///< of a region: they tell the share to 1 %
+};
+
+inline constexpr ColourPolicy kColourPolicy;
+
 inline constexpr QuotientResolution kQuotientResolution;
 
 }  // namespace orbifit

@@ -31,8 +31,9 @@ constexpr double kAll = 0.9;
 constexpr int kScored = 2000;  // points of a region, each under every element
 constexpr int kMaxOrder = 64;  // of rotations that stand for a continuous group
 constexpr int kMinOrder = 8;
-constexpr double kOnAxis = 1e-6;  // of the diagonal: nearer to it a vertex has no angle about it
-constexpr double kVertex = 0.1;   // of a typical edge: an image as near as this to a vertex is that vertex
+constexpr double kSamePlace = 1e-9;  // of the diagonal, and of 1: what a consistent annotation leaves
+constexpr double kOnAxis = 1e-6;     // of the diagonal: nearer to it a vertex has no angle about it
+constexpr double kVertex = 0.1;      // of a typical edge: an image as near as this to a vertex is that vertex
 
 class DemandSearch {
  public:
@@ -53,6 +54,12 @@ class DemandSearch {
     }
     for (const Region& region : annotation.regions) {
       known_.insert(known_.end(), region.elements.begin(), region.elements.end());
+    }
+    for (const Pattern& pattern : annotation.patterns) {
+      for (const PatternInstance& instance : pattern.instances) {
+        known_.push_back(instance.motion);
+        known_.push_back(inverse(instance.motion));
+      }
     }
   }
 
@@ -133,6 +140,7 @@ class DemandSearch {
 
   std::optional<Region> finite_region(const Region& region, const std::vector<int>& whole) const {
     if (!region.group.continuous()) return region;
+    if (const auto related = related_region(region)) return related;
     const std::vector<int> vertices = vertices_of_faces(mesh_, region.faces);
     const Points places = mesh_.vertices(vertices, Eigen::all);
     const double edge = typical_edge(region.faces);
@@ -143,6 +151,27 @@ class DemandSearch {
     // Off the axis an orbit has as many places as there are rotations: on thin parts finer ones may seem to fit.
     if (turning && turning->group.n <= static_cast<int>(places.rows())) return turning;
     return alone(region, whole) ? chosen_group(region) : std::nullopt;
+  }
+
+  // With the group that an earlier region has, where a motion takes that one here: images get one another's groups.
+  std::optional<Region> related_region(const Region& region) const {
+    for (std::size_t i = 0; i < result_.items.size() && i < annotation_.regions.size(); ++i) {
+      const Region& from = result_.finite[i];
+      if (annotation_.regions[i].group != region.group || result_.items[i].kept_as.empty()) continue;
+      if (from.faces.size() != region.faces.size()) continue;
+      for (const Motion& motion : known_) {
+        if ((motion(from.centre) - region.centre).norm() > kSamePlace * scale_) continue;
+        if ((motion.linear * from.axis).cross(region.axis).norm() > kSamePlace) continue;
+        Region result = region;
+        result.group = from.group;
+        result.generators.clear();
+        result.elements.clear();
+        for (const Motion& generator : from.generators) result.generators.push_back(conjugate(motion, generator));
+        for (const Motion& element : from.elements) result.elements.push_back(conjugate(motion, element));
+        return result;
+      }
+    }
+    return std::nullopt;
   }
 
   // Mean of the triangles' shortest sides.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "orbifit/model/errors.h"
 
@@ -17,17 +18,22 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRounding = 1e-10;            // of the diagonal
+constexpr double kRounding = 1e-10;     // of the diagonal
+constexpr double kSameDistance = 0.01;  // of the reach: domains whose images are as near as that are equally good
 constexpr std::size_t kMeasuredPoints = 4000;  // images of a domain's points, by which domains are compared
 
 struct SewnDomain {
   ClippedSurface surface;
   Seams seams;
   int faults = std::numeric_limits<int>::max();
-  double distance = std::numeric_limits<double>::infinity();  // rms of images to the surface, mesh units
+  double distance = std::numeric_limits<double>::infinity();  // rms of images to the surface, in kSameDistance
 
+  // Of equally good ones that of fewest triangles: fans and strips are cut into the fewest slivers.
   bool operator<(const SewnDomain& other) const {
-    return faults != other.faults ? faults < other.faults : distance < other.distance;
+    const auto key = [](const SewnDomain& one) {
+      return std::tuple(one.faults, std::floor(one.distance), one.surface.triangles.size());
+    };
+    return key(*this) < key(other);
   }
 };
 
@@ -91,7 +97,7 @@ GluedImages symmetric_cell(const CellSurface& cell, const FiniteGroup& group, co
     sewn.seams = sew(sewn.surface, group, domains[d], cut.snap, cut.reach);
     sewn.faults = sewn.seams.unmatched + glued_images(sewn.surface, group, sewn.seams, cut.reach).contradictions;
     if (sewn.faults > best.faults) continue;
-    sewn.distance = image_distance(sewn.surface, group, index);
+    sewn.distance = image_distance(sewn.surface, group, index) / (kSameDistance * cut.reach);
     if (sewn < best) best = std::move(sewn);
   }
   if (best.faults > 0) {

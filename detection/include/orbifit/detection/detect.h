@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "orbifit/detection/explanation.h"
+#include "orbifit/detection/surface_colours.h"
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
@@ -34,6 +35,11 @@ struct DetectOptions {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // not zero
   /// Names that go before those by shape.
   NamedParts named_parts;
+  /// Colours that take part: of each symmetry of the shape the largest subgroup that keeps them is listed; null, or one
+  /// colour everywhere: the shape alone counts.
+  const SurfaceColours* colours = nullptr;
+  /// Where to list what of the shape's symmetries the colours break; null: nowhere.
+  std::vector<BrokenByColours>* broken_by_colours = nullptr;
   /// Where to note what each stage kept and dropped; null: nowhere.
   Explanation* explanation = nullptr;
 
