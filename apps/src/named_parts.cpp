@@ -4,14 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "orbifit/model/appearance.h"
 #include "orbifit/model/errors.h"
 
 namespace orbifit {
 
-namespace {
-
-Appearance look_of(const std::string& file, const Mesh& mesh) {
+Appearance look_if_readable(const std::string& file, const Mesh& mesh) {
   try {
     return read_appearance(file, mesh);
   } catch (const InputError&) {
@@ -19,10 +16,7 @@ Appearance look_of(const std::string& file, const Mesh& mesh) {
   }
 }
 
-}  // namespace
-
-NamedParts named_parts(const std::string& file, const Mesh& mesh) {
-  const Appearance look = look_of(file, mesh);
+NamedParts named_parts(const Appearance& look) {
   NamedParts result;
   if (look.parts.empty()) return result;
   const bool objects =

@@ -90,7 +90,7 @@ Appearance painted(const Mesh& mesh, Paint paint, const Painter& painter) {
   return look;
 }
 
-Mesh subdivided(const Mesh& mesh, int times) {
+Mesh divided(const Mesh& mesh, int times) {
   if (times == 0) return mesh;
   std::vector<Vector3d> points;
   for (Index v = 0; v < mesh.vertices.rows(); ++v) points.emplace_back(mesh.vertices.row(v).transpose());
@@ -113,7 +113,7 @@ Mesh subdivided(const Mesh& mesh, int times) {
   }
   result.vertices.resize(static_cast<Index>(points.size()), 3);
   for (std::size_t v = 0; v < points.size(); ++v) result.vertices.row(static_cast<Index>(v)) = points[v].transpose();
-  return subdivided(result, times - 1);
+  return divided(result, times - 1);
 }
 
 }  // namespace orbifit::test

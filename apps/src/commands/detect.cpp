@@ -108,8 +108,9 @@ class StageTimes {
 };
 
 // The mesh's colours, with what is wrong with them as messages; nothing where they tell nothing.
-std::optional<SurfaceColours> colours_of(const DetectArguments& arguments, const Mesh& mesh, const RunContext& run) {
-  SurfaceColours colours(mesh, read_appearance(arguments.mesh, mesh));
+std::optional<SurfaceColours> colours_of(const DetectArguments& arguments, const Mesh& mesh, const Appearance& look,
+                                         const RunContext& run) {
+  SurfaceColours colours(mesh, look);
   for (const std::string& problem : colours.problems()) run.message(problem);
   if (!colours.uniform()) return colours;
   run.message(arguments.mesh + " has no colours that differ: its shape alone counts");
@@ -188,7 +189,9 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
   Explanation explanation;
   DetectOptions chosen = arguments.options;
   chosen.up = picture_up(arguments.up, mesh, arguments.mesh, nullptr);
-  chosen.named_parts = named_parts(arguments.mesh, mesh);
+  const Appearance look =
+      arguments.colours ? read_appearance(arguments.mesh, mesh) : look_if_readable(arguments.mesh, mesh);
+  chosen.named_parts = named_parts(look);
   RunContext run = context.run;
   std::optional<StageTimes> times;
   if (!arguments.explain.empty()) {
@@ -196,7 +199,7 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
     times.emplace(run);
   }
   std::optional<SurfaceColours> colours;
-  if (arguments.colours) colours = colours_of(arguments, mesh, context.run);
+  if (arguments.colours) colours = colours_of(arguments, mesh, look, context.run);
   std::vector<BrokenByColours> broken;
   chosen.broken_by_colours = &broken;
   if (colours) chosen.colours = &*colours;
