@@ -58,7 +58,7 @@ const BrokenByColours* broken(const Coloured& coloured, const std::string& group
 class ColoursOf : public testing::TestWithParam<Paint> {};
 
 TEST_P(ColoursOf, LeaveTheSubgroupThatKeepsThem) {
-  const Mesh mesh = test::divided(test::box(1, 0.7, 0.4), 4);
+  const Mesh mesh = test::subdivided(test::box(1, 0.7, 0.4), 4);
   const Painter half = [](const Vector3d& p) { return p.x() > 0 ? kRed : kWhite; };
   const Coloured found = detected(mesh, test::painted(mesh, GetParam(), half));
   EXPECT_EQ(group_of_whole(found), "C2v");
@@ -69,7 +69,7 @@ TEST_P(ColoursOf, LeaveTheSubgroupThatKeepsThem) {
 }
 
 TEST_P(ColoursOf, BearNoise) {
-  const Mesh mesh = test::divided(test::box(1, 0.7, 0.4), 4);
+  const Mesh mesh = test::subdivided(test::box(1, 0.7, 0.4), 4);
   Random random(5);
   const Painter stripe = [&](const Vector3d& p) {
     const Vector3d noise(random.normal(), random.normal(), random.normal());
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(Colours, OfMaterialsCount) {
-  const Mesh mesh = test::divided(test::box(1, 0.7, 0.4), 2);
+  const Mesh mesh = test::subdivided(test::box(1, 0.7, 0.4), 2);
   Appearance look;
   look.materials = {{"white", {1, 1, 1, 1}, "", ""}, {"black", {0.1, 0.1, 0.1, 1}, "", ""}};
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
@@ -111,7 +111,7 @@ TEST(Colours, ThatAreNotThereChangeNothing) {
 TEST(Colours, OfOneOfAMirrorPairBreakTheMirror) {
   Mesh mesh;
   for (const double side : {-1.0, 1.0}) {
-    Mesh part = test::divided(test::box(0.3, 0.5, 0.7), 3);
+    Mesh part = test::subdivided(test::box(0.3, 0.5, 0.7), 3);
     part.vertices.col(0).array() += side;
     const Eigen::Index vertices = mesh.vertices.rows();
     const Eigen::Index faces = mesh.faces.rows();
@@ -133,7 +133,7 @@ TEST(Colours, OfOneOfAMirrorPairBreakTheMirror) {
 }
 
 TEST(Colours, AboutAnAxisLeaveItsFiniteRotations) {
-  const Mesh mesh = test::divided(test::prism(96, 0.5, 0.8), 2);
+  const Mesh mesh = test::subdivided(test::prism(96, 0.5, 0.8), 2);
   const auto sectors = [](int n) {
     return [n](const Vector3d& p) {
       return std::cos(n * std::atan2(p.y(), p.x())) > 0 || p.head<2>().norm() < 0.1 ? kWhite : kBlue;
@@ -159,7 +159,7 @@ TEST(Colours, OfASpheresCapLeaveItsAxis) {
 }
 
 TEST(Colours, OfAThinSheetsSidesAreTold) {
-  const Mesh mesh = test::divided(test::box(1, 0.8, 0.002), 4);
+  const Mesh mesh = test::subdivided(test::box(1, 0.8, 0.002), 4);
   const Painter sides = [](const Vector3d& p) { return p.z() > 0 ? kRed : kWhite; };
   EXPECT_EQ(group_of_whole(detected(mesh, test::painted(mesh, Paint::faces, sides))), "C2v");
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
 #include <utility>
 
 #define STB_IMAGE_WRITE_STATIC
@@ -88,32 +87,6 @@ Appearance painted(const Mesh& mesh, Paint paint, const Painter& painter) {
     }
   }
   return look;
-}
-
-Mesh divided(const Mesh& mesh, int times) {
-  if (times == 0) return mesh;
-  std::vector<Vector3d> points;
-  for (Index v = 0; v < mesh.vertices.rows(); ++v) points.emplace_back(mesh.vertices.row(v).transpose());
-  std::map<std::pair<int, int>, int> middles;
-  const auto middle = [&](int a, int b) {
-    const auto [entry, added] = middles.try_emplace(std::minmax(a, b), static_cast<int>(points.size()));
-    if (added) points.emplace_back((points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)]) / 2);
-    return entry->second;
-  };
-  Mesh result;
-  result.faces.resize(4 * mesh.faces.rows(), 3);
-  for (Index f = 0; f < mesh.faces.rows(); ++f) {
-    const int a = mesh.faces(f, 0);
-    const int b = mesh.faces(f, 1);
-    const int c = mesh.faces(f, 2);
-    const int ab = middle(a, b);
-    const int bc = middle(b, c);
-    const int ca = middle(c, a);
-    result.faces.middleRows<4>(4 * f) << a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca;
-  }
-  result.vertices.resize(static_cast<Index>(points.size()), 3);
-  for (std::size_t v = 0; v < points.size(); ++v) result.vertices.row(static_cast<Index>(v)) = points[v].transpose();
-  return divided(result, times - 1);
 }
 
 }  // namespace orbifit::test

@@ -20,7 +20,4 @@ using Painter = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 /// `kField` pixels' side.
 Appearance painted(const Mesh& mesh, Paint paint, const Painter& painter);
 
-/// The mesh with each triangle divided into four, `times` times; triangles share the vertices between them.
-Mesh divided(const Mesh& mesh, int times);
-
 }  // namespace orbifit::test
