@@ -13,6 +13,7 @@
 #include "cube.h"
 #include "picture.h"
 #include "program.h"
+#include "three_mf_sample.h"
 
 namespace orbifit {
 namespace {
@@ -163,6 +164,27 @@ TEST_F(OrbifitConvert, KeepsTheNamesOfObjectsAndGroups) {
             std::string::npos)
       << content("c.obj");
   EXPECT_NE(program_.run("convert a.obj a.stl").errors.find("names of objects and groups"), std::string::npos);
+}
+
+TEST_F(OrbifitConvert, ReadsAThreeMfWithItsCopiesNamesAndUnit) {
+  ThreeMfSample sample;
+  sample.unit = 2;
+  sample.objects = {{"brick", cube_, {}}};
+  sample.items = {{0, ThreeMfSample::at(0, 0, 0)}, {0, ThreeMfSample::at(2, 0, 0)}};
+  sample.write(file("wall.3mf"));
+  const json info = json::parse(program_.run("info wall.3mf --json").output);
+  EXPECT_EQ(info["vertices"], 2 * cube_.vertices.rows());
+  const json& content = info["content"];
+  EXPECT_EQ(content["format"], "3mf");
+  EXPECT_EQ(content["unit"], "centimetre");
+  EXPECT_EQ(content["build_items"], 2);
+  EXPECT_EQ(content["parts"], 2);
+  EXPECT_EQ(content["meshes"], 1);
+  EXPECT_EQ(content["objects"], json({"brick"}));
+  ASSERT_EQ(program_.run("convert wall.3mf wall.glb").code, 0);
+  EXPECT_EQ(read_mesh(file("wall.glb")).faces, read_mesh(file("wall.3mf")).faces);
+  EXPECT_EQ(json::parse(program_.run("info wall.glb --json").output)["content"]["objects"], json({"brick"}));
+  EXPECT_EQ(program_.run("convert wall.glb back.3mf").code, 2);  // is not written
 }
 
 TEST_F(OrbifitConvert, WritesQualityForMeshLab) {
