@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "orbifit/detection/surface_colours.h"
@@ -109,7 +110,9 @@ TEST_F(Textures, StayInConversions) {
 // New triangles show the paint of the side that was taken: mirrored, not stretched.
 TEST_F(Textures, FollowNewTriangles) {
   const auto even = [](const Vector3d& p) { return paint(p.cwiseAbs()); };
-  write_mesh(file("even.obj"), cube_, test::painted(cube_, test::Paint::texture, even));
+  Appearance look = test::painted(cube_, test::Paint::texture, even);
+  look.materials.front().texture = "even.png";  // a texture that is there already is not written again
+  write_mesh(file("even.obj"), cube_, look);
   SymmetryAnnotation annotation = cube_annotation(cube_);
   Region& region = annotation.regions.front();
   region = make_region(*PointGroup::parse("D2h"), Vector3d::Zero(), Eigen::Matrix3d::Identity(), region.faces, "cube");
