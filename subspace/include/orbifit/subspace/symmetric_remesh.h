@@ -11,7 +11,7 @@ namespace orbifit {
 
 struct SymmetricRemeshOptions {
   /// Of a region, in [0, 1]: the least share of its surface whose images, under every element, must lie on it to within
-  /// the annotation's tolerance. Detection asks for 0.96 of its samples. On 40 real meshes 222 of 223 detected regions
+  /// the annotation's tolerance. Detection asks for 0.96 of its samples. On 32 real meshes 222 of 223 detected regions
   /// have 0.95 and more, and of 364 mirrors set beside or across the true ones 5 do, where 12 have 0.9.
   double min_score = 0.95;
   /// In [0, 0.4]: a vertex nearer to a cut than this share of the edge that is cut is moved onto it.
