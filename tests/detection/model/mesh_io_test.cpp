@@ -237,7 +237,8 @@ TEST(Gltf, RefusesWhatItCannotRead) {
       EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
     }
   };
-  expect(R"("indices": 1})", R"("indices": 1, "extensions": {"KHR_draco_mesh_compression": {}}})", "names no attributes");
+  expect(R"("indices": 1})", R"("indices": 1, "extensions": {"KHR_draco_mesh_compression": {}}})",
+         "names no attributes");
   expect(R"("byteLength": 36)", R"("byteLength": 36, "extensions": {"EXT_meshopt_compression": {}})", "meshopt");
   expect(R"("children": [0])", R"("children": [1])", "must form a tree");
   expect(R"("children": [0])", R"("children": [7])", "names nodes[7], but there are 3");
