@@ -479,6 +479,16 @@ orbifit("edit", "chair.ply", "chair.json", ...field, "-o", "field.html", "--quie
 const native = orbifit("subspace", "chair.ply", "chair.json", ...field, "--mode", "fixed", "--json", "--quiet");
 await page.goto(pathToFileURL(join(folder, "field.html")).href);
 await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 60000 });
+// Asked for while the worker is being made ready: it waits for that.
+await ask(() => {
+  const { background } = globalThis.orbifit.editor;
+  background.stop();
+  const request = background.request();
+  background.worker.postMessage(request);
+  const mode = document.getElementById("mode");
+  mode.value = "0";
+  mode.dispatchEvent(new Event("change"));
+});
 await chooseMode("0", "fixed");
 const built = await ask(() => globalThis.orbifit.editor.info);
 check(built.mode === "fixed" && built.samples === native.samples && built.degrees_of_freedom === native.degrees_of_freedom,

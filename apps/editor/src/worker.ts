@@ -47,19 +47,22 @@ function run(session: Core, number: number, task: Task): void {
   }
 }
 
-self.addEventListener("message", (event: MessageEvent<Request>) => {
-  void (async () => {
-    const { number, wasm, mesh, task } = event.data;
-    try {
-      if (wasm) core = await Core.create(wasm);
-      if (!core) throw new Error("the core is missing");
-      if (mesh) {
-        core.readMesh(mesh.name, mesh.data);
-        vertexCount = core.info().vertices;
-      }
-      if (task) run(core, number, task);
-    } catch (error) {
-      answer({ number, kind: "error", message: error instanceof Error ? error.message : String(error) });
+async function serve({ number, wasm, mesh, task }: Request): Promise<void> {
+  try {
+    if (wasm) core = await Core.create(wasm);
+    if (!core) throw new Error("the core is missing");
+    if (mesh) {
+      core.readMesh(mesh.name, mesh.data);
+      vertexCount = core.info().vertices;
     }
-  })();
+    if (task) run(core, number, task);
+  } catch (error) {
+    answer({ number, kind: "error", message: error instanceof Error ? error.message : String(error) });
+  }
+}
+
+// One after another: the core is made asynchronously, and what comes meanwhile waits for it.
+let served = Promise.resolve();
+self.addEventListener("message", (event: MessageEvent<Request>) => {
+  served = served.then(() => serve(event.data));
 });
