@@ -6,31 +6,18 @@
 #include <fstream>
 #include <string>
 
-#include <unistd.h>
-
 #include "bad_input/bad_input_lists.h"
 #ifdef FUZZED_BY_MODEL
 #include "model_reading.h"
 #else
 #include "reading.h"
 #endif
-
-namespace {
-
-// In memory where there is such a folder; one process, one file.
-std::filesystem::path scratch_file() {
-  const std::filesystem::path memory("/dev/shm");
-  const std::filesystem::path folder =
-      std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
-  return folder / ("orbifit-fuzz-" + std::to_string(::getpid()) + FUZZED_ENDING);
-}
-
-}  // namespace
+#include "scratch_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace orbifit;
   constexpr BadInputKind kKind = BadInputKind::FUZZED_KIND;
-  static const std::filesystem::path file = scratch_file();
+  static const std::filesystem::path file = scratch_file(FUZZED_ENDING);
   std::string content(data, data + size);
 #ifdef FUZZED_BY_MODEL
   static const Mesh cube = cube_of_bad_input();

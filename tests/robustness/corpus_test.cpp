@@ -9,6 +9,7 @@
 #include "edit_of_bytes.h"
 #include "files/file.h"
 #include "group_of_bytes.h"
+#include "packed_of_bytes.h"
 #include "reading.h"
 #include "temporary_folder.h"
 
@@ -49,6 +50,8 @@ void replay(const std::string& fuzzer, const std::string& content, const Reading
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
   if (fuzzer == "group") return classify_group_of_bytes(bytes);
   if (fuzzer == "edit") return edit_of_bytes(bytes);
+  if (fuzzer == "3mf_model") return read_three_mf_of_bytes(bytes);
+  if (fuzzer == "draco") return decode_draco_of_bytes(bytes);
   const Reader& reader = readers().at(fuzzer);
   const std::string file = "a" + reader.ending;
   folder.write(file, reader.kind == BadInputKind::basis ? with_right_checksums(content) : content);

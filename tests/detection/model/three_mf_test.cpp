@@ -13,7 +13,9 @@
 #include "base/random.h"
 #include "files/file.h"
 #include "mesh_samples.h"
+#include "refused_mesh.h"
 #include "temporary_folder.h"
+#include "three_mf_package.h"
 #include "three_mf_sample.h"
 
 namespace orbifit {
@@ -33,15 +35,7 @@ class ThreeMf : public testing::Test {
     return read_three_mf_content(file_, read_file(file_), builder);
   }
 
-  void expect_refused(const std::string& reason) const {
-    try {
-      read_mesh(file_);
-      ADD_FAILURE() << "was read, not refused: " << reason;
-    } catch (const InputError& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with(file_.string() + ": ")) << error.what();
-      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
-    }
-  }
+  void expect_refused(const std::string& reason) const { expect_mesh_refused(file_, reason); }
 
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.file("a.3mf");

@@ -35,7 +35,4 @@ struct ThreeMfSample {
   void write(const std::filesystem::path& file) const;
 };
 
-/// A 3MF file whose model is the given text.
-void write_three_mf_of(const std::filesystem::path& file, const std::string& model);
-
 }  // namespace orbifit
