@@ -524,16 +524,18 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   annotation.regions = annotated(prepared, std::move(found.regions), options.tolerance, context, options.explanation);
   annotation.patterns = std::move(found.patterns);
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
-  const SymmetryAnnotation by_shape = listed(prepared, mesh, annotation, options, context);
-  if (options.colours == nullptr || options.colours->uniform()) return by_shape;
+  if (options.colours == nullptr || options.colours->uniform()) {
+    return listed(prepared, mesh, std::move(annotation), options, context);
+  }
   context.progress("colours", 0);
   const ColourSamples samples(mesh, *options.colours, options.tolerance * diagonal(mesh.vertices), context);
-  SymmetryAnnotation result =
-      listed(prepared, mesh, kept_by_colours(mesh, annotation, samples, context).annotation, options, context);
   if (options.broken_by_colours != nullptr) {
-    *options.broken_by_colours = kept_by_colours(mesh, by_shape, samples, context).broken;
+    DetectOptions by_shape = options;
+    by_shape.explanation = nullptr;
+    *options.broken_by_colours =
+        kept_by_colours(mesh, listed(prepared, mesh, annotation, by_shape, context), samples, context).broken;
   }
-  return result;
+  return listed(prepared, mesh, kept_by_colours(mesh, annotation, samples, context).annotation, options, context);
 }
 
 }  // namespace orbifit

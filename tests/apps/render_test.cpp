@@ -13,16 +13,8 @@
 #include "orbifit/apps/annotation_pictures.h"
 #include "orbifit/model/errors.h"
 
+#include "base/stb_image.h"
 #include "files/file.h"
-
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wshadow"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
 
 namespace orbifit {
 namespace {

@@ -2,20 +2,18 @@
 
 #include <cstdlib>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "base/stb_image.h"
+#include "files/file.h"
 
 namespace orbifit {
 
 Picture read_picture(const std::filesystem::path& file) {
   Picture picture;
   int channels = 0;
-  stbi_uc* pixels = stbi_load(file.c_str(), &picture.width, &picture.height, &channels, 3);
+  const std::string bytes = read_file(file);
+  stbi_uc* pixels =
+      stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()),
+                            &picture.width, &picture.height, &channels, 3);
   if (pixels == nullptr) return {};
   picture.rgb.assign(pixels, pixels + 3 * static_cast<std::ptrdiff_t>(picture.width) * picture.height);
   stbi_image_free(pixels);

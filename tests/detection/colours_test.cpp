@@ -109,17 +109,8 @@ TEST(Colours, ThatAreNotThereChangeNothing) {
 }
 
 TEST(Colours, OfOneOfAMirrorPairBreakTheMirror) {
-  Mesh mesh;
-  for (const double side : {-1.0, 1.0}) {
-    Mesh part = test::subdivided(test::box(0.3, 0.5, 0.7), 3);
-    part.vertices.col(0).array() += side;
-    const Eigen::Index vertices = mesh.vertices.rows();
-    const Eigen::Index faces = mesh.faces.rows();
-    mesh.vertices.conservativeResize(vertices + part.vertices.rows(), 3);
-    mesh.vertices.bottomRows(part.vertices.rows()) = part.vertices;
-    mesh.faces.conservativeResize(faces + part.faces.rows(), 3);
-    mesh.faces.bottomRows(part.faces.rows()) = part.faces.array() + static_cast<int>(vertices);
-  }
+  const Mesh part = test::subdivided(test::box(0.3, 0.5, 0.7), 3);
+  const Mesh mesh = test::joined({test::moved(part, test::shift(-1, 0, 0)), test::moved(part, test::shift(1, 0, 0))});
   const Painter one = [](const Vector3d& p) { return p.x() > 0 ? kBlue : kWhite; };
   const Coloured found = detected(mesh, test::painted(mesh, Paint::faces, one));
   for (const Region& region : found.annotation.regions) {

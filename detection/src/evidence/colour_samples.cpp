@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "evidence/policy.h"
 #include "geometry/surface_index.h"
 
 namespace orbifit {
@@ -15,17 +16,12 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-// Of a disc of radius `reach`: the mean of a pattern of black and white dots is known to 255 / (2 sqrt(16)) = 32
-// levels, and the best of a neighbourhood's means to a few.
-constexpr double kSamplesOfDisc = 16;
-constexpr double kMinSamples = 20000;
-constexpr double kMaxSamples = 300000;  // some seconds
-constexpr double kSameSide = 0.5;       // cosine between normals
-
 SurfaceSamples spread(const Mesh& mesh, double reach, const RunContext& context) {
   const double discs = face_areas(mesh).sum() / (std::numbers::pi * reach * reach);
   Random random(context.seed, "colours");
-  return sample_surface(mesh, static_cast<int>(std::clamp(kSamplesOfDisc * discs, kMinSamples, kMaxSamples)), random);
+  const double count =
+      std::clamp(kColourPolicy.samples_of_disc * discs, kColourPolicy.least_samples, kColourPolicy.most_samples);
+  return sample_surface(mesh, static_cast<int>(count), random);
 }
 
 }  // namespace
@@ -77,7 +73,8 @@ std::vector<int> ColourSamples::near(const Vector3d& point, const Vector3d& norm
     const auto sample = static_cast<std::size_t>(neighbour.index);
     if (!on_face.empty() && on_face[static_cast<std::size_t>(samples_.faces[sample])] == 0) continue;
     any_side.push_back(neighbour.index);
-    if (samples_.normals.row(neighbour.index).dot(normal) >= kSameSide) same_side.push_back(neighbour.index);
+    if (samples_.normals.row(neighbour.index).dot(normal) >= kColourPolicy.same_side)
+      same_side.push_back(neighbour.index);
   }
   return same_side.empty() ? any_side : same_side;
 }

@@ -40,7 +40,7 @@ bool is_subgroup(const std::vector<Motion>& elements, const std::vector<char>& m
   for (std::size_t e = 0; e < elements.size(); ++e) {
     if (mask[e] != 0) marked.push_back({elements[e].linear, Vector3d::Zero()});
   }
-  return closed(marked, 1, 1e-6);
+  return closed(marked, 1, kColourPolicy.same_motion);
 }
 
 ColouredGroup of_finite(const Region& region, const std::vector<Motion>& elements, const ColourJudge& judge) {
@@ -83,7 +83,8 @@ class AxialColours {
       radius = std::max(radius, axis.cross(judge.samples().point(sample) - region.centre).norm());
     }
     // Steps that move nothing by more than the reach.
-    steps_ = static_cast<int>(std::clamp(2 * std::numbers::pi * radius / reach, 36.0, 720.0));
+    steps_ = static_cast<int>(
+        std::clamp(2 * std::numbers::pi * radius / reach, kColourPolicy.least_steps, kColourPolicy.most_steps));
   }
 
   ColouredGroup run() {
@@ -102,8 +103,7 @@ class AxialColours {
     // Every subgroup that has these rotations lies in the group of twice as many about the right frame.
     const int order = 2 * rotations();
     if (flips_or_mirrors()) align();
-    const PointGroup finite{finite_family(), std::max(order, 2)};
-    const Region candidate = with_group(region_, finite, frame_);
+    const Region candidate = with_group(region_, finite_counterpart(group_, order), frame_);
     const ColouredGroup kept = of_finite(candidate, candidate.elements, judge_);
     result.region = kept.region;
     return result;
@@ -140,29 +140,13 @@ class AxialColours {
 
   // The largest order of a rotation that is kept; 1 for none.
   int rotations() const {
-    constexpr int kMaxOrder = 36;  // more than colours are painted in
-    for (int n = kMaxOrder; n > 1; --n) {
+    for (int n = kColourPolicy.largest_order; n > 1; --n) {
       if (judge_.keeps(turn(2 * std::numbers::pi / n))) return n;
     }
     return 1;
   }
 
   bool flips_or_mirrors() const { return group_.family != Family::Cinf && group_.family != Family::Cinfh; }
-
-  Family finite_family() const {
-    switch (group_.family) {
-      case Family::Cinf:
-        return Family::Cn;
-      case Family::Cinfv:
-        return Family::Cnv;
-      case Family::Cinfh:
-        return Family::Cnh;
-      case Family::Dinf:
-        return Family::Dn;
-      default:
-        return Family::Dnh;
-    }
-  }
 
   // Turns the frame so that its first direction is the normal of a mirror, or the axis of a half-turn, that is kept.
   void align() {

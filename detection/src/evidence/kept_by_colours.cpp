@@ -62,11 +62,10 @@ Verdict<Pattern> judged(const Mesh& mesh, const Pattern& pattern, const ColourSa
 
 // Whether the one has all that the other has: the same faces, and every element of its group.
 bool holds(const Region& large, const Region& small, double scale) {
-  constexpr double kSameMotion = 1e-6;  // of the diagonal
   if (large.faces != small.faces || large.group.continuous() || small.group.continuous()) return false;
   return std::ranges::all_of(small.elements, [&](const Motion& motion) {
     return std::ranges::any_of(large.elements, [&](const Motion& other) {
-      return motion_distance(motion, other, large.centre, scale) <= kSameMotion * scale;
+      return motion_distance(motion, other, large.centre, scale) <= kColourPolicy.same_motion * scale;
     });
   });
 }

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "group/verification.h"
+
 namespace orbifit {
 
 /// What decides on the list of regions and patterns: each threshold with its unit and its reason.
@@ -30,9 +32,17 @@ struct QuotientResolution {
 struct ColourPolicy {
   /// Distance in sRGB, each of red, green and blue from 0 to 1, above which two colours are different.
   double difference = 24.0 / 255;
-  /// Of a region's surface: as much as the shape may miss too under one element (VerificationLimits::worst).
-  double share = 0.03;
-  int samples = 400;  ///< of a region: they tell the share to 1 %
+  double share = 1 - VerificationLimits{}.worst;  ///< of a region's surface: as much as the shape may miss
+  int samples = 400;                              ///< of a region: they tell the share to 1 %
+  /// Colours are averaged over a disc of the tolerance's radius, of which there are so many points: the mean of a
+  /// pattern of black and white dots is then known to 255 / (2 sqrt(16)) = 32 levels, the best of a neighbourhood's to
+  /// a few.
+  double samples_of_disc = 16;
+  double least_samples = 20000, most_samples = 300000;  ///< of a mesh; the most take some seconds
+  double same_side = 0.5;                               ///< cosine between normals: the surface's own side
+  int largest_order = 36;                               ///< of rotations sought: more than colours are painted in
+  double least_steps = 36, most_steps = 720;            ///< angles at which mirrors are sought: 5 and 0.25 degrees
+  double same_motion = 1e-6;                            ///< of the diagonal, and radians
 };
 
 inline constexpr ColourPolicy kColourPolicy;

@@ -52,7 +52,7 @@ class MovingSolve::Run {
   Deformation finish();
 
  private:
-  VectorXd turns_wanted(const Points& before) const;
+  VectorXd turns_wanted(const SampleEnergy::Terms& now, const Points& before) const;
   Solved turn_groups(const Points& before);
   Solved solved(Stand stand) const;
   void accept(Solved next, const Points& before);
@@ -122,8 +122,9 @@ void MovingSolve::Run::iterate() {
 // The best coordinates for groups that turn as they should to first order, or less far where the energy grows, or not
 // at all where they contradict one another.
 MovingSolve::Solved MovingSolve::Run::turn_groups(const Points& before) {
-  const VectorXd angles = turns_wanted(before);
-  const double energy = energy_.value(terms(stand_), q_);
+  const SampleEnergy::Terms now = terms(stand_);
+  const VectorXd angles = turns_wanted(now, before);
+  const double energy = energy_.value(now, q_);
   for (; share_ >= kLeastShare; share_ /= 2) {
     context_.check();
     const ConjugatedRegions::Turns turns = regions_.turned(stand_.turns, share_ * angles);
@@ -146,7 +147,7 @@ MovingSolve::Solved MovingSolve::Run::solved(Stand stand) const {
 }
 
 // Coordinates and groups together, to first order: the groups' turns of that, radians.
-VectorXd MovingSolve::Run::turns_wanted(const Points& before) const {
+VectorXd MovingSolve::Run::turns_wanted(const SampleEnergy::Terms& now, const Points& before) const {
   const SubspaceState state{q_, stand_.basis};
   const Points turned_delta = turned_coordinates(stand_);
   const Points centres = region_centres(subspace_, state);
@@ -156,7 +157,7 @@ VectorXd MovingSolve::Run::turns_wanted(const Points& before) const {
       turning, regions_.columns(stand_.turns, turned_delta, Points::Zero(subspace_->regions->count(), 3)),
       regions_.vertex_columns(stand_.turns, handles_.vertices(), handles_.rest() + lifted(state), centres)};
   const SmallTurns small{regions_, stand_.turns, turning};
-  SampleEnergy::Terms both = terms(stand_);
+  SampleEnergy::Terms both = now;
   both.contacts = contact_rows(stand_, &small);
   VectorXd angles = energy_.solve(both, all).z.tail(turning.cols());
   const double largest = angles.cwiseAbs().maxCoeff();
@@ -197,11 +198,7 @@ Deformation MovingSolve::Run::finish() {
 }
 
 SampleEnergy::Terms MovingSolve::Run::terms(const Stand& stand) const {
-  return {stand.basis->columns,
-          stand.basis->offset,
-          stand.points,
-          stacked(turned_coordinates(stand) - corotation_.delta),
-          targets_,
+  return {*stand.basis, stand.points, stacked(turned_coordinates(stand) - corotation_.delta), targets_,
           contact_rows(stand, nullptr)};
 }
 

@@ -50,12 +50,12 @@ SampleEnergy::SampleEnergy(const Corotation& corotation, const std::vector<doubl
 }
 
 SampleEnergy::Solution SampleEnergy::solve(const Terms& terms, const Turning& turning) const {
-  const Eigen::Index rest = terms.columns.cols();
+  const Eigen::Index rest = terms.basis.columns.cols();
   const Eigen::Index turns = turning.samples.cols();
   const HandlePoints& handles = terms.handles;
   const ContactRows& contacts = terms.contacts;
-  const Part parts[] = {{laplacian_ * terms.columns, laplacian_ * turning.samples - turning.along,
-                         terms.laplace - laplacian_ * terms.offset},
+  const Part parts[] = {{laplacian_ * terms.basis.columns, laplacian_ * turning.samples - turning.along,
+                         terms.laplace - laplacian_ * terms.basis.offset},
                         {weights_.asDiagonal() * handles.rows, weights_.asDiagonal() * turning.handles,
                          weights_.cwiseProduct(terms.targets - handles.offset)},
                         {contacts.rows.leftCols(rest).sparseView(), contacts.rows.rightCols(turns), contacts.right}};
@@ -88,7 +88,7 @@ SampleEnergy::Solution SampleEnergy::solve(const Terms& terms, const Turning& tu
 
 double SampleEnergy::value(const Terms& terms, const VectorXd& z) const {
   const VectorXd moved = terms.handles.rows * z + terms.handles.offset;
-  return (laplacian_ * (terms.columns * z + terms.offset) - terms.laplace).squaredNorm() +
+  return (laplacian_ * (terms.basis.columns * z + terms.basis.offset) - terms.laplace).squaredNorm() +
          weights_.cwiseProduct(moved - terms.targets).squaredNorm() +
          (terms.contacts.rows * z - terms.contacts.right).squaredNorm();
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "basis/symmetric_basis.h"
 #include "deformation/contact_energy.h"
 #include "deformation/corotation.h"
 
@@ -38,8 +39,7 @@ class SampleEnergy {
 
   /// What it is made of where the groups stand somewhere.
   struct Terms {
-    const Eigen::SparseMatrix<double>& columns;
-    const Eigen::VectorXd& offset;
+    const SymmetricBasis& basis;  ///< its columns and offset
     const HandlePoints& handles;
     Eigen::VectorXd laplace;         ///< b
     const Eigen::VectorXd& targets;  ///< a

@@ -237,32 +237,8 @@ class DemandSearch {
     // Powers of two have one another's rotations, and an even order has half turns in its mirrors.
     int order = kMinOrder;
     while (2 * order <= std::min(turns, static_cast<double>(kMaxOrder))) order *= 2;
-    PointGroup group;
-    switch (region.group.family) {
-      case Family::Cinf:
-        group = {Family::Cn, order};
-        break;
-      case Family::Cinfv:
-        group = {Family::Cnv, order};
-        break;
-      case Family::Cinfh:
-        group = {Family::Cnh, order};
-        break;
-      case Family::Dinf:
-        group = {Family::Dn, order};
-        break;
-      case Family::Dinfh:
-        group = {Family::Dnh, order};
-        break;
-      case Family::K:
-        group = {Family::I, 1};
-        break;
-      case Family::Kh:
-        group = {Family::Ih, 1};
-        break;
-      default:
-        return std::nullopt;
-    }
+    PointGroup group = finite_counterpart(region.group, order);
+    if (!region.group.has_axis()) group = {region.group.family == Family::Kh ? Family::Ih : Family::I, 1};
     const GroupFrame frame = region.axis.isZero() ? GroupFrame(GroupFrame::Identity()) : frame_about(region.axis);
     return make_region(group, region.centre, frame, region.faces, region.name);
   }

@@ -75,21 +75,6 @@ class Turned {
   std::vector<Index> trials_;
 };
 
-Family finite_family(Family family) {
-  switch (family) {
-    case Family::Cinfv:
-      return Family::Cnv;
-    case Family::Cinfh:
-      return Family::Cnh;
-    case Family::Dinf:
-      return Family::Dn;
-    case Family::Dinfh:
-      return Family::Dnh;
-    default:
-      return Family::Cn;
-  }
-}
-
 // Turns the plane through the axis and `along` into itself the other way round: a mirror, or a half turn about `along`.
 Matrix3d flip(const Vector3d& axis, const Vector3d& along, bool half_turn) {
   if (half_turn) return 2 * along * along.transpose() - Matrix3d::Identity();
@@ -172,7 +157,7 @@ std::optional<Region> turning_region(const Region& region, const Points& places,
     --order;
   }
   if (order < 3) return std::nullopt;
-  const PointGroup group{finite_family(region.group.family), order};
+  const PointGroup group = finite_counterpart(region.group, order);
   GroupFrame frame = frame_about(axis);
   if (group.family != Family::Cn && group.family != Family::Cnh) {
     const bool half_turn = group.family == Family::Dn;

@@ -52,12 +52,11 @@ struct DetectOptions {
 /// element of a returned group was verified against the surface, and the groups agree with one another exactly
 /// (consistent_annotation()). Ordered by importance, what each saves of the surface given those before it; images of
 /// one another follow one another and have the importance of all. What follows from those before it, and is no main
-/// part, is left out. Named by their parts'
-/// names or by what they are, and by where; parents set. The result is the same for any number of threads.
-/// Costs O(F log F), for each region too, for meshes finer than the tolerance asks for; the search itself depends on
-/// how much shape there is at the size of the tolerance.
-/// \throw InputError when
-/// the mesh has no area
+/// part, is left out. Named by their parts' names or by what they are, and by where; parents set. The result is the
+/// same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance asks for;
+/// the search itself depends on how much shape there is at the size of the tolerance. With colours the list is made
+/// twice.
+/// \throw InputError when the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 
 }  // namespace orbifit

@@ -22,13 +22,11 @@ DracoMesh decode_draco(std::string_view /*bytes*/, std::span<const DracoRequest>
 #pragma GCC diagnostic pop
 
 #include "files/gltf.h"
+#include "files/mesh_builder.h"
 
 namespace orbifit::gltf {
 
 namespace {
-
-// Faces that a file announces beyond this are refused before memory is taken for them: as many as vertices are read.
-constexpr std::uint32_t kMaxFaces = 200'000'000;
 
 // How many faces the header of a mesh announces, in the bitstream since version 2.2 without metadata, which is what
 // writers of glTF make; 0 where it cannot be told.
@@ -86,7 +84,7 @@ std::string rows(const draco::Mesh& mesh, const DracoRequest& request) {
 }  // namespace
 
 DracoMesh decode_draco(std::string_view bytes, std::span<const DracoRequest> requests) {
-  if (announced_faces(bytes) > kMaxFaces) throw DracoError("too many faces are announced");
+  if (announced_faces(bytes) > kMostVertices) throw DracoError("too many faces are announced");
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;

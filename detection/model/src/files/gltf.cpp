@@ -22,8 +22,6 @@ namespace {
 using namespace gltf;
 using Json = Document::Json;
 
-constexpr std::int64_t kMaxVertices = 200'000'000;
-
 class GltfReader {
  public:
   GltfReader(const fs::path& file, std::string_view content, MeshBuilder& builder)
@@ -131,7 +129,7 @@ class GltfReader {
     if (position < 0) document_.refuse(where, "has no POSITION");
     const std::int64_t first = builder_.vertices();
     const Accessor points = document_.accessor(position, 3, "positions");
-    if (first + points.count > kMaxVertices) document_.refuse(where, "too many vertices");
+    if (first + points.count > kMostVertices) document_.refuse(where, "too many vertices");
     const bool moved = !world.isIdentity(0);
     for (std::int64_t v = 0; v < points.count; ++v) {
       const Eigen::Vector3d local(points.value(v, 0), points.value(v, 1), points.value(v, 2));

@@ -15,8 +15,8 @@ struct Plain {
 };
 
 /// Primitives that Draco has compressed (KHR_draco_mesh_compression) get accessors with their numbers, sparse accessors
-/// of primitives are filled, and the instances of a node (EXT_mesh_gpu_instancing) become its first children. Their
-/// extensions are no longer named as used.
+/// of primitives are filled, and the instances of a node (EXT_mesh_gpu_instancing) become its first children; their
+/// extensions are not named as used then.
 /// \throw InputError
 Plain plain(const std::filesystem::path& file, std::string_view content);
 

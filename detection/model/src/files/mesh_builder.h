@@ -12,6 +12,9 @@ namespace orbifit {
 /// The sixth power of a coordinate beyond this would overflow; squares of volumes are such.
 inline constexpr double kLargestCoordinate = 1e50;
 
+/// What formats that repeat meshes, or announce them compressed, may ask for: a file of 2 KB could name any number.
+inline constexpr std::int64_t kMostVertices = 200'000'000;
+
 /// \throw InputError when a coordinate is not finite or beyond kLargestCoordinate
 void check_coordinates(const std::string& file, long long line, long long vertex, const double (&point)[3]);
 

@@ -40,10 +40,6 @@ namespace {
 
 using Handle = NMR::PLib3MFBase*;
 
-// What a file's nested components may multiply to; a file of 2 KB could else ask for any number.
-constexpr std::int64_t kMaxVertices = 200'000'000;
-constexpr std::int64_t kMaxParts = 1'000'000;
-
 // What lib3mf gives out, given back to it.
 class Held {
  public:
@@ -64,8 +60,8 @@ struct Extent {
   std::int64_t vertices = 0, parts = 1;
 
   Extent& operator+=(const Extent& other) {  // of numbers that end far below the largest
-    vertices = std::min(vertices + other.vertices, kMaxVertices + 1);
-    parts = std::min(parts + other.parts, kMaxParts + 1);
+    vertices = std::min(vertices + other.vertices, kMostVertices + 1);
+    parts = std::min(parts + other.parts, kMostThreeMfParts + 1);
     return *this;
   }
 };
@@ -106,7 +102,7 @@ class ThreeMfReader {
     content_.items = static_cast<std::int64_t>(items.size());
     Extent whole;
     for (const Component& item : items) whole += object(item.object, "build").extent;
-    if (whole.vertices > kMaxVertices || whole.parts > kMaxParts) {
+    if (whole.vertices > kMostVertices || whole.parts > kMostThreeMfParts) {
       refuse("build", "its components multiply to more than 200 million vertices or a million parts");
     }
     for (const Component& item : items) add(item);

@@ -14,6 +14,7 @@
 #include "orbifit/model/errors.h"
 
 #include "files/file.h"
+#include "files/mesh_builder.h"
 #include "files/text.h"
 
 namespace orbifit {
@@ -22,9 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t kMaxVertices = 200'000'000;  // as of other formats
-// Of which nested components may ask for any number in 2 KB.
-constexpr std::int64_t kMaxParts = 1'000'000;
 // lib3mf compares each of the objects, components and items with all before it: some ten seconds of these.
 constexpr std::int64_t kMaxElements = 30'000;
 
@@ -55,7 +53,7 @@ class TagCounter {
     name.remove_prefix(std::min(name.size(), name.find(':') + 1));  // npos + 1 is 0
     if (name == "vertex") {
       check_vertex(tag);
-      if (++vertices_ > kMaxVertices) refuse("more than 200 million vertices");
+      if (++vertices_ > kMostVertices) refuse("more than 200 million vertices");
     }
     if (name != "object" && name != "component" && name != "item") return;
     if (++elements_ > kMaxElements) refuse("more than 30000 objects, components and items");
@@ -67,7 +65,7 @@ class TagCounter {
       const std::int64_t parts = known == parts_of_.end() ? 1 : known->second;
       if (name == "component") parts_of_[object_] += parts;
       parts_ += parts;
-      if (parts_ > kMaxParts) refuse("components that multiply to more than a million parts");
+      if (parts_ > kMostThreeMfParts) refuse("components that multiply to more than a million parts");
     }
   }
 

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
 namespace orbifit {
+
+/// Uses of meshes that nested components may multiply to.
+inline constexpr std::int64_t kMostThreeMfParts = 1'000'000;
 
 /// Looks at how much a 3MF file holds and how often its components repeat that before lib3mf reads it, which would take
 /// any memory and time for it.

@@ -127,6 +127,22 @@ bool belongs_to_continuous(const Eigen::Matrix3d& linear, const PointGroup& grou
   }
 }
 
+PointGroup finite_counterpart(const PointGroup& group, int n) {
+  using Family = PointGroup::Family;
+  switch (group.family) {
+    case Family::Cinfv:
+      return {Family::Cnv, n};
+    case Family::Cinfh:
+      return {Family::Cnh, n};
+    case Family::Dinf:
+      return {Family::Dn, n};
+    case Family::Dinfh:
+      return {Family::Dnh, n};
+    default:
+      return {Family::Cn, n};
+  }
+}
+
 bool PointGroup::proper() const {
   switch (family) {
     case Family::C1:

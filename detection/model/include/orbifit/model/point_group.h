@@ -70,6 +70,10 @@ std::vector<Eigen::Matrix3d> elements(const PointGroup& group, const GroupFrame&
 bool belongs_to_continuous(const Eigen::Matrix3d& linear, const PointGroup& group, const Eigen::Vector3d& axis,
                            double angle);
 
+/// The finite group of the same kind: Cnv of Cinfv, with n rotations about the axis in place of all. \pre
+/// group.continuous(), group.has_axis()
+PointGroup finite_counterpart(const PointGroup& group, int n);
+
 /// A small set that generates elements(group, frame); for a continuous group the discrete cosets' representatives
 /// and one rotation by 1 radian about each generating axis.
 std::vector<Eigen::Matrix3d> generators(const PointGroup& group, const GroupFrame& frame = GroupFrame::Identity());
