@@ -53,10 +53,13 @@ const settled = async () => {
   await page.waitForFunction(() => globalThis.orbifit.editor.isMeasured, null, { timeout: 60000 });
 };
 /** What is chosen may have to wait for what the page is at: it is settled once it has been taken up. */
-const chooseMode = async (value, name) => {
-  await page.selectOption("#mode", value);
+const takenUp = async name => {
   await page.waitForFunction(mode => globalThis.orbifit.editor.info.mode === mode, name, { timeout: 60000 });
   await settled();
+};
+const chooseMode = async (value, name) => {
+  await page.selectOption("#mode", value);
+  await takenUp(name);
 };
 /** All that is asked of the page's editor. */
 const ask = (call, argument) => page.evaluate(call, argument);
@@ -489,7 +492,7 @@ await ask(() => {
   mode.value = "0";
   mode.dispatchEvent(new Event("change"));
 });
-await chooseMode("0", "fixed");
+await takenUp("fixed");
 const built = await ask(() => globalThis.orbifit.editor.info);
 check(built.mode === "fixed" && built.samples === native.samples && built.degrees_of_freedom === native.degrees_of_freedom,
       `the page samples by the radius field: ${built.samples} samples, ${built.degrees_of_freedom} degrees of freedom`);
