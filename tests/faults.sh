@@ -1,19 +1,22 @@
 #!/usr/bin/env bash
-# Lets calls of the system fail in the middle of every command: `tests/faults.sh ORBIFIT LIBRARY [SAMPLES]`. LIBRARY is
-# tests/faults/faulty_system.cpp, built; SAMPLES moments are tried of each kind of fault and command (3 unless given):
+# Lets calls of the system fail in the middle of every command: `tests/faults.sh ORBIFIT LIBRARY [SAMPLES [KIND ...]]`.
+# LIBRARY is tests/faults/faulty_system.cpp, built; SAMPLES moments are tried of each kind of fault and command (3 unless
+# given), of all kinds unless some are named:
 #   memory    one allocation fails; or it and all later ones
 #   disk      the disk is full from some write on
 #   input     a file ends at some read, as one that was cut meanwhile
 #   signal    SIGINT or SIGTERM after some part of the command's time
-# and once a command: an output in a folder that does not exist, and one where a folder stands in its way.
+#   output    once a command: an output in a folder that does not exist, and one where a folder stands in its way
 # Each command either succeeds or ends with a documented exit code and a message; what stands among its outputs is whole:
 # the bytes of an undisturbed run; nothing else lies there, and the inputs are as they were. Prints a table, and what
 # broke the rule; ends with 1 then. Moments are evenly spread, but those of memory also hit the first allocations.
 set -uo pipefail
 
-orbifit=$(realpath "${1:?usage: tests/faults.sh ORBIFIT LIBRARY [SAMPLES]}")
-library=$(realpath "${2:?usage: tests/faults.sh ORBIFIT LIBRARY [SAMPLES]}")
+orbifit=$(realpath "${1:?usage: tests/faults.sh ORBIFIT LIBRARY [SAMPLES [KIND ...]]}")
+library=$(realpath "${2:?usage: tests/faults.sh ORBIFIT LIBRARY [SAMPLES [KIND ...]]}")
 samples=${3:-3}
+kinds=" ${*:4} "
+[[ $kinds != "  " ]] || kinds=" memory disk input signal output "
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -75,6 +78,9 @@ disturbed() {
   judge "$1" $? "$2" "$3"
 }
 
+# asked KIND: whether it is to be tried.
+asked() { [[ $kinds == *" $1 "* ]]; }
+
 # moments COUNT: as many numbers up to COUNT as there are samples, evenly spread.
 moments() { local i; for ((i = 0; i < samples && i < $1; ++i)); do echo $(($1 * (2 * i + 1) / (2 * (samples < $1 ? samples : $1)) + 1)); done; }
 
@@ -86,22 +92,30 @@ for command in "${commands[@]}"; do
   microseconds=$((${EPOCHREALTIME/./} - ${started/./}))
   mv out whole
   read -r allocations writes reads <counts
-  for n in 1 20 300 $(moments "$allocations"); do
-    disturbed memory "$command" ORBIFIT_FAIL_ALLOCATION=$n
-    disturbed memory "$command" ORBIFIT_FAIL_ALLOCATION=$n+
-  done
-  for n in $(moments "$writes"); do disturbed disk "$command" ORBIFIT_FAIL_WRITE=$n; done
-  for n in $(moments "$reads"); do disturbed input "$command" ORBIFIT_END_READ=$n; done
-  for after in $(moments "$microseconds"); do
-    for signal in INT TERM; do
-      rm -rf out && mkdir out
-      # Straight from this shell, which itself ignores nothing: a background job of a script would ignore SIGINT.
-      timeout --preserve-status -s $signal "$((after / 1000000)).$(printf %06d $((after % 1000000)))" \
-        "$orbifit" $command --threads 2 >/dev/null 2>err
-      judge signal $? "$command" "SIG$signal after $after us"
+  if asked memory; then
+    for n in 1 20 300 $(moments "$allocations"); do
+      disturbed memory "$command" ORBIFIT_FAIL_ALLOCATION=$n
+      disturbed memory "$command" ORBIFIT_FAIL_ALLOCATION=$n+
     done
-  done
-  [[ $command == *" out"* ]] || continue
+  fi
+  if asked disk; then
+    for n in $(moments "$writes"); do disturbed disk "$command" ORBIFIT_FAIL_WRITE=$n; done
+  fi
+  if asked input; then
+    for n in $(moments "$reads"); do disturbed input "$command" ORBIFIT_END_READ=$n; done
+  fi
+  if asked signal; then
+    for after in $(moments "$microseconds"); do
+      for signal in INT TERM; do
+        rm -rf out && mkdir out
+        # Straight from this shell, which itself ignores nothing: a background job of a script would ignore SIGINT.
+        timeout --preserve-status -s $signal "$((after / 1000000)).$(printf %06d $((after % 1000000)))" \
+          "$orbifit" $command --threads 2 >/dev/null 2>err
+        judge signal $? "$command" "SIG$signal after $after us"
+      done
+    done
+  fi
+  asked output && [[ $command == *" out"* ]] || continue
   rm -rf out && mkdir out
   "$orbifit" ${command// out/ \/dev\/null\/out} >/dev/null 2>err
   judge output $? "$command" "no such folder"
@@ -112,7 +126,7 @@ for command in "${commands[@]}"; do
   judge output $? "$command" "a folder in the way"
 done
 
-for kind in memory disk input output signal; do
+for kind in $kinds; do
   echo "$kind: ${tried[$kind]:-0} faults, exit codes $(tr ' ' '\n' <<<"${ended[$kind]:-}" | grep . | sort -n | uniq -c | awk '{printf "%s%s: %s", s, $2, $1; s = ", "}')"
 done
 exit "$failed"
