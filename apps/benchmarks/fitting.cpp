@@ -19,6 +19,7 @@
 
 #include "benchmarks.h"
 #include "files/file.h"
+#include "fitting_shapes.h"
 #include "peers/pcl_pose.h"
 #include "registration/alignment.h"
 #include "scan/clutter.h"
@@ -41,11 +42,23 @@ struct Level {
   const char* name;
   FitLevel level;
 };
-constexpr Level kLevels[] = {
-    {"3views", FitLevel::three_views}, {"1view", FitLevel::one_view}, {"anywhere", FitLevel::anywhere}};
+constexpr Level kLevels[] = {{"3views", FitLevel::three_views},
+                             {"1view", FitLevel::one_view},
+                             {"anywhere", FitLevel::anywhere},
+                             {"shapes", FitLevel::other_shape},
+                             {"several", FitLevel::several}};
 
 constexpr double kSoftWeight = 100;  // of the symmetry's penalty against the data
 constexpr const char* kMethods[] = {"ours", "landmarks", "rigid", "free", "soft", "copied", "pcl"};
+
+bool pose_is_unknown(FitLevel level) {
+  return level == FitLevel::anywhere || level == FitLevel::several;
+}
+
+// Those of fit(), which also finds the pose.
+bool takes_several_scans(const std::string& method) {
+  return method == "ours" || method == "landmarks" || method == "free";
+}
 
 // The scan without what is far from the template as it was found.
 PointCloud own_scan(const FitCase& each, const Similarity& pose, const RunContext& context) {
@@ -137,9 +150,9 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   try {
     // All but PCL find the pose in the same way, where it is not known.
     const bool pcl = method == "pcl";
-    const bool searches = method == "ours" || by_landmarks || method == "free";
+    const bool searches = takes_several_scans(method);
     Similarity pose = each.pose;
-    if (each.level == FitLevel::anywhere && !pcl) {
+    if (pose_is_unknown(each.level) && !pcl) {
       chosen.place = searches;
       pose = Similarity{};
       if (!chosen.place) {
@@ -153,6 +166,7 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
     if (each.level == FitLevel::anywhere && !searches && !pcl) scan = own_scan(each, pose, context);
     if (method == "copied") scan = copied_scan(each, scan, pose);
     FitInput input{each.model.mesh, annotation, scan, pose};
+    for (const PointCloud& other : each.others) input.others.push_back(&other);
     if (by_landmarks) input.landmarks = spread_landmarks(each);
     const FitResult result = pcl ? placed_by_pcl(each, context) : fitted_by(method, input, chosen, context);
     row.seconds = seconds_now() - start;
@@ -200,10 +214,11 @@ int run(const FittingOptions& options, const CommandContext& given) {
     if (!asked(options.families, family.name)) continue;
     for (const Level& level : kLevels) {
       if (!asked(options.levels, level.name)) continue;
-      const FitCase each = fit_case(family, level.level, context);
+      const FitCase each = fit_case(family, level.level, context, reshaped);
       for (const char* method : kMethods) {
         if (!asked(options.methods, method)) continue;
         if (method == std::string("pcl") && level.level != FitLevel::anywhere) continue;  // the pose is known
+        if (level.level == FitLevel::several && !takes_several_scans(method)) continue;
         given.run.check();
         rows.push_back(measure(each, level.name, method, options, context));
         const FittingRow& row = rows.back();
@@ -226,7 +241,7 @@ CommandBody fitting(CLI::App& app) {
   app.add_option("--families", options->families, "Only these families")->delimiter(',')->type_name("NAME,...");
   app.add_option("--levels", options->levels, "Only these levels")
       ->delimiter(',')
-      ->check(CLI::IsMember({"3views", "1view", "anywhere"}))
+      ->check(CLI::IsMember({"3views", "1view", "anywhere", "shapes", "several"}))
       ->type_name("LEVEL,...");
   app.add_option("--methods", options->methods, "Only these methods")
       ->delimiter(',')

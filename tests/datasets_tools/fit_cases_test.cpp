@@ -17,7 +17,7 @@ TEST_P(CaseOf, TruthIsThePosedShapeAndTheScanLiesOnIt) {
   EXPECT_EQ(each.truth.faces, each.model.mesh.faces);
   const double size = diagonal(each.truth.vertices);
   const double own = diagonal(generate(family.name, family.parameters).mesh.vertices);
-  EXPECT_EQ(GetParam() == FitLevel::anywhere, std::abs(size / own - 1) > 1e-9);
+  EXPECT_EQ(GetParam() == FitLevel::anywhere, std::abs(each.pose.scale - 1) > 1e-9);
   EXPECT_NEAR(each.pose.scale * own, size, 0.75 * size) << "a turned box has another diagonal";
   EXPECT_GT(std::ranges::count(each.visible, 1), 100);
   EXPECT_GT(std::ranges::count(each.visible, 0), 100);
@@ -53,7 +53,29 @@ TEST_P(CaseOf, ASymmetricCopyIsAsGood) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, CaseOf,
-                         testing::Values(FitLevel::three_views, FitLevel::one_view, FitLevel::anywhere));
+                         testing::Values(FitLevel::three_views, FitLevel::one_view, FitLevel::anywhere,
+                                         FitLevel::other_shape, FitLevel::several));
+
+TEST(FitCases, AShapeIsChangedFurther) {
+  RunContext context;
+  const ShapeChange wider = [](const GeneratedModel& model, RunContext&) -> Points { return 2 * model.mesh.vertices; };
+  const FitCase each = fit_case(fit_families().front(), FitLevel::other_shape, context, wider);
+  const Mesh family = generate(each.name, fit_families().front().parameters).mesh;
+  EXPECT_EQ(each.truth.vertices, 2 * family.vertices);
+  EXPECT_NEAR(diagonal(each.scan.points), diagonal(each.truth.vertices), 0.05 * diagonal(each.truth.vertices));
+}
+
+TEST(FitCases, SeveralScansSeeMoreThanOne) {
+  RunContext context;
+  const FitCase several = fit_case(fit_families().front(), FitLevel::several, context);
+  const FitCase one = fit_case(fit_families().front(), FitLevel::one_view, context);
+  EXPECT_EQ(several.others.size(), 2U);
+  EXPECT_GT(std::ranges::count(several.visible, 1), std::ranges::count(one.visible, 1));
+  for (const PointCloud& scan : several.others) {
+    EXPECT_GT((scan.points.colwise().mean() - several.scan.points.colwise().mean()).norm(),
+              0.1 * diagonal(several.truth.vertices));
+  }
+}
 
 TEST(FitCases, EveryFamilyKeepsItsConnectivity) {
   EXPECT_GE(fit_families().size(), 8U);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,7 +26,9 @@ const std::vector<FitFamily>& fit_families();
 enum class FitLevel {
   three_views,  ///< in the template's frame, three views, no noise
   one_view,     ///< in the template's frame, one view, 0.2 % noise
-  anywhere      ///< any pose and scale (0.01 to 100), two views, 0.2 % noise, 5 % outliers, up to 30 % of other things
+  anywhere,     ///< any pose and scale (0.01 to 100), two views, 0.2 % noise, 5 % outliers, up to 30 % of other things
+  other_shape,  ///< as three_views, of a shape that is changed further
+  several       ///< three scans of a view each, 0.2 % noise, each turned and moved anywhere
 };
 
 /// A template, a scan of another shape and the truth.
@@ -35,12 +38,16 @@ struct FitCase {
   GeneratedModel model;  ///< the template
   Mesh truth;            ///< the shape scanned, with the template's connectivity, in the scan's frame
   PointCloud scan;
-  Similarity pose;            ///< template's frame -> scan's frame
-  std::vector<char> visible;  ///< #V: the clean scan has a point within 1 % of the diagonal of the truth's vertex
+  std::vector<PointCloud> others;  ///< more scans, each in a frame of its own
+  Similarity pose;                 ///< template's frame -> scan's frame
+  std::vector<char> visible;       ///< #V: a clean scan has a point within 1 % of the diagonal of the truth's vertex
 };
 
-/// The same seed gives the same case.
-FitCase fit_case(const FitFamily& family, FitLevel level, RunContext& context);
+/// What FitLevel::other_shape makes of the family's shape: other places of its vertices.
+using ShapeChange = std::function<Points(const GeneratedModel&, RunContext&)>;
+
+/// The same seed gives the same case. \param change  asked at FitLevel::other_shape
+FitCase fit_case(const FitFamily& family, FitLevel level, RunContext& context, const ShapeChange& change = nullptr);
 
 /// score_fit() of a fit of the case's template.
 FitScore score_fit(const FitCase& truth, const Mesh& fitted, const RunContext& context);

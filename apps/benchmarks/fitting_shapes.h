@@ -1,0 +1,13 @@
+#pragma once
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/model/run_context.h"
+
+namespace orbifit::benchmarks {
+
+/// A shape of the same symmetries that differs from a model's in more than lengths: bent, tapered and swollen by a few
+/// hundredths of the diagonal, with bulges. Its parts stay where their groups are; #V by 3, drawn by the context's
+/// seed.
+Points reshaped(const GeneratedModel& model, RunContext& context);
+
+}  // namespace orbifit::benchmarks
