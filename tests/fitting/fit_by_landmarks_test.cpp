@@ -5,6 +5,8 @@
 #include "orbifit/fitting/fit.h"
 
 #include "cases/fit_cases.h"
+#include "stage_clock.h"
+#include "start/fit_starts.h"
 
 namespace orbifit {
 namespace {
@@ -75,6 +77,30 @@ TEST_F(ChairByLandmarks, SeeksThePoseThatOneLandmarkDoesNotDetermine) {
   ASSERT_TRUE(told.converged) << told.stopped_because;
   EXPECT_FALSE(told.placements.empty());
   EXPECT_LT(told.landmarks[0].residual, 0.12);
+}
+
+// Those of another shape would put the template aside.
+TEST(Landmarks, DoNotDecideAPoseThatIsKnown) {
+  RunContext context;
+  const FitCase each = fit_case(fit_families().front(), FitLevel::one_view, context);
+  FitInput input{each.model.mesh, each.model.truth, each.scan, each.pose};
+  for (const int vertex : {20, 2000, 5000, 9000}) {
+    input.landmarks.push_back({vertex, each.truth.vertices.row(vertex).transpose()});
+  }
+  std::vector<StageTime> times;
+  StageClock clock(times);
+  FitOptions options;
+  for (const bool known : {true, false}) {
+    options.align = !known;
+    const Similarity pose = find_starts(input, options, false, context, clock).places.front().pose;
+    EXPECT_EQ(known, pose.scale == input.pose.scale && pose.linear == input.pose.linear &&
+                         pose.translation == input.pose.translation);
+  }
+  options.align = false;
+  const FitResult result = fit(input, options, context);
+  EXPECT_TRUE(result.converged) << result.stopped_because;
+  EXPECT_LT(score_fit(each, result.fitted, context).hidden, 0.001);
+  for (const LandmarkAgreement& told : result.landmarks) EXPECT_FALSE(told.left_out) << told.vertex;
 }
 
 }  // namespace

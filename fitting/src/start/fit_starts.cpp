@@ -133,13 +133,27 @@ PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const
   return std::move(*placed);
 }
 
+// A pose that is neither sought nor refined is known: landmarks then say where their places are, and nothing else.
+LandmarkConsensus said_by_landmarks(const FitInput& input, const FitOptions& options) {
+  if (options.place || options.align) {
+    return landmark_consensus(input.mesh, input.landmarks, kNearTemplate,
+                              options.fixed_scale ? std::optional(input.pose.scale) : std::nullopt);
+  }
+  LandmarkConsensus said{input.pose, true, near_targets(input.mesh, input.landmarks, input.pose, kNearTemplate), 0};
+  for (std::size_t i = 0; i < said.agrees.size(); ++i) {
+    if (said.agrees[i] == 0) continue;
+    said.largest_residual =
+        std::max(said.largest_residual, landmark_residual(input.mesh, input.landmarks[i], input.pose));
+  }
+  return said;
+}
+
 FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
                     StageClock& clock) {
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
   const MatchSurface surface(input.mesh);
-  LandmarkConsensus said = landmark_consensus(input.mesh, input.landmarks, kNearTemplate,
-                                              options.fixed_scale ? std::optional(input.pose.scale) : std::nullopt);
+  LandmarkConsensus said = said_by_landmarks(input, options);
   if (doubt_landmarks) said.pose = input.pose;
   FitStarts result;
   if (options.place && (doubt_landmarks || !said.determined) && input.handles.empty()) {

@@ -45,7 +45,9 @@ struct FitOptions {
   /// How often the subspace may be made finer, by three times the degrees of freedom, where the scan asks for it; not
   /// where `subspace` says how fine it is. >= 0
   int refinements = 2;
-  bool align = true;  ///< refine the rough pose by rigid ICP first; not where it is found or landmarks give it
+  /// Refine the rough pose by rigid ICP first; not where it is found or landmarks give it. Without this and `place` the
+  /// pose is known, and landmarks do not change it.
+  bool align = true;
 
   void validate() const;  ///< \throw UsageError naming the field, its value and the rule
 };
@@ -128,8 +130,8 @@ struct FitInput {
   const SymmetryAnnotation& annotation;
   const PointCloud& scan;
   Similarity pose;  ///< rough pose, template -> scan
-  /// Take precedence over `pose`. Those that contradict the others are left out; where the scan contradicts them all,
-  /// the pose is sought without them if FitOptions::place allows it.
+  /// Take precedence over a rough `pose`. Those that contradict the others are left out; where the scan contradicts
+  /// them all, the pose is sought without them if FitOptions::place allows it.
   std::vector<Landmark> landmarks = {};
   std::vector<Handle> handles = {};  ///< their motions give places in the template's frame posed by `pose`
   /// Of the mesh and the annotation, as FitOptions::subspace says, where it is built already; null: built by fit().
