@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # The whole pipeline on a real mesh and on a generated chair: detect, check, deform, check, scan, fit, check. Prints what
 # it finds and leaves out/index.html, which shows each step with its command and links to the files beside it.
+# ORBIFIT, where it is set, is run in place of the program that is built here.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_packages "${program_packages[@]}"
-build_release -DORBIFIT_BUILD_TESTS=OFF -DORBIFIT_BUILD_BASELINES=OFF
-orbifit=$build/apps/orbifit
+orbifit=${ORBIFIT:-$build/apps/orbifit}
+[ -n "${ORBIFIT:-}" ] || build_release -DORBIFIT_BUILD_TESTS=OFF -DORBIFIT_BUILD_BASELINES=OFF
 out=$root/out
 rm -rf "$out"
 mkdir -p "$out/models"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Builds with sanitizers and runs what they are to look at: `tests/sanitize.sh [asan-ubsan] [tsan]`, both by default, from
-# anywhere. On two cores the first takes some two hours, the second some twenty minutes; not part of CI. Ends with 1 when
-# something was reported.
+# Builds with sanitizers and runs what they are to look at: `tests/sanitize.sh [asan-ubsan] [tsan] [valgrind]`, all by
+# default, from anywhere. On two cores the first takes some two hours, the second some twenty minutes, the third, which
+# runs the demo's commands, some ten; not part of CI. Ends with 1 when something was reported.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 jobs=$(nproc)
@@ -30,6 +30,20 @@ tsan() {
   commands "$root/build/tsan/apps/orbifit"
 }
 
+# The demo, each of its commands under valgrind: errors of memory and reads of what was not written, in the libraries too.
+valgrind_demo() {
+  reports=$(mktemp -d)
+  trap 'rm -rf "$reports"' EXIT
+  (cd "$root" && cmake --preset release -Wno-dev >/dev/null)
+  cmake --build "$root/build/release" --target orbifit -j "$jobs"
+  printf '%s\n' '#!/bin/sh' "exec valgrind --quiet --error-exitcode=66 --log-file=$reports/%p \\" \
+    "  $root/build/release/apps/orbifit \"\$@\"" >"$reports/orbifit"
+  chmod +x "$reports/orbifit"
+  ORBIFIT=$reports/orbifit "$root/apps/demo.sh"
+  cat "$reports"/[0-9]*
+  ! grep -q . "$reports"/[0-9]*
+}
+
 # commands PROGRAM: each stage once, on two threads.
 commands() {
   folder=$(mktemp -d)
@@ -52,10 +66,11 @@ commands() {
   rm -rf "$folder"
 }
 
-for selection in ${*:-asan-ubsan tsan}; do
+for selection in ${*:-asan-ubsan tsan valgrind}; do
   case $selection in
     asan-ubsan) asan_ubsan ;;
     tsan) tsan ;;
-    *) echo "sanitize.sh: unknown selection '$selection' (asan-ubsan, tsan)" >&2; exit 2 ;;
+    valgrind) valgrind_demo ;;
+    *) echo "sanitize.sh: unknown selection '$selection' (asan-ubsan, tsan, valgrind)" >&2; exit 2 ;;
   esac
 done
