@@ -41,7 +41,7 @@ results() {
 
 built release
 built debug -DCMAKE_BUILD_TYPE=Debug
-built clang -DCMAKE_CXX_COMPILER=clang++-14 -DCMAKE_CXX_FLAGS=-Wno-error
+built clang -DCMAKE_CXX_COMPILER=clang++-14
 results release
 for other in debug clang; do results "$other"; done
 python3 "$root/tests/compilers/same_numbers.py" "$work/release-results" "$work/debug-results" 1e-12 && debug=0 || debug=1
