@@ -106,7 +106,6 @@ bool PointGroup::has_axis() const {
 
 bool belongs_to_continuous(const Eigen::Matrix3d& linear, const PointGroup& group, const Eigen::Vector3d& axis,
                            double angle) {
-  using Family = PointGroup::Family;
   const bool proper = linear.determinant() > 0;
   if (group.family == Family::Kh) return true;
   if (group.family == Family::K) return proper;
@@ -128,7 +127,6 @@ bool belongs_to_continuous(const Eigen::Matrix3d& linear, const PointGroup& grou
 }
 
 PointGroup finite_counterpart(const PointGroup& group, int n) {
-  using Family = PointGroup::Family;
   switch (group.family) {
     case Family::Cinfv:
       return {Family::Cnv, n};
