@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/apps/report.h"
+#include "orbifit/fitting/fit_verdict.h"
 
 #include "command.h"
 #include "fit_pictures.h"
@@ -27,6 +28,7 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"degrees of freedom", std::to_string(result.degrees_of_freedom)},
            {"overlap: share of the scan used as the template's", percent(result.overlap)},
            {"share of the scan left out although connected to that", percent(result.torn_off)},
+           {"largest connected part of the scan that the fit does not explain", percent(result.unexplained_part)},
            {"inlier ratio at 1 % of the diagonal", percent(result.inlier_ratio)},
            {"rms distance of the inliers, of the diagonal", percent(result.rms)},
            {"visible coverage: share of the surface in view that the scan has", percent(result.visible_coverage)},
@@ -169,8 +171,9 @@ nlohmann::ordered_json levels_json(const FitResult& result) {
 
 }  // namespace
 
-nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry) {
+nlohmann::ordered_json fit_to_json(const Mesh& mesh, const FitResult& result, const SymmetryReport& symmetry) {
   return {{"converged", result.converged},
+          {"verdict", fit_verdict(mesh, result)},
           {"stopped_because", result.stopped_because},
           {"pose", pose_to_json(result.pose)},
           {"other_scans", others_json(result)},
@@ -180,6 +183,8 @@ nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport
           {"resolutions", levels_json(result)},
           {"used_fraction", result.overlap},
           {"torn_off", result.torn_off},
+          {"unexplained_part", result.unexplained_part},
+          {"unexplained_at", {result.unexplained_at.x(), result.unexplained_at.y(), result.unexplained_at.z()}},
           {"inlier_fraction", result.inlier_ratio},
           {"covered", result.visible_coverage},
           {"cut_off", result.cut_off},
@@ -202,7 +207,10 @@ std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResul
                         const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run) {
   Report report;
   report.title = "Template fitted to a scan";
-  report.sections.push_back({"Fit", "", fit_pictures(mesh, scan, result, up, run), {figures(result, symmetry)}, {}});
+  std::string verdict;
+  for (const std::string& sentence : fit_verdict(mesh, result)) verdict += sentence + "\n\n";
+  report.sections.push_back(
+      {"Fit", verdict, fit_pictures(mesh, scan, result, up, run), {figures(result, symmetry)}, {}});
   if (!result.groups.empty()) {
     report.sections.push_back({"Symmetry groups and the scan",
                                "Each group is compared with a fit that is not constrained by it. The disagreement is "

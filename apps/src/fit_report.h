@@ -11,8 +11,8 @@
 
 namespace orbifit {
 
-/// Everything `fit` has to say, as `--report` writes it.
-nlohmann::ordered_json fit_to_json(const FitResult& result, const SymmetryReport& symmetry);
+/// Everything `fit` has to say, as `--report` writes it. \param mesh  the template
+nlohmann::ordered_json fit_to_json(const Mesh& mesh, const FitResult& result, const SymmetryReport& symmetry);
 
 /// The same with pictures, as `--html` writes it: see fit_pictures(). \param up  unit, the template's
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,

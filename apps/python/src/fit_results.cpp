@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include "orbifit/fitting/fit_verdict.h"
+
 #include "fits.h"
 #include "verbs.h"
 
@@ -14,6 +16,7 @@ py::dict figures_of(const FitResult& result) {
   figures["iterations"] = result.iterations.size();
   figures["overlap"] = result.overlap;
   figures["torn_off"] = result.torn_off;
+  figures["unexplained_part"] = result.unexplained_part;
   figures["inlier_ratio"] = result.inlier_ratio;
   figures["rms"] = result.rms;
   figures["visible_coverage"] = result.visible_coverage;
@@ -145,6 +148,9 @@ void define_fit_result(py::module_& module) {
       .def_property_readonly(
           "stopped_because", [](const KeptFit& kept) { return kept.result.stopped_because; }, "In words.")
       .def_property_readonly(
+          "verdict", [](const KeptFit& kept) { return fit_verdict(*kept.mesh, kept.result); },
+          "What a person should know of it, a sentence each: whether to rely on it, and what to look at.")
+      .def_property_readonly(
           "confidence", [](const KeptFit& kept) { return kept.result.confidence; }, "In [0, 1].")
       .def_property_readonly(
           "rms", [](const KeptFit& kept) { return kept.result.rms; },
@@ -163,7 +169,8 @@ void define_fit_result(py::module_& module) {
       .def_property_readonly(
           "levels", [](const KeptFit& kept) { return levels_of(kept.result); },
           "The subspaces that were tried, from coarse to fine, and what points held out of the fit say of them: root\n"
-          "mean square distances, fractions of the diagonal. One at most where `radius`, `samples` or `subspace` say how\n"
+          "mean square distances, fractions of the diagonal. One at most where `radius`, `samples` or `subspace` say "
+          "how\n"
           "fine it is.")
       .def_property_readonly(
           "groups", [](const KeptFit& kept) { return groups_of(kept.result); },

@@ -2,13 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/random.h"
+#include "geometry/point_index.h"
 #include "geometry/sampling.h"
 #include "solver/pulls.h"
 #include "symmetry/moving_surface.h"
 
 namespace orbifit {
+
+namespace {
+
+// Fills `unexplained_part` and `unexplained_at`. Points hang together over three spacings.
+void find_unexplained_part(const std::vector<int>& unexplained, const PreparedScan& scan, FitResult& result) {
+  constexpr double kReach = 3;
+  if (unexplained.empty()) return;
+  const Points points = scan.points(unexplained, Eigen::all);
+  const PointIndex index(points);
+  std::vector<char> reached(unexplained.size(), 0);
+  std::size_t most = 0;
+  for (std::size_t first = 0; first < unexplained.size(); ++first) {
+    if (reached[first] != 0) continue;
+    reached[first] = 1;
+    std::vector<int> part{static_cast<int>(first)};
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      for (const auto& near : index.within(points.row(part[i]).transpose(), kReach * scan.spacing)) {
+        char& known = reached[static_cast<std::size_t>(near.index)];
+        if (known == 0) part.push_back(near.index);
+        known = 1;
+      }
+    }
+    if (part.size() <= most) continue;
+    most = part.size();
+    result.unexplained_at = points(part, Eigen::all).colwise().mean().transpose();
+  }
+  result.unexplained_part = static_cast<double>(most) / static_cast<double>(scan.points.rows());
+}
+
+}  // namespace
 
 double pulls_rms(const FitInput& input, const FitResult& result) {
   const auto pulls = pulls_towards(input, result.pose, 1);
@@ -26,14 +58,19 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
   const MovingSurface surface(result.fitted);
   double squares = 0;
   int inliers = 0;
+  std::vector<int> unexplained;
   for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
     const double distance = surface.nearest(scan.points.row(i).transpose()).distance / size;
-    if (distance > options.inlier_distance) continue;
+    if (distance > options.inlier_distance) {
+      unexplained.push_back(static_cast<int>(i));
+      continue;
+    }
     ++inliers;
     squares += distance * distance;
   }
   result.inlier_ratio = double(inliers) / static_cast<double>(scan.points.rows());
   result.rms = inliers > 0 ? std::sqrt(squares / inliers) : 0;
+  find_unexplained_part(unexplained, scan, result);
 
   if (seen.knows_viewpoints()) {
     constexpr int kSamples = 1500;
@@ -45,7 +82,7 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
     result.visible_coverage = coverage.without_cut_off().share();
   }
   const double whole = result.overlap / (result.overlap + result.torn_off);
-  result.confidence = result.inlier_ratio * result.visible_coverage * whole;
+  result.confidence = result.inlier_ratio * result.visible_coverage * whole * (1 - result.unexplained_part);
 
   const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
   result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));

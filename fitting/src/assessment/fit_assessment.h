@@ -12,8 +12,9 @@ namespace orbifit {
 double pulls_rms(const FitInput& input, const FitResult& result);
 
 /// What the fitted surface explains of the scan, what the scan saw of it, and how far landmarks are off: fills
-/// `inlier_ratio`, `rms`, `visible_coverage`, `cut_off`, `confidence`, `seen`, `hidden_fraction` and `landmark_rms`
-/// from `fitted` and `pose`, `overlap` and `torn_off`. \param seen  of the input's scan and the points of this one
+/// `inlier_ratio`, `rms`, `visible_coverage`, `cut_off`, `confidence`, `unexplained_part`, `seen`, `hidden_fraction`
+/// and `landmark_rms` from `fitted` and `pose`, `overlap` and `torn_off`. \param seen  of the input's scan and the
+/// points of this one
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result);
 

@@ -113,7 +113,12 @@ struct FitResult {
   /// Of the fitted surface that the viewpoints have before them the share where they have nothing, neither it nor
   /// anything behind, where that is so much that points have been cut off the scan; not in `visible_coverage`.
   double cut_off = 0;
-  double confidence = 0;  ///< inlier_ratio * visible_coverage, less what was torn off, in [0, 1]
+  /// Share of the points used in the largest set of those not explained that hang together: a part that the template
+  /// lacks, or that lies elsewhere, and not noise; and its middle, in the scan's frame.
+  double unexplained_part = 0;
+  Eigen::Vector3d unexplained_at = Eigen::Vector3d::Zero();
+  /// inlier_ratio * visible_coverage, less what was torn off and once more the unexplained part, in [0, 1]
+  double confidence = 0;
   double landmark_rms =
       0;  ///< of handles and the landmarks that were not left out, fraction of the fitted mesh's diagonal
   std::vector<LandmarkAgreement> landmarks;  ///< the input's, in its order

@@ -1,0 +1,110 @@
+#include "orbifit/fitting/fit_verdict.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "symmetry/moving_surface.h"
+
+namespace orbifit {
+
+namespace {
+
+// What is worth a sentence.
+struct VerdictPolicy {
+  double well = 0.9;    // confidence: a tenth of the evidence is against it, as much as noise and outliers make of it
+  double mostly = 0.7;  // confidence: below this a person would not call it a fit
+  double part = 0.02;   // share of the scan: a handle, where an outlier is a point
+  double unseen = 0.3;  // share of the surface: more than the underside that no scanner sees
+  double tie = 0.95;    // share of its placement's score: two standard errors of shares of some 1500 points
+  double apart = 0.03;  // of the diagonal: poses that differ less are one
+};
+constexpr VerdictPolicy kPolicy;
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
+  return text;
+}
+
+std::string place(const Eigen::Vector3d& point) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.3g, %.3g, %.3g)", point.x(), point.y(), point.z());
+  return text;
+}
+
+std::string of_the_whole(const FitResult& result) {
+  if (!result.converged) return "The fit failed: " + result.stopped_because + ".";
+  const std::string explained = percent(result.inlier_ratio) + " of the points that were used lie on it";
+  if (result.confidence >= kPolicy.well) return "The fit explains the scan: " + explained + ".";
+  if (result.confidence >= kPolicy.mostly) return "The fit explains most of the scan: " + explained + ".";
+  return "The fit is doubtful: " + explained + ", and the confidence is " + percent(result.confidence) + ".";
+}
+
+// Where a pose puts the template farthest from where the fitted one has it.
+struct Difference {
+  double distance = 0;  // of the diagonal
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+};
+
+Difference difference(const MovingSurface& surface, const Mesh& mesh, const Similarity& pose, const Similarity& best) {
+  constexpr Eigen::Index kVertices = 3000;
+  const Similarity back = inverse(best);
+  Difference result;
+  const Eigen::Index step = std::max<Eigen::Index>(1, mesh.vertices.rows() / kVertices);
+  for (Eigen::Index v = 0; v < mesh.vertices.rows(); v += step) {
+    const Eigen::Vector3d there = pose(mesh.vertices.row(v).transpose());
+    const double distance = surface.nearest(back(there)).distance / diagonal(mesh.vertices);
+    if (distance > result.distance) result = {distance, there};
+  }
+  return result;
+}
+
+void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string>& told) {
+  if (result.placements.size() < 2) return;
+  const MovingSurface surface(mesh);
+  const auto from_result = [&](const Placement& each) {
+    return difference(surface, mesh, each.pose, result.pose).distance;
+  };
+  const Placement& own = *std::ranges::min_element(result.placements, {}, from_result);
+  for (const Placement& other : result.placements) {
+    if (other.score() < kPolicy.tie * own.score()) continue;
+    const Difference apart = difference(surface, mesh, other.pose, own.pose);
+    if (apart.distance < kPolicy.apart) continue;
+    told.push_back("Another pose explains the scan about as well. The two differ most around " + place(apart.at) +
+                   ": a view of that place would tell them apart.");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) {
+  std::vector<std::string> told{of_the_whole(result)};
+  if (result.unexplained_part > kPolicy.part) {
+    told.push_back("A connected part of the scan, " + percent(result.unexplained_part) +
+                   " of it, does not lie on the fit: around " + place(result.unexplained_at) +
+                   " there is something that the template lacks, or has elsewhere.");
+  }
+  if (result.torn_off > kPolicy.part) {
+    told.push_back(percent(result.torn_off) +
+                   " of the scan were left out as other things, although they hang together with what was used.");
+  }
+  if (result.visible_coverage < 1 - kPolicy.unseen / 2) {
+    told.push_back("Of the surface that should have been in view the scan lacks " +
+                   percent(1 - result.visible_coverage) + ".");
+  }
+  if (result.hidden_fraction > kPolicy.unseen) {
+    told.push_back(percent(result.hidden_fraction) +
+                   " of the surface was not seen: there symmetry and the template's shape decide.");
+  }
+  if (result.converged) add_ties(mesh, result, told);
+  for (const GroupAgreement& group : result.groups) {
+    if (!group.disagrees) continue;
+    const auto& regions = result.rest_annotation.regions;
+    const auto region = std::ranges::find(regions, group.region, &Region::id);
+    const std::string name = region != regions.end() && !region->name.empty() ? " (" + region->name + ")" : "";
+    told.push_back("The scan contradicts the symmetry of region " + std::to_string(group.region) + name + ".");
+  }
+  return told;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,99 @@
+#include "orbifit/fitting/fit_verdict.h"
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "orbifit/datasets_tools/generate.h"
+#include "orbifit/datasets_tools/virtual_scan.h"
+
+#include "base/random.h"
+
+namespace orbifit {
+namespace {
+
+bool tells(const std::vector<std::string>& verdict, const std::string& what) {
+  return std::ranges::any_of(verdict,
+                             [&](const std::string& sentence) { return sentence.find(what) != std::string::npos; });
+}
+
+class Verdict : public testing::Test {
+ protected:
+  Verdict() : model_(generate("table")) {
+    result_.converged = true;
+    result_.inlier_ratio = result_.confidence = 0.95;
+  }
+
+  std::vector<std::string> verdict() const { return fit_verdict(model_.mesh, result_); }
+
+  static Placement placement(const Similarity& pose, double inliers) {
+    Placement result;
+    result.pose = pose;
+    result.inlier_ratio = inliers;
+    result.visible_coverage = 1;
+    return result;
+  }
+
+  GeneratedModel model_;
+  FitResult result_;
+};
+
+TEST_F(Verdict, OfAGoodFitIsOneSentence) {
+  EXPECT_EQ(verdict(),
+            std::vector<std::string>{"The fit explains the scan: 95 % of the points that were used lie on it."});
+}
+
+TEST_F(Verdict, FallsWithTheConfidence) {
+  result_.confidence = 0.8;
+  EXPECT_TRUE(tells(verdict(), "most of the scan"));
+  result_.confidence = 0.5;
+  EXPECT_TRUE(tells(verdict(), "doubtful"));
+  result_.converged = false;
+  result_.stopped_because = "only 25 % of the scan is explained";
+  EXPECT_EQ(verdict().front(), "The fit failed: only 25 % of the scan is explained.");
+}
+
+TEST_F(Verdict, TellsPosesApartThatAreOthers) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  result_.placements = {placement({}, 0.95), placement({1, axis_rotation(z, std::numbers::pi), {0, 0, 0}}, 0.95)};
+  EXPECT_EQ(verdict().size(), 1U) << "the table's half-turn takes it onto itself";
+  result_.placements.push_back(
+      placement({1, axis_rotation(Eigen::Vector3d::UnitX(), std::numbers::pi), {0, 0, 0.7}}, 0.94));
+  EXPECT_TRUE(tells(verdict(), "Another pose explains the scan about as well"));
+  result_.placements.back().inlier_ratio = 0.6;
+  EXPECT_EQ(verdict().size(), 1U);
+}
+
+// A ball over the table, as far from it as things are that may be the table's.
+TEST(UnexplainedPart, LowersTheConfidenceAndIsSaidWithItsPlace) {
+  RunContext context;
+  const GeneratedModel model = generate("table");
+  PointCloud scan = virtual_scan(model.mesh, {}, context);
+  FitOptions options;
+  options.align = false;
+  const auto fitted = [&] { return fit({model.mesh, model.truth, scan, Similarity{}}, options, context); };
+  const FitResult before = fitted();
+  EXPECT_LT(before.unexplained_part, 0.01);
+  const double size = diagonal(model.mesh.vertices);
+  const Eigen::Vector3d top = model.mesh.vertices.colwise().maxCoeff();
+  const Eigen::Vector3d centre(0, 0, top.z() + 0.062 * size);
+  constexpr int kPoints = 1600;
+  const Eigen::Index first = scan.points.rows();
+  scan.points.conservativeResize(first + kPoints, 3);
+  scan.viewpoints.conservativeResize(first + kPoints, 3);
+  Random random(1, "ball");
+  for (int i = 0; i < kPoints; ++i) {
+    scan.points.row(first + i) = (centre + 0.055 * size * random.direction()).transpose();
+    scan.viewpoints.row(first + i) = scan.viewpoints.row(0);
+  }
+  const FitResult after = fitted();
+  EXPECT_GT(after.unexplained_part, 0.02);
+  EXPECT_LT(after.confidence, before.confidence - after.unexplained_part);
+  EXPECT_LT((after.unexplained_at - centre).norm(), 0.05 * size);
+  EXPECT_TRUE(tells(fit_verdict(model.mesh, after), "A connected part of the scan"));
+}
+
+}  // namespace
+}  // namespace orbifit
