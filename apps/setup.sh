@@ -22,9 +22,6 @@ test_packages=( # for the baselines, the adapters, the Python package, the tests
 fuzz_packages=( # for tests/fuzz.sh
   clang-14 libclang-rt-14-dev llvm-14
 )
-compiler_packages=( # for tests/compilers.sh: older ones do not compile the ranges of GCC 12's library
-  clang-16
-)
 mutation_packages=( # for tests/mutants.sh
   python3-clang-14
 )

@@ -4,7 +4,7 @@
 # and counts; other numbers to 1e-12 of the shape's size between the two of GCC, and to 1e-9 between GCC and Clang. Some
 # twenty minutes on two cores; not part of CI.
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
-install_packages "${program_packages[@]}" "${compiler_packages[@]}"
+install_packages "${program_packages[@]}" "${fuzz_packages[@]}"
 work=$root/build/compilers
 
 # built NAME -DNAME=VALUE ...
@@ -41,7 +41,7 @@ results() {
 
 built release
 built debug -DCMAKE_BUILD_TYPE=Debug
-built clang -DCMAKE_CXX_COMPILER=clang++-16
+built clang -DCMAKE_CXX_COMPILER=clang++-14
 results release
 for other in debug clang; do results "$other"; done
 python3 "$root/tests/compilers/same_numbers.py" "$work/release-results" "$work/debug-results" 1e-12 && debug=0 || debug=1

@@ -210,7 +210,7 @@ class Guide {
       faces.insert(faces.end(), more.begin(), more.end());
     }
     std::ranges::sort(faces);
-    faces.erase(std::ranges::unique(faces).begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     faces_ = faces;
     const SurfacePatch patch = patch_of(faces, options_.samples);
     const DirectionSet screen = hemisphere_directions(kScreenDirections);

@@ -42,7 +42,7 @@ void expect_sound(const PreparedMesh& prepared, const PartRegions& found) {
       parts.push_back(prepared.components.component_of_face[static_cast<std::size_t>(f)]);
     }
     std::ranges::sort(parts);
-    parts.erase(std::ranges::unique(parts).begin(), parts.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
     std::size_t faces = 0;
     for (const int c : parts) faces += prepared.components.faces[static_cast<std::size_t>(c)].size();
     EXPECT_EQ(faces, region.faces.size()) << "whole parts";

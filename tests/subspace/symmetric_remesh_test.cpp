@@ -110,7 +110,7 @@ SymmetryReport checked(const SymmetricRemesh& result) {
 int unmapped_triangles(const Mesh& mesh, const Region& region, const Motion& motion) {
   const PointIndex index(mesh.vertices);
   const auto rotated = [](std::array<int, 3> t) {
-    std::ranges::rotate(t, std::ranges::min_element(t));
+    std::rotate(t.begin(), std::ranges::min_element(t), t.end());
     return t;
   };
   std::set<std::array<int, 3>> triangles;

@@ -171,7 +171,7 @@ std::vector<int> index_set_from(const py::handle& values, const std::string& nam
   }
   indices = indices_from(array, name, count);
   std::ranges::sort(indices);
-  indices.erase(std::ranges::unique(indices).begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
   return indices;
 }
 

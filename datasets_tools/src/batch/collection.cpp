@@ -29,8 +29,8 @@ Collection::Collection(const fs::path& folder) : folder_(folder) {
   // Of several lines of an item the last one counts: first after the reversal.
   std::ranges::reverse(entries_);
   std::ranges::stable_sort(entries_, {}, &Entry::id);
-  const auto others = std::ranges::unique(entries_, {}, &Entry::id);
-  entries_.erase(others.begin(), others.end());
+  const auto same = [](const Entry& a, const Entry& b) { return a.id == b.id; };
+  entries_.erase(std::unique(entries_.begin(), entries_.end(), same), entries_.end());
 }
 
 Record Collection::record(std::size_t number) const {

@@ -78,8 +78,8 @@ void ResultsFile::read() {
   // The last of each id first, then alone.
   std::ranges::reverse(done_);
   std::ranges::stable_sort(done_, {}, &Done::id);
-  const auto others = std::ranges::unique(done_, {}, &Done::id);
-  done_.erase(others.begin(), others.end());
+  const auto same = [](const Done& a, const Done& b) { return a.id == b.id; };
+  done_.erase(std::unique(done_.begin(), done_.end(), same), done_.end());
 }
 
 const ResultsFile::Done* ResultsFile::find(const std::string& id) const {

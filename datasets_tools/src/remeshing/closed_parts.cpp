@@ -24,7 +24,7 @@ Corners corners_of(const Mesh& mesh, int face) {
 
 // The lowest corner first; the same turn.
 Corners rotated(Corners corners) {
-  std::ranges::rotate(corners, std::ranges::min_element(corners));
+  std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
   return corners;
 }
 

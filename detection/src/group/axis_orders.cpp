@@ -77,7 +77,7 @@ std::vector<RankedOrder> rank_orders(const SurfacePatch& patch, const std::vecto
     }
     if (share >= kMinShare) result.push_back({n, share});
   }
-  std::ranges::stable_partition(result, [](const RankedOrder& r) { return r.share >= kNearlyPerfect; });
+  std::stable_partition(result.begin(), result.end(), [](const RankedOrder& r) { return r.share >= kNearlyPerfect; });
   return result;
 }
 

@@ -129,7 +129,7 @@ std::vector<Vector3d> farthest_vertices(const SurfacePatch& patch) {
     }
   }
   std::ranges::sort(groups);
-  groups.erase(std::ranges::unique(groups).begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
   if (groups.size() > kMaxCorners) return {};
   std::vector<Vector3d> result;
   for (const int g : groups) {

@@ -185,7 +185,7 @@ std::optional<GroupPlacement> fit_to_vertices(const SurfacePatch& patch, const G
     }
   }
   std::ranges::sort(groups);
-  groups.erase(std::ranges::unique(groups).begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
   Points points(static_cast<Eigen::Index>(groups.size()), 3);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     points.row(static_cast<Eigen::Index>(i)) =

@@ -50,7 +50,7 @@ class OrbitTest {
       return true;
     });
     std::ranges::sort(images);
-    images.erase(std::ranges::unique(images).begin(), images.end());
+    images.erase(std::unique(images.begin(), images.end()), images.end());
     images.shrink_to_fit();
     return kept;
   }

@@ -243,7 +243,8 @@ class PlaneCut {
     const auto length = [&](std::size_t i, std::size_t j) {
       return (surface_.points[at(polygon[i])] - surface_.points[at(polygon[j])]).norm();
     };
-    if (polygon.size() == 4 && length(1, 3) < length(0, 2)) std::ranges::rotate(polygon, polygon.begin() + 1);
+    if (polygon.size() == 4 && length(1, 3) < length(0, 2))
+      std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) add({polygon[0], polygon[i], polygon[i + 1]}, source);
   }
 

@@ -170,8 +170,8 @@ class Sewing {
       }
     }
     const auto turn = [](Side& side, std::size_t first) {
-      std::ranges::rotate(side.points, side.points.begin() + static_cast<std::ptrdiff_t>(first));
-      std::ranges::rotate(side.line, side.line.begin() + static_cast<std::ptrdiff_t>(first));
+      std::rotate(side.points.begin(), side.points.begin() + static_cast<std::ptrdiff_t>(first), side.points.end());
+      std::rotate(side.line.begin(), side.line.begin() + static_cast<std::ptrdiff_t>(first), side.line.end());
       side.points.push_back(side.points.front());
       side.line.push_back(side.line.front());
     };

@@ -182,7 +182,7 @@ class Remeshing {
     std::vector<const std::vector<int>*> parts;
     for (const int component : components) parts.push_back(faces_of_component_[at(component)]);
     std::ranges::sort(parts);
-    parts.erase(std::ranges::unique(parts).begin(), parts.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
     std::vector<int> faces;
     for (const std::vector<int>* part : parts) faces.insert(faces.end(), part->begin(), part->end());
     std::ranges::sort(faces);
