@@ -21,7 +21,7 @@ built() {
 results() {
   local program=$work/$1/apps/orbifit out=$work/$1-results shape
   rm -rf "$out" "$work/shapes"
-  mkdir -p "$out"
+  mkdir -p "$out" "$work/shapes"
   for shape in table bar fan wheel; do
     "$work/release/apps/orbifit" generate "$shape" -o "$work/shapes/$shape" --quiet >/dev/null
     "$work/release/apps/orbifit" convert "$work/shapes/$shape/$shape.ply" "$work/shapes/$shape.obj" --quiet >/dev/null
