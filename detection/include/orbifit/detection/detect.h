@@ -55,7 +55,7 @@ struct DetectOptions {
 /// part, is left out. Named by their parts' names or by what they are, and by where; parents set. The result is the
 /// same for any number of threads. Costs O(F log F), for each region too, for meshes finer than the tolerance asks for;
 /// the search itself depends on how much shape there is at the size of the tolerance. With colours the list is made
-/// twice.
+/// once more where `broken_by_colours` is asked for.
 /// \throw InputError when the mesh has no area
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context);
 
