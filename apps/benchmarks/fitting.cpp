@@ -90,15 +90,9 @@ PointCloud copied_scan(const FitCase& each, const PointCloud& scan, const Simila
 // Vertices far from one another, and where they truly are.
 std::vector<Landmark> spread_landmarks(const FitCase& each) {
   constexpr int kLandmarks = 4;
-  const Points& rest = each.model.mesh.vertices;
-  Eigen::VectorXd nearest = (rest.rowwise() - rest.colwise().mean()).rowwise().squaredNorm();
   std::vector<Landmark> result;
-  while (result.size() < kLandmarks) {
-    Eigen::Index vertex = 0;
-    nearest.maxCoeff(&vertex);
-    if (result.empty()) nearest.setConstant(std::numeric_limits<double>::infinity());
-    nearest = nearest.cwiseMin((rest.rowwise() - rest.row(vertex)).rowwise().squaredNorm());
-    result.push_back({static_cast<int>(vertex), each.truth.vertices.row(vertex).transpose()});
+  for (const int vertex : spread_vertices(each.model.mesh.vertices, kLandmarks)) {
+    result.push_back({vertex, each.truth.vertices.row(vertex).transpose()});
   }
   return result;
 }

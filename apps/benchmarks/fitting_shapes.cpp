@@ -47,6 +47,19 @@ Handle changed(const Points& vertices, Eigen::Index at, const Change& change, do
 
 }  // namespace
 
+std::vector<int> spread_vertices(const Points& vertices, int count) {
+  Eigen::VectorXd nearest = (vertices.rowwise() - vertices.colwise().mean()).rowwise().squaredNorm();
+  std::vector<int> result;
+  while (static_cast<int>(result.size()) < count) {
+    Eigen::Index at = 0;
+    nearest.maxCoeff(&at);
+    if (result.empty()) nearest.setConstant(std::numeric_limits<double>::infinity());
+    nearest = nearest.cwiseMin((vertices.rowwise() - vertices.row(at)).rowwise().squaredNorm());
+    result.push_back(static_cast<int>(at));
+  }
+  return result;
+}
+
 Points reshaped(const GeneratedModel& model, RunContext& context) {
   constexpr int kSamples = 1200;  // finer than what is fitted
   constexpr double kAlpha = 10;
@@ -60,14 +73,9 @@ Points reshaped(const GeneratedModel& model, RunContext& context) {
   const Subspace subspace = build_subspace(model.mesh, model.truth, options, context);
   std::vector<Handle> handles;
   std::vector<Motion> motions;
-  // Far from one another and from the middle.
-  Eigen::VectorXd nearest = (rest.rowwise() - rest.colwise().mean()).rowwise().squaredNorm();
-  for (int i = 0; i < kEnds + kBulges; ++i) {
-    Eigen::Index at = 0;
-    nearest.maxCoeff(&at);
-    if (i == 0) nearest.setConstant(std::numeric_limits<double>::infinity());
-    nearest = nearest.cwiseMin((rest.rowwise() - rest.row(at)).rowwise().squaredNorm());
-    handles.push_back(changed(rest, at, i < kEnds ? kEnd : kBulge, size, random));
+  for (const int at : spread_vertices(rest, kEnds + kBulges)) {
+    const bool end = static_cast<int>(handles.size()) < kEnds;
+    handles.push_back(changed(rest, at, end ? kEnd : kBulge, size, random));
     motions.push_back(handles.back().motion);
   }
   Deformer deformer(subspace, model.mesh, {}, context);

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "orbifit/apps/report.h"
-#include "orbifit/fitting/fit_verdict.h"
 
 #include "command.h"
 #include "fit_pictures.h"
@@ -171,9 +170,10 @@ nlohmann::ordered_json levels_json(const FitResult& result) {
 
 }  // namespace
 
-nlohmann::ordered_json fit_to_json(const Mesh& mesh, const FitResult& result, const SymmetryReport& symmetry) {
+nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, const FitResult& result,
+                                   const SymmetryReport& symmetry) {
   return {{"converged", result.converged},
-          {"verdict", fit_verdict(mesh, result)},
+          {"verdict", verdict},
           {"stopped_because", result.stopped_because},
           {"pose", pose_to_json(result.pose)},
           {"other_scans", others_json(result)},
@@ -204,13 +204,14 @@ nlohmann::ordered_json fit_to_json(const Mesh& mesh, const FitResult& result, co
 }
 
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
-                        const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run) {
+                        const std::vector<std::string>& verdict, const SymmetryReport& symmetry,
+                        const Eigen::Vector3d& up, const RunContext& run) {
   Report report;
   report.title = "Template fitted to a scan";
-  std::string verdict;
-  for (const std::string& sentence : fit_verdict(mesh, result)) verdict += sentence + "\n\n";
+  std::string sentences;
+  for (const std::string& sentence : verdict) sentences += sentence + "\n\n";
   report.sections.push_back(
-      {"Fit", verdict, fit_pictures(mesh, scan, result, up, run), {figures(result, symmetry)}, {}});
+      {"Fit", sentences, fit_pictures(mesh, scan, result, up, run), {figures(result, symmetry)}, {}});
   if (!result.groups.empty()) {
     report.sections.push_back({"Symmetry groups and the scan",
                                "Each group is compared with a fit that is not constrained by it. The disagreement is "

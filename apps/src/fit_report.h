@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -11,11 +12,13 @@
 
 namespace orbifit {
 
-/// Everything `fit` has to say, as `--report` writes it. \param mesh  the template
-nlohmann::ordered_json fit_to_json(const Mesh& mesh, const FitResult& result, const SymmetryReport& symmetry);
+/// Everything `fit` has to say, as `--report` writes it. \param verdict  fit_verdict()
+nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, const FitResult& result,
+                                   const SymmetryReport& symmetry);
 
 /// The same with pictures, as `--html` writes it: see fit_pictures(). \param up  unit, the template's
 std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResult& result,
-                        const SymmetryReport& symmetry, const Eigen::Vector3d& up, const RunContext& run);
+                        const std::vector<std::string>& verdict, const SymmetryReport& symmetry,
+                        const Eigen::Vector3d& up, const RunContext& run);
 
 }  // namespace orbifit

@@ -67,7 +67,7 @@ void tell_used(const ScanArguments& arguments, const std::vector<PointCloud>& sc
               " are used (--scan-points)");
 }
 
-std::string to_text(const FitArguments& arguments, const Mesh& mesh, const FitResult& result,
+std::string to_text(const FitArguments& arguments, const std::vector<std::string>& verdict, const FitResult& result,
                     const SymmetryReport& symmetry) {
   double seconds = 0;
   for (const StageTime& time : result.times) seconds += time.seconds;
@@ -81,7 +81,7 @@ std::string to_text(const FitArguments& arguments, const Mesh& mesh, const FitRe
   text += count_of(static_cast<long long>(result.iterations.size()), "iteration") + " with " +
           count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
-  for (const std::string& sentence : fit_verdict(mesh, result)) text += sentence + "\n";
+  for (const std::string& sentence : verdict) text += sentence + "\n";
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;
     const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
@@ -201,12 +201,14 @@ int run_fit(const CLI::App& app, FitArguments& arguments, CommandContext& contex
   const FitResult result = build_and_fit(arguments, annotation, input, context.run);
   const SymmetryReport symmetry =
       symmetry_residual(mesh, result.rest_annotation, &result.fitted, CarriedMotions::moving, context.run);
+  const std::vector<std::string> verdict = fit_verdict(mesh, result);
   context.run.check();
   // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
-  if (!arguments.report.empty()) write_file(arguments.report, fit_to_json(mesh, result, symmetry).dump(2) + "\n");
+  if (!arguments.report.empty()) write_file(arguments.report, fit_to_json(verdict, result, symmetry).dump(2) + "\n");
   if (!arguments.html.empty()) {
     const Eigen::Vector3d up = picture_up(arguments.up, mesh, arguments.mesh, &annotation);
-    write_file(arguments.html, fit_to_html(mesh, joined_scans(scans, result), result, symmetry, up, context.run));
+    write_file(arguments.html,
+               fit_to_html(mesh, joined_scans(scans, result), result, verdict, symmetry, up, context.run));
   }
   require_fit(app, arguments, result);
   if (result.field_residual > kExactResidual) {
@@ -214,8 +216,8 @@ int run_fit(const CLI::App& app, FitArguments& arguments, CommandContext& contex
   }
   write_edited(arguments.output, arguments.mesh, result.fitted, context.run);
   if (!arguments.annotation_output.empty()) write_annotation(arguments.annotation_output, result.annotation);
-  print(context,
-        context.json ? fit_to_json(mesh, result, symmetry).dump(2) + "\n" : to_text(arguments, mesh, result, symmetry));
+  print(context, context.json ? fit_to_json(verdict, result, symmetry).dump(2) + "\n"
+                              : to_text(arguments, verdict, result, symmetry));
   return kDone;
 }
 
