@@ -1,8 +1,13 @@
 #include "reading.h"
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -22,6 +27,21 @@ namespace orbifit {
 
 namespace {
 
+using Eigen::Vector3d;
+
+// With the symmetry of all faces under x -> -x.
+SymmetryAnnotation mirrored(const Mesh& mesh, const char* name) {
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  GroupFrame frame = GroupFrame::Identity();
+  frame.col(2) = Vector3d::UnitX();
+  frame.col(0) = Vector3d::UnitY();
+  frame.col(1) = Vector3d::UnitZ();
+  std::vector<int> faces(static_cast<std::size_t>(mesh.faces.rows()));
+  std::iota(faces.begin(), faces.end(), 0);
+  annotation.regions.push_back(make_region(*PointGroup::parse("Cs"), Vector3d::Zero(), frame, faces, name));
+  return annotation;
+}
+
 std::string read(BadInputKind kind, const std::filesystem::path& file, const ReadingContext& context) {
   switch (kind) {
     case BadInputKind::mesh:
@@ -40,29 +60,70 @@ std::string read(BadInputKind kind, const std::filesystem::path& file, const Rea
     case BadInputKind::basis:
       return counted(read_subspace(file, context.mesh, context.annotation, RunContext{}).degrees_of_freedom(),
                      "degrees of freedom");
-    case BadInputKind::manifest:
-      return counted(static_cast<long long>(batch::Manifest::from_lines(file, batch::Shard{}).size()), "items");
+    case BadInputKind::manifest: {
+      const auto manifest = batch::Manifest::from_lines(file, batch::Shard{});
+      for (std::size_t i = 0; i < manifest.size(); ++i) batch::manifest_line(manifest.item(i));
+      return counted(static_cast<long long>(manifest.size()), "items");
+    }
   }
   throw std::logic_error("no such kind");
 }
 
 }  // namespace
 
-ReadingContext::ReadingContext() {
-  mesh = cube_of_bad_input();
-  annotation = empty_annotation(mesh, 0.005);
-  GroupFrame frame = GroupFrame::Identity();
-  frame.col(2) = Eigen::Vector3d::UnitX();
-  frame.col(0) = Eigen::Vector3d::UnitY();
-  frame.col(1) = Eigen::Vector3d::UnitZ();
-  annotation.regions.push_back(make_region(*PointGroup::parse("Cs"), Eigen::Vector3d::Zero(), frame,
-                                           {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, "cube"));
+ReadingContext::ReadingContext(Mesh shape, SymmetryAnnotation symmetry, const SubspaceOptions& options)
+    : mesh(std::move(shape)), annotation(std::move(symmetry)) {
   std::string folder = (std::filesystem::temp_directory_path() / "orbifit-reading-XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  const std::filesystem::path file = std::filesystem::path(folder) / "cube.basis";
-  write_subspace(file, build_subspace(mesh, annotation, SubspaceOptions{}, RunContext{}), mesh, annotation);
+  const std::filesystem::path file = std::filesystem::path(folder) / "whole.basis";
+  write_subspace(file, build_subspace(mesh, annotation, options, RunContext{}), mesh, annotation);
   basis = read_file(file);
   std::filesystem::remove_all(folder);
+}
+
+ReadingContext::ReadingContext()
+    : ReadingContext(cube_of_bad_input(), mirrored(cube_of_bad_input(), "cube"), SubspaceOptions{}) {}
+
+ReadingContext ReadingContext::columns() {
+  constexpr int kCorners = 12;
+  std::vector<Vector3d> vertices;
+  std::vector<Eigen::Vector3i> faces;
+  for (const double side : {-1.0, 1.0}) {
+    const int first = static_cast<int>(vertices.size());
+    for (int k = 0; k < kCorners; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kCorners;
+      for (const double height : {0.0, 2.0}) {
+        vertices.emplace_back(side * (1 + 0.4 * std::cos(angle)), 0.4 * std::sin(angle), height);
+      }
+    }
+    for (const double height : {0.0, 2.0}) vertices.emplace_back(side, 0, height);
+    for (int k = 0; k < kCorners; ++k) {
+      const int here = first + 2 * k, next = first + 2 * ((k + 1) % kCorners), caps = first + 2 * kCorners;
+      for (Eigen::Vector3i face : {Eigen::Vector3i(here, next, next + 1), Eigen::Vector3i(here, next + 1, here + 1),
+                                   Eigen::Vector3i(caps, next, here), Eigen::Vector3i(caps + 1, here + 1, next + 1)}) {
+        if (side < 0) std::swap(face[1], face[2]);
+        faces.push_back(face);
+      }
+    }
+  }
+  Mesh mesh;
+  mesh.vertices.resize(std::ssize(vertices), 3);
+  mesh.faces.resize(std::ssize(faces), 3);
+  for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices.row(v) = vertices[static_cast<std::size_t>(v)];
+  for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) mesh.faces.row(f) = faces[static_cast<std::size_t>(f)];
+  SymmetryAnnotation annotation = mirrored(mesh, "both");
+  for (const int column : {0, 1}) {
+    std::vector<int> own(static_cast<std::size_t>(4 * kCorners));
+    std::iota(own.begin(), own.end(), column * 4 * kCorners);
+    annotation.regions.push_back(make_region(*PointGroup::parse("Cinfv"), {column == 0 ? -1.0 : 1.0, 0, 1},
+                                             GroupFrame::Identity(), own, "column"));
+    annotation.regions.back().id = column + 1;
+  }
+  set_parents(annotation.regions);
+  SubspaceOptions options;
+  options.mode = GroupMode::moving;
+  options.samples = 60;
+  return {std::move(mesh), std::move(annotation), options};
 }
 
 std::string with_right_checksums(std::string basis) {

@@ -5,18 +5,23 @@
 
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
+#include "orbifit/subspace/subspace.h"
 
 #include "bad_input/bad_input.h"
 
 namespace orbifit {
 
-/// What the files beside meshes are of: the cube of bad_input(), its symmetry under x -> -x, and their basis.
+/// What the files beside meshes are of.
 struct ReadingContext {
   Mesh mesh;
   SymmetryAnnotation annotation;
   std::string basis;  ///< the bytes of a basis file
 
-  ReadingContext();
+  ReadingContext();                 ///< the cube of bad_input() and its symmetry under x -> -x, in mode floating
+  static ReadingContext columns();  ///< two round columns (Cinfv), images of one another (Cs), in mode moving
+
+ private:
+  ReadingContext(Mesh shape, SymmetryAnnotation symmetry, const SubspaceOptions& options);
 };
 
 /// Hands the file to its reader.

@@ -74,10 +74,14 @@ TEST(BadInput, EveryReaderStaysSoundOnEveryFile) {
   }
 }
 
+class FalseNumbers : public testing::TestWithParam<bool> {};
+
 // Behind the checksums: numbers of a basis that are not what was written, one by one.
-TEST(BadInput, BasesWithFalseNumbersAreReadSoundlyOrRefused) {
+TEST_P(FalseNumbers, OfABasisAreReadSoundlyOrRefused) {
   const TemporaryFolder folder;
-  const ReadingContext context;
+  const ReadingContext context = GetParam() ? ReadingContext::columns() : ReadingContext();
+  folder.write("a.basis", with_right_checksums(context.basis));
+  ASSERT_TRUE(reading_of(BadInputKind::basis, folder.file("a.basis"), context).starts_with("read: "));
   const std::vector<std::uint64_t> values{0, 1ULL << 40U, ~0ULL, 0x7ff8ULL << 48U};  // the last one as a real: none
   int refused = 0;
   int read = 0;
@@ -93,6 +97,9 @@ TEST(BadInput, BasesWithFalseNumbersAreReadSoundlyOrRefused) {
   EXPECT_GT(refused, 100);
   EXPECT_GT(read, 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(BadInput, FalseNumbers, testing::Bool(),
+                         [](const auto& instance) { return instance.param ? "Columns" : "Cube"; });
 
 TEST(BadInput, EveryRefusalNamesFileAndReason) {
   for (const auto& [name, outcome] : expected_outcomes()) {

@@ -125,6 +125,15 @@ void add_edits(BadInputs& files) {
   const std::string landmarks = R"({"landmarks": [{"vertex": 2, "target": [0, 0, 1]}]})";
   add_json_texts(files, "landmarks", BadInputKind::landmarks, landmarks);
   add(BadInputKind::landmarks, "landmarks_none", R"({"landmarks": []})");
+  add(BadInputKind::landmarks, "landmarks_whole", landmarks);
+  add(BadInputKind::landmarks, "landmarks_number", R"({"landmarks": 3})");
+  add(BadInputKind::landmarks, "landmarks_entry_word", R"({"landmarks": ["vertex"]})");
+  add(BadInputKind::landmarks, "landmarks_target_missing", R"({"landmarks": [{"vertex": 2}]})");
+  add(BadInputKind::landmarks, "landmarks_target_words", with(landmarks, "[0, 0, 1]", R"(["0", "0", "1"])"));
+  add(BadInputKind::landmarks, "landmarks_vertex_twice",
+      with(landmarks, "]}]", R"(]}, {"vertex": 2, "target": [1, 0, 1]}])"));
+  add(BadInputKind::landmarks, "landmarks_target_twice",
+      with(landmarks, "]}]", R"(]}, {"vertex": 3, "target": [0, 0, 1]}])"));
   add(BadInputKind::landmarks, "landmarks_vertex_beyond", with(landmarks, ": 2", ": 8"));
   add(BadInputKind::landmarks, "landmarks_vertex_negative", with(landmarks, ": 2", ": -1"));
   add(BadInputKind::landmarks, "landmarks_vertex_word", with(landmarks, ": 2", ": \"2\""));
@@ -133,6 +142,15 @@ void add_edits(BadInputs& files) {
 
   const std::string radii = R"({"areas": [{"centre": [0, 0, 0], "radius": 1, "factor": 0.5}], "smallest": 0.5})";
   add_json_texts(files, "radii", BadInputKind::radius_field, radii);
+  add(BadInputKind::radius_field, "radii_whole", radii);
+  add(BadInputKind::radius_field, "radii_areas_word", R"({"areas": "all"})");
+  add(BadInputKind::radius_field, "radii_area_word", R"({"areas": ["all"]})");
+  add(BadInputKind::radius_field, "radii_factor_missing", with(radii, R"(, "factor": 0.5)", ""));
+  add(BadInputKind::radius_field, "radii_centre_short", with(radii, "[0, 0, 0]", "[0, 0]"));
+  add(BadInputKind::radius_field, "radii_centre_words", with(radii, "[0, 0, 0]", R"(["0", 0, 0])"));
+  add(BadInputKind::radius_field, "radii_radius_word", with(radii, R"("radius": 1)", R"("radius": "1")"));
+  add(BadInputKind::radius_field, "radii_feature_size", R"({"feature_size": true, "gradation": 0.3})");
+  add(BadInputKind::radius_field, "radii_feature_size_word", R"({"feature_size": "yes"})");
   add(BadInputKind::radius_field, "radii_radius_0", with(radii, R"("radius": 1)", R"("radius": 0)"));
   add(BadInputKind::radius_field, "radii_factor_negative", with(radii, R"("factor": 0.5)", R"("factor": -1)"));
   add(BadInputKind::radius_field, "radii_centre_word", with(radii, "[0, 0, 0]", R"("origin")"));
@@ -164,6 +182,12 @@ void add_manifests(BadInputs& files) {
   add("scans_number", with(line, "}", R"(, "scans": 3})"));
   add("options_list", with(line, "}", R"(, "options": []})"));
   add("list", "[]\n");
+  add("all_keys",
+      with(line, "}", R"(, "scan": "a.ply", "scans": ["b.ply"], "annotation": "a.json", "options": {"seed": 3}})"));
+  add("scan_list", with(line, "}", R"(, "scan": ["a.ply"]})"));
+  add("scans_of_numbers", with(line, "}", R"(, "scans": [3]})"));
+  add("annotation_number", with(line, "}", R"(, "annotation": 3})"));
+  add("blank_lines", "\n" + line + "  \r\n" + with(line, "\"a\"", "\"b\"") + "\n");
   add("nested", std::string(100'000, '['));
 }
 

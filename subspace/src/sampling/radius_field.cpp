@@ -143,4 +143,15 @@ Eigen::VectorXd radius_field(const Mesh& mesh, const RadiusFieldOptions& options
   return radii;
 }
 
+Eigen::VectorXd relative_radii(const Mesh& mesh, const std::filesystem::path& file, const SubspaceOptions& options,
+                               const RunContext& context) {
+  constexpr double kUsualSamples = 600;
+  options.validate();
+  const double area = face_areas(mesh).sum();
+  if (!(area > 0)) throw InputError("", "mesh", "its faces have no area");
+  const double samples = options.samples > 0 ? options.samples : kUsualSamples;
+  const double base = options.radius > 0 ? options.radius : std::sqrt(area / (0.7 * samples));
+  return radius_field(mesh, read_radius_field(file, base), context) / base;
+}
+
 }  // namespace orbifit
