@@ -5,9 +5,21 @@
 #include "base/random.h"
 #include "basis/gram.h"
 #include "deformation/neighbour_sums.h"
+#include "deformation/precise_sum.h"
 
 namespace orbifit {
 namespace {
+
+// (1 + x)(1 - x) - 1 = -x^2, of which doubles keep nothing.
+TEST(PreciseSum, KeepsWhatCancels) {
+  const double x = std::ldexp(1.0, -40);
+  PreciseSum sum(-1);
+  sum.add_product(1 + x, 1 - x);
+  EXPECT_EQ(sum.value(), -x * x);
+  PreciseSum twice;
+  twice.add_product(3, sum);
+  EXPECT_EQ(twice.value(), -3 * x * x);
+}
 
 TEST(Gram, IsTheProductOfTheRows) {
   Random random(3, "rows");

@@ -6,6 +6,8 @@
 
 #include "orbifit/model/errors.h"
 
+#include "deformation/precise_sum.h"
+
 namespace orbifit {
 
 namespace {
@@ -40,6 +42,30 @@ void add_lower_gram(const SparseRows& rows, Eigen::Ref<MatrixXd> gram) {
   }
 }
 
+// rows^T (right - rows z) - hold z over all parts: what is left of the normal equations. In twice the digits, since
+// these nearly cancel along what hardly anything but `hold` decides, such as a turn about the line of two handles.
+template <class Parts>
+VectorXd left_over(const Parts& parts, const VectorXd& hold, const VectorXd& z) {
+  std::vector<PreciseSum> sums(static_cast<std::size_t>(z.size()));
+  const auto sum = [&](Eigen::Index k) -> PreciseSum& { return sums[static_cast<std::size_t>(k)]; };
+  for (Eigen::Index k = 0; k < z.size(); ++k) sum(k).add_product(-hold[k], z[k]);
+  for (const auto& part : parts) {
+    const Eigen::Index turns = part.turns.cols(), rest = z.size() - turns;
+    for (Eigen::Index row = 0; row < part.right.size(); ++row) {
+      PreciseSum left(part.right[row]);
+      for (SparseRows::InnerIterator entry(part.rows, row); entry; ++entry)
+        left.add_product(-entry.value(), z[entry.col()]);
+      for (Eigen::Index t = 0; t < turns; ++t) left.add_product(-part.turns(row, t), z[rest + t]);
+      for (SparseRows::InnerIterator entry(part.rows, row); entry; ++entry)
+        sum(entry.col()).add_product(entry.value(), left);
+      for (Eigen::Index t = 0; t < turns; ++t) sum(rest + t).add_product(part.turns(row, t), left);
+    }
+  }
+  VectorXd result(z.size());
+  for (Eigen::Index k = 0; k < z.size(); ++k) result[k] = sum(k).value();
+  return result;
+}
+
 }  // namespace
 
 SampleEnergy::SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha)
@@ -70,14 +96,16 @@ SampleEnergy::Solution SampleEnergy::solve(const Terms& terms, const Turning& tu
     side.head(rest) += part.rows.transpose() * part.right;
     side.tail(turns) += part.turns.transpose() * part.right;
   }
-  if (rest > 0) normal.diagonal().head(rest).array() += kHoldCoordinates * own.head(rest).mean();
+  VectorXd hold(rest + turns);
+  if (rest > 0) hold.head(rest).setConstant(kHoldCoordinates * own.head(rest).mean());
   if (turns > 0) {
-    const double largest = own.tail(turns).maxCoeff();
-    normal.diagonal().tail(turns) += kHoldTurns * (own.tail(turns).array() + largest + 1e-300).matrix();
+    hold.tail(turns) = kHoldTurns * (own.tail(turns).array() + own.tail(turns).maxCoeff() + 1e-300).matrix();
   }
+  normal.diagonal() += hold;
   const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
   Solution solution;
   solution.z = factor.solve(side);
+  solution.z += factor.solve(left_over(parts, hold, solution.z));
   if (!solution.z.allFinite()) throw NoResultError("the handles' system could not be factorised");
   for (const Part& part : parts) {
     solution.energy +=
