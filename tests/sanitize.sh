@@ -10,13 +10,41 @@ configure() {
   (cd "$root" && cmake --preset "$@" -Wno-dev -DORBIFIT_BUILD_TESTS=ON >/dev/null)
 }
 
-# Every test but the one that builds a program of someone else's, without sanitizers, on the installed libraries.
+# Every test but the one that builds a program of someone else's, without sanitizers, on the installed libraries. Whole
+# test programs at once: a process for each of thousands of tests would take as long as the tests.
 asan_ubsan() {
+  build=$root/build/asan-ubsan
   configure asan-ubsan -DORBIFIT_BUILD_BASELINES=ON
-  cmake --build "$root/build/asan-ubsan" -j "$jobs"
-  UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
-    ctest --test-dir "$root/build/asan-ubsan" -j "$jobs" --timeout 3600 --output-on-failure -E '^package$'
-  commands "$root/build/asan-ubsan/apps/orbifit"
+  cmake --build "$build" -j "$jobs"
+  UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
+  export UBSAN_OPTIONS
+  failed=
+  for program in $(find "$build/tests" -name '*_test' -type f -perm -u+x | sort); do
+    in_shards "$program" || failed="$failed ${program##*/}"
+  done
+  ctest --test-dir "$build" -j "$jobs" --timeout 3600 --output-on-failure -R '^[a-z_]*$' -E '^package$' || failed="$failed ctest"
+  commands "$build/apps/orbifit"
+  if [ -n "$failed" ]; then
+    echo "sanitize.sh: failed:$failed" >&2
+    exit 1
+  fi
+}
+
+# in_shards PROGRAM: all its tests, on every core.
+in_shards() {
+  echo "== ${1##*/}"
+  processes=
+  for shard in $(seq 0 $((jobs - 1))); do
+    (cd "$(dirname "$1")" && GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard "$1" --gtest_brief=1 \
+      >"$1.$shard.log" 2>&1) &
+    processes="$processes $!"
+  done
+  passed=0
+  for process in $processes; do
+    wait "$process" || passed=1
+  done
+  cat "$1".[0-9]*.log
+  return $passed
 }
 
 # Whatever runs on several threads.
@@ -66,7 +94,8 @@ commands() {
   rm -rf "$folder"
 }
 
-for selection in ${*:-asan-ubsan tsan valgrind}; do
+[ $# -gt 0 ] || set -- asan-ubsan tsan valgrind
+for selection; do
   case $selection in
     asan-ubsan) asan_ubsan ;;
     tsan) tsan ;;
