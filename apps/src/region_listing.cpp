@@ -9,6 +9,7 @@
 #include "orbifit/apps/report.h"
 #include "orbifit/model/annotation_io.h"
 
+#include "base/plural.h"
 #include "command.h"
 
 namespace orbifit {
@@ -48,10 +49,7 @@ std::size_t family_size(const std::vector<Region>& regions, std::size_t first) {
 std::string family_name(const Region& first, std::size_t count) {
   const std::size_t end = first.name.find(" 1 of " + std::to_string(count));
   if (count == 1 || end == std::string::npos) return first.name;
-  std::string name = first.name.substr(0, end);
-  const std::size_t of = name.find(" of ");
-  name.insert(of == std::string::npos ? name.size() : of, "s");
-  return std::to_string(count) + " " + name;
+  return std::to_string(count) + " " + plural(first.name.substr(0, end));
 }
 
 // One line for each set of regions that are images of one another.

@@ -10,6 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/plural.h"
 #include "geometry/surface_index.h"
 #include "surface/thresholds.h"
 
@@ -86,23 +87,19 @@ std::string shape_noun(const PreparedMesh& prepared, const std::vector<int>& fac
 
 struct Noun {
   std::string text;
-  std::string several;  // after a number
-  bool given = false;   // the file's name
+  bool given = false;  // the file's name
 };
 
 // By the file's names, or by the shape: "leg", "group of 4 x leg", "plate of door", "ring".
 Noun noun_of(const PreparedMesh& prepared, const PartNames& names, const std::vector<int>& faces,
              const Region* region) {
   const auto named = names.of(faces);
-  if (named && named->whole && named->parts == 1) return {named->text, named->text, true};
+  if (named && named->whole && named->parts == 1) return {named->text, true};
   if (named && named->whole) {
-    const std::string group = "of " + std::to_string(named->parts) + " x " + named->text;
-    return {"group " + group, "groups " + group, true};
+    return {"group of " + std::to_string(named->parts) + " x " + named->text, true};
   }
   const std::string shape = shape_noun(prepared, faces, region);
-  const std::string shapes = shape.starts_with("group") ? "groups" + shape.substr(5) : shape + "s";
-  const std::string of = named && named->parts == 1 ? " of " + named->text : "";
-  return {shape + of, shapes + of, false};
+  return {shape + (named && named->parts == 1 ? " of " + named->text : ""), false};
 }
 
 // What each region of a family is called: all by one noun and their number, unless the file gives them names of their
@@ -156,7 +153,7 @@ class Sides {
 };
 
 std::string pattern_name(const Pattern& pattern, const Noun& noun) {
-  const std::string items = std::to_string(pattern.instances.size()) + " " + noun.several;
+  const std::string items = std::to_string(pattern.instances.size()) + " " + plural(noun.text);
   switch (pattern.kind) {
     case Pattern::Kind::translation_1d:
       return "row of " + items;

@@ -10,6 +10,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "assessment/open_stretches.h"
 #include "fit_loop.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
@@ -236,6 +237,16 @@ Trial better_in_doubt(const FitInput& input, const FitOptions& options, const Ru
   return worth(other.best.result) > worth(told) + kWorthwhile ? std::move(other) : std::move(trial);
 }
 
+// A size that the scan leaves open is the template's, or chance's: the fit is the less to be relied on.
+void tell_open_size(const PlacedScan& start, const FitOptions& options, const RunContext& context, FitResult& result) {
+  if (!result.converged) return;
+  std::vector<Motion> moves;  // beyond those by which the start's scan is one
+  for (std::size_t k = 0; k < result.others.size(); ++k) moves.push_back(result.others[k] * inverse(start.others[k]));
+  result.open_stretches =
+      open_stretches(with_others_moved(start, moves), start.views->silhouette.seen(), options, context, result);
+  if (!result.open_stretches.empty()) result.confidence *= 1 - result.open_stretches.front().most();
+}
+
 // How near the fit has brought the vertices to the targets. What it says of a landmark in the end counts, not whether
 // it agreed with the template as it is: the shape may differ there. Those that are far have not counted, and are named.
 void tell_landmarks(const FitInput& input, const RunContext& context, FitResult& result) {
@@ -272,6 +283,7 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
     conclude(options, result);
     clock.finished("refinement");
   }
+  tell_open_size(trial.best.start, options, context, result);
   tell_landmarks(input, context, result);
   result.field_residual =
       worst_field_residual(result.subspace, input.mesh, result.rest_annotation, {result.q, result.basis}, context);

@@ -55,6 +55,17 @@ TEST_F(Verdict, FallsWithTheConfidence) {
   EXPECT_EQ(verdict().front(), "The fit failed: only 25 % of the scan is explained.");
 }
 
+TEST_F(Verdict, TellsWhatTheScanLeavesOpenOfTheSize) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  result_.open_stretches = {{Eigen::Matrix3d::Identity(), 0, 0.2},
+                            {z * z.transpose(), 0.05, 0.1},
+                            {Eigen::Matrix3d::Identity() - z * z.transpose(), 0.05, 0}};
+  const std::string end = " it explains the scan as well.";
+  EXPECT_EQ(verdict()[1], "Its size is open: 20 % larger" + end);
+  EXPECT_EQ(verdict()[2], "Its size along (0, 0, 1) is open: 10 % larger or 5 % smaller" + end);
+  EXPECT_EQ(verdict()[3], "Its size across (0, 0, 1) is open: 5 % smaller" + end);
+}
+
 TEST_F(Verdict, TellsPosesApartThatAreOthers) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   result_.placements = {placement({}, 0.95), placement({1, axis_rotation(z, std::numbers::pi), {0, 0, 0}}, 0.95)};

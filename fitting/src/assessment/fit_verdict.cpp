@@ -1,6 +1,7 @@
 #include "orbifit/fitting/fit_verdict.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "symmetry/moving_surface.h"
@@ -18,7 +19,7 @@ struct VerdictPolicy {
   double tie = 0.95;    // share of its placement's score: two standard errors of shares of some 1500 points
   double apart = 0.03;  // of the diagonal: poses that differ less are one
 };
-constexpr VerdictPolicy kPolicy;
+constexpr VerdictPolicy kVerdictPolicy;
 
 std::string percent(double share) {
   char text[32];
@@ -35,8 +36,8 @@ std::string place(const Eigen::Vector3d& point) {
 std::string of_the_whole(const FitResult& result) {
   if (!result.converged) return "The fit failed: " + result.stopped_because + ".";
   const std::string explained = percent(result.inlier_ratio) + " of the points that were used lie on it";
-  if (result.confidence >= kPolicy.well) return "The fit explains the scan: " + explained + ".";
-  if (result.confidence >= kPolicy.mostly) return "The fit explains most of the scan: " + explained + ".";
+  if (result.confidence >= kVerdictPolicy.well) return "The fit explains the scan: " + explained + ".";
+  if (result.confidence >= kVerdictPolicy.mostly) return "The fit explains most of the scan: " + explained + ".";
   return "The fit is doubtful: " + explained + ", and the confidence is " + percent(result.confidence) + ".";
 }
 
@@ -59,6 +60,20 @@ Difference difference(const MovingSurface& surface, const Mesh& mesh, const Simi
   return result;
 }
 
+std::string open_stretch(const OpenStretch& open) {
+  std::string by;
+  if (open.longer > 0) by = percent(open.longer) + " larger";
+  if (open.shorter > 0) by += (by.empty() ? "" : " or ") + percent(open.shorter) + " smaller";
+  const int directions = static_cast<int>(std::lround(open.along.trace()));
+  if (directions == 3) return "Its size is open: " + by + " it explains the scan as well.";
+  const Eigen::Matrix3d axis = directions == 1 ? open.along : Eigen::Matrix3d(Eigen::Matrix3d::Identity() - open.along);
+  const Eigen::Vector3d direction = axis.col(0).norm() > 0.5   ? axis.col(0)
+                                    : axis.col(1).norm() > 0.5 ? axis.col(1)
+                                                               : axis.col(2);
+  return std::string("Its size ") + (directions == 1 ? "along " : "across ") + place(direction.normalized()) +
+         " is open: " + by + " it explains the scan as well.";
+}
+
 void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string>& told) {
   if (result.placements.size() < 2) return;
   const MovingSurface surface(mesh);
@@ -67,9 +82,9 @@ void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string
   };
   const Placement& own = *std::ranges::min_element(result.placements, {}, from_result);
   for (const Placement& other : result.placements) {
-    if (other.score() < kPolicy.tie * own.score()) continue;
+    if (other.score() < kVerdictPolicy.tie * own.score()) continue;
     const Difference apart = difference(surface, mesh, other.pose, own.pose);
-    if (apart.distance < kPolicy.apart) continue;
+    if (apart.distance < kVerdictPolicy.apart) continue;
     told.push_back("Another pose explains the scan about as well. The two differ most around " + place(apart.at) +
                    ": a view of that place would tell them apart.");
   }
@@ -79,23 +94,24 @@ void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string
 
 std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) {
   std::vector<std::string> told{of_the_whole(result)};
-  if (result.unexplained_part > kPolicy.part) {
+  if (result.unexplained_part > kVerdictPolicy.part) {
     told.push_back("A connected part of the scan, " + percent(result.unexplained_part) +
                    " of it, does not lie on the fit: around " + place(result.unexplained_at) +
                    " there is something that the template lacks, or has elsewhere.");
   }
-  if (result.torn_off > kPolicy.part) {
+  if (result.torn_off > kVerdictPolicy.part) {
     told.push_back(percent(result.torn_off) +
                    " of the scan were left out as other things, although they hang together with what was used.");
   }
-  if (result.visible_coverage < 1 - kPolicy.unseen / 2) {
+  if (result.visible_coverage < 1 - kVerdictPolicy.unseen / 2) {
     told.push_back("Of the surface that should have been in view the scan lacks " +
                    percent(1 - result.visible_coverage) + ".");
   }
-  if (result.hidden_fraction > kPolicy.unseen) {
+  if (result.hidden_fraction > kVerdictPolicy.unseen) {
     told.push_back(percent(result.hidden_fraction) +
                    " of the surface was not seen: there symmetry and the template's shape decide.");
   }
+  for (const OpenStretch& open : result.open_stretches) told.push_back(open_stretch(open));
   if (result.converged) add_ties(mesh, result, told);
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -84,6 +85,13 @@ struct LandmarkAgreement {
   bool left_out = false;  ///< it contradicts the other landmarks, or the scan
 };
 
+/// A way in which a fitted shape can be stretched, and explains the scan as well.
+struct OpenStretch {
+  Eigen::Matrix3d along;  ///< projection onto the directions that are stretched, one, two or all of them; scan's frame
+  double shorter = 0, longer = 0;  ///< by up to this share, at least
+  double most() const { return std::max(shorter, longer); }
+};
+
 struct FitResult {
   Mesh fitted;                         ///< template's connectivity, scan's frame
   SymmetryAnnotation rest_annotation;  ///< the template's, as it was kept
@@ -117,7 +125,10 @@ struct FitResult {
   /// lacks, or that lies elsewhere, and not noise; and its middle, in the scan's frame.
   double unexplained_part = 0;
   Eigen::Vector3d unexplained_at = Eigen::Vector3d::Zero();
-  /// inlier_ratio * visible_coverage, less what was torn off and once more the unexplained part, in [0, 1]
+  /// What the scan leaves open of the size, the largest first.
+  std::vector<OpenStretch> open_stretches;
+  /// inlier_ratio * visible_coverage, less what was torn off, once more the unexplained part, and the largest open
+  /// stretch, in [0, 1]
   double confidence = 0;
   double landmark_rms =
       0;  ///< of handles and the landmarks that were not left out, fraction of the fitted mesh's diagonal

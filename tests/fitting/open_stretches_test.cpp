@@ -1,0 +1,127 @@
+#include "assessment/open_stretches.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d kSides(3, 2, 1);
+
+// A cuboid about the origin, six faces of 24 x 24 cells each, those of one direction together: low x, high x, low y,
+// ...
+Mesh cuboid() {
+  constexpr int kCells = 24;
+  Mesh mesh;
+  mesh.vertices.resize(6 * (kCells + 1) * (kCells + 1), 3);
+  mesh.faces.resize(6 * 2 * kCells * kCells, 3);
+  int vertex = 0, face = 0;
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const int first = vertex;
+    for (int i = 0; i <= kCells; ++i) {
+      for (int k = 0; k <= kCells; ++k) {
+        Vector3d point;
+        point[axis] = (side % 2 - 0.5) * kSides[axis];
+        point[a] = (static_cast<double>(i) / kCells - 0.5) * kSides[a];
+        point[b] = (static_cast<double>(k) / kCells - 0.5) * kSides[b];
+        mesh.vertices.row(vertex++) = point.transpose();
+      }
+    }
+    for (int i = 0; i < kCells; ++i) {
+      for (int k = 0; k < kCells; ++k) {
+        const int corner = first + i * (kCells + 1) + k, next = corner + kCells + 1;
+        const bool out = side % 2 == 1;
+        mesh.faces.row(face++) << corner, out ? next : next + 1, out ? next + 1 : next;
+        mesh.faces.row(face++) << corner, out ? next + 1 : corner + 1, out ? corner + 1 : next + 1;
+      }
+    }
+  }
+  return mesh;
+}
+
+class OpenStretches : public testing::Test {
+ protected:
+  OpenStretches() {
+    result_.fitted = cuboid();
+    std::vector<int> all(static_cast<std::size_t>(result_.fitted.faces.rows()));
+    std::iota(all.begin(), all.end(), 0);
+    result_.annotation = empty_annotation(result_.fitted, 0.005);
+    result_.annotation.regions.push_back(
+        make_region(*PointGroup::parse("D2h"), Vector3d::Zero(), GroupFrame::Identity(), all, "cuboid"));
+  }
+
+  // Of a scan of some sides, taken from a place or nobody knows whence.
+  std::vector<OpenStretch> open(const std::vector<int>& sides, const Vector3d* from = nullptr,
+                                const FitOptions& options = {}) const {
+    const Eigen::Index each = result_.fitted.vertices.rows() / 6;
+    PreparedScan scan;
+    scan.points.resize(each * std::ssize(sides), 3);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      scan.points.middleRows(each * static_cast<Eigen::Index>(i), each) =
+          result_.fitted.vertices.middleRows(each * sides[i], each);
+    }
+    scan.normals = Points::Zero(scan.points.rows(), 3);
+    scan.spacing = 1.0 / 24;
+    PointCloud cloud;
+    cloud.points = scan.points;
+    if (from != nullptr) cloud.viewpoints = from->transpose().replicate(scan.points.rows(), 1);
+    return open_stretches(scan, SeenSurface(cloud, scan.points), options, RunContext{}, result_);
+  }
+
+  static double most(const std::vector<OpenStretch>& open) { return open.empty() ? 0 : open.front().most(); }
+
+  FitResult result_;
+};
+
+TEST_F(OpenStretches, AreNoneWhereAllIsSeen) {
+  EXPECT_EQ(most(open({0, 1, 2, 3, 4, 5})), 0);
+}
+
+// Nothing says where faces end that no view limits; but they are no smaller than what was seen of them.
+TEST_F(OpenStretches, OfThreeFacesAreLongerOnesAlone) {
+  const std::vector<OpenStretch> found = open({1, 3, 5});
+  EXPECT_EQ(found.size(), 4U);
+  for (const OpenStretch& each : found) {
+    EXPECT_EQ(each.shorter, 0);
+    EXPECT_EQ(each.longer, 0.2);
+  }
+}
+
+TEST_F(OpenStretches, EndWhereTheViewpointShouldHaveSeenMore) {
+  const Vector3d from(8, 7, 6);
+  const std::vector<OpenStretch> found = open({1, 3, 5}, &from);
+  EXPECT_LT(most(found), 0.2);
+  // The longest side, of which a twentieth is more than what counts as seen beyond a point.
+  for (const OpenStretch& each : found) EXPECT_TRUE(each.along(0, 0) < 0.5 || each.most() <= 0.05);
+}
+
+TEST_F(OpenStretches, AlongOneAxisAreTold) {
+  const std::vector<OpenStretch> found = open({2, 3, 4, 5});  // a tube: open at both ends of x
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR((found[0].along * Vector3d::UnitX() - Vector3d::UnitX()).norm(), 0, 1e-6);
+  EXPECT_NEAR(found[0].along.trace(), 1, 1e-12);
+}
+
+TEST_F(OpenStretches, OfATemplateOfFixedSizeAreNotOfAllOfIt) {
+  FitOptions options;
+  options.fixed_scale = true;
+  for (const OpenStretch& each : open({1, 3, 5}, nullptr, options)) EXPECT_LT(each.along.trace(), 2.5);
+}
+
+// A group that turns two axes into one another leaves one way to stretch them.
+TEST_F(OpenStretches, KeepTheGroupOfTheWhole) {
+  Region& region = result_.annotation.regions.front();
+  region = make_region(*PointGroup::parse("Cinfv"), Vector3d::Zero(), GroupFrame::Identity(), region.faces, "round");
+  for (const OpenStretch& each : open({5})) {
+    EXPECT_NEAR((each.along * Vector3d::UnitZ() - each.along(2, 2) * Vector3d::UnitZ()).norm(), 0, 1e-6);
+    EXPECT_NEAR(each.along(0, 0), each.along(1, 1), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace orbifit
