@@ -17,7 +17,8 @@ asan_ubsan() {
   configure asan-ubsan -DORBIFIT_BUILD_BASELINES=ON
   cmake --build "$build" -j "$jobs"
   UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
-  export UBSAN_OPTIONS
+  LSAN_OPTIONS="suppressions=$root/tests/support/lsan.supp print_suppressions=0"
+  export UBSAN_OPTIONS LSAN_OPTIONS
   failed=
   for program in $(find "$build/tests" -name '*_test' -type f -perm -u+x | sort); do
     in_shards "$program" || failed="$failed ${program##*/}"
