@@ -5,7 +5,6 @@
 #include <functional>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include "base/random.h"
 #include "registration/correspondences.h"
@@ -35,8 +34,12 @@ constexpr StretchPolicy kStretchPolicy;
 // The fitted surface stretched about a point: what is asked of it is asked of the surface as it is.
 class Stretched {
  public:
-  Stretched(const MatchSurface& surface, const Vector3d& centre, const Matrix3d& stretch)
-      : surface_(surface), centre_(centre), there_(stretch), back_(stretch.inverse()) {}
+  // \param along  a projection onto what is stretched by the share, more than -1
+  Stretched(const MatchSurface& surface, const Vector3d& centre, const Matrix3d& along, double share)
+      : surface_(surface),
+        centre_(centre),
+        there_(Matrix3d::Identity() + share * along),
+        back_(Matrix3d::Identity() - share / (1 + share) * along) {}
 
   Vector3d place(const Vector3d& point) const { return centre_ + there_ * (point - centre_); }
   Vector3d normal(const Vector3d& normal) const { return (back_.transpose() * normal).normalized(); }
@@ -97,8 +100,8 @@ class Probe {
     return Eigen::SelfAdjointEigenSolver<Matrix3d>(moments).eigenvectors();
   }
 
-  Evidence evidence(const Matrix3d& stretch) const {
-    const Stretched surface(surface_, centre_, stretch);
+  Evidence evidence(const Matrix3d& along, double share) const {
+    const Stretched surface(surface_, centre_, along, share);
     Similarity move;  // of the scan
     for (int round = 0; round < kStretchPolicy.rounds; ++round) {
       PoseSystem system(size_, centre_);
@@ -160,7 +163,10 @@ std::vector<Matrix3d> directions(const SymmetryAnnotation& annotation, Index fac
   for (int i = 0; i < 3; ++i) {
     for (int k = i + 1; k < 3; ++k) {
       if (!belong_together(annotation, faces, axes.col(i), axes.col(k))) continue;
-      std::ranges::replace(set, set[k], set[i]);
+      const int joined = set[k];
+      for (int& each : set) {
+        if (each == joined) each = set[i];
+      }
     }
   }
   std::vector<Matrix3d> result;
@@ -180,14 +186,14 @@ std::vector<OpenStretch> open_stretches(const PreparedScan& scan, const SeenSurf
                                         const RunContext& context, const FitResult& result) {
   const Probe probe(scan, seen, options, context, result.fitted);
   if (probe.empty()) return {};
-  const Evidence own = probe.evidence(Matrix3d::Identity());
+  const Evidence own = probe.evidence(Matrix3d::Identity(), 0);
   const double most = own.error * (1 + kStretchPolicy.worse) + kStretchPolicy.least_error * kStretchPolicy.least_error;
   // How far it goes one way, in steps that double; 0: not at all.
   const auto open = [&](const Matrix3d& along, double sign) {
     double reached = 0;
     for (int step = 0; step <= kStretchPolicy.doublings; ++step) {
       const double share = kStretchPolicy.least * std::pow(2, step);
-      const Evidence evidence = probe.evidence(Matrix3d::Identity() + sign * share * along);
+      const Evidence evidence = probe.evidence(along, sign * share);
       if (evidence.error > most || evidence.missed > own.missed + kStretchPolicy.uncovered) break;
       reached = share;
     }

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "placement/surface_placements.h"
 #include "quiet_context.h"
 #include "registration/alignment.h"

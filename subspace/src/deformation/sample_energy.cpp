@@ -1,6 +1,8 @@
 #include "deformation/sample_energy.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
@@ -46,23 +48,24 @@ void add_lower_gram(const SparseRows& rows, Eigen::Ref<MatrixXd> gram) {
 // these nearly cancel along what hardly anything but `hold` decides, such as a turn about the line of two handles.
 template <class Parts>
 VectorXd left_over(const Parts& parts, const VectorXd& hold, const VectorXd& z) {
-  std::vector<PreciseSum> sums(static_cast<std::size_t>(z.size()));
-  const auto sum = [&](Eigen::Index k) -> PreciseSum& { return sums[static_cast<std::size_t>(k)]; };
-  for (Eigen::Index k = 0; k < z.size(); ++k) sum(k).add_product(-hold[k], z[k]);
+  std::vector<PreciseSum> sums;
+  for (Eigen::Index k = 0; k < z.size(); ++k) sums.emplace_back().add_product(-hold[k], z[k]);
+  std::vector<std::pair<Eigen::Index, double>> entries;  // of a row
   for (const auto& part : parts) {
     const Eigen::Index turns = part.turns.cols(), rest = z.size() - turns;
     for (Eigen::Index row = 0; row < part.right.size(); ++row) {
+      entries.clear();
+      for (SparseRows::InnerIterator entry(part.rows, row); entry; ++entry) {
+        entries.emplace_back(entry.col(), entry.value());
+      }
+      for (Eigen::Index t = 0; t < turns; ++t) entries.emplace_back(rest + t, part.turns(row, t));
       PreciseSum left(part.right[row]);
-      for (SparseRows::InnerIterator entry(part.rows, row); entry; ++entry)
-        left.add_product(-entry.value(), z[entry.col()]);
-      for (Eigen::Index t = 0; t < turns; ++t) left.add_product(-part.turns(row, t), z[rest + t]);
-      for (SparseRows::InnerIterator entry(part.rows, row); entry; ++entry)
-        sum(entry.col()).add_product(entry.value(), left);
-      for (Eigen::Index t = 0; t < turns; ++t) sum(rest + t).add_product(part.turns(row, t), left);
+      for (const auto& [column, value] : entries) left.add_product(-value, z[column]);
+      for (const auto& [column, value] : entries) sums[static_cast<std::size_t>(column)].add_product(value, left);
     }
   }
   VectorXd result(z.size());
-  for (Eigen::Index k = 0; k < z.size(); ++k) result[k] = sum(k).value();
+  for (Eigen::Index k = 0; k < z.size(); ++k) result[k] = sums[static_cast<std::size_t>(k)].value();
   return result;
 }
 
