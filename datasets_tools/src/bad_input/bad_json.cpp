@@ -126,7 +126,7 @@ void add_edits(BadInputs& files) {
   add_json_texts(files, "landmarks", BadInputKind::landmarks, landmarks);
   add(BadInputKind::landmarks, "landmarks_none", R"({"landmarks": []})");
   add(BadInputKind::landmarks, "landmarks_whole", landmarks);
-  add(BadInputKind::landmarks, "landmarks_number", R"({"landmarks": 3})");
+  add(BadInputKind::landmarks, "landmarks_list_number", R"({"landmarks": 3})");
   add(BadInputKind::landmarks, "landmarks_entry_word", R"({"landmarks": ["vertex"]})");
   add(BadInputKind::landmarks, "landmarks_target_missing", R"({"landmarks": [{"vertex": 2}]})");
   add(BadInputKind::landmarks, "landmarks_target_words", with(landmarks, "[0, 0, 1]", R"(["0", "0", "1"])"));
