@@ -18,6 +18,7 @@ struct VerdictPolicy {
   double unseen = 0.3;  // share of the surface: more than the underside that no scanner sees
   double tie = 0.95;    // share of its placement's score: two standard errors of shares of some 1500 points
   double apart = 0.03;  // of the diagonal: poses that differ less are one
+  int places = 3;       // of where poses differ: nobody looks at more
 };
 constexpr VerdictPolicy kVerdictPolicy;
 
@@ -60,18 +61,27 @@ Difference difference(const MovingSurface& surface, const Mesh& mesh, const Simi
   return result;
 }
 
+// "along (0, 0, 1) from 5 % smaller to 10 % larger".
 std::string open_stretch(const OpenStretch& open) {
-  std::string by;
-  if (open.longer > 0) by = percent(open.longer) + " larger";
-  if (open.shorter > 0) by += (by.empty() ? "" : " or ") + percent(open.shorter) + " smaller";
   const int directions = static_cast<int>(std::lround(open.along.trace()));
-  if (directions == 3) return "Its size is open: " + by + " it explains the scan as well.";
-  const Eigen::Matrix3d axis = directions == 1 ? open.along : Eigen::Matrix3d(Eigen::Matrix3d::Identity() - open.along);
-  const Eigen::Vector3d direction = axis.col(0).norm() > 0.5   ? axis.col(0)
-                                    : axis.col(1).norm() > 0.5 ? axis.col(1)
-                                                               : axis.col(2);
-  return std::string("Its size ") + (directions == 1 ? "along " : "across ") + place(direction.normalized()) +
-         " is open: " + by + " it explains the scan as well.";
+  std::string way = "as a whole";
+  if (directions < 3) {
+    const Eigen::Matrix3d axis =
+        directions == 1 ? open.along : Eigen::Matrix3d(Eigen::Matrix3d::Identity() - open.along);
+    Eigen::Index column = 0;
+    axis.colwise().squaredNorm().maxCoeff(&column);
+    way = (directions == 1 ? "along " : "across ") + place(axis.col(column).normalized());
+  }
+  if (open.shorter == 0) return way + " up to " + percent(open.longer) + " larger";
+  if (open.longer == 0) return way + " up to " + percent(open.shorter) + " smaller";
+  return way + " from " + percent(open.shorter) + " smaller to " + percent(open.longer) + " larger";
+}
+
+void add_open_size(const FitResult& result, std::vector<std::string>& told) {
+  std::string ways;
+  for (const OpenStretch& open : result.open_stretches) ways += (ways.empty() ? " " : ", ") + open_stretch(open);
+  if (!ways.empty())
+    told.push_back("The scan leaves its size open:" + ways + "; stretched so, it explains the scan as well.");
 }
 
 void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string>& told) {
@@ -81,13 +91,18 @@ void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string
     return difference(surface, mesh, each.pose, result.pose).distance;
   };
   const Placement& own = *std::ranges::min_element(result.placements, {}, from_result);
+  int others = 0;
+  std::string places;
   for (const Placement& other : result.placements) {
     if (other.score() < kVerdictPolicy.tie * own.score()) continue;
     const Difference apart = difference(surface, mesh, other.pose, own.pose);
     if (apart.distance < kVerdictPolicy.apart) continue;
-    told.push_back("Another pose explains the scan about as well. The two differ most around " + place(apart.at) +
-                   ": a view of that place would tell them apart.");
+    if (++others <= kVerdictPolicy.places) places += (places.empty() ? "" : ", ") + place(apart.at);
   }
+  if (others == 0) return;
+  told.push_back((others == 1 ? "Another pose explains" : std::to_string(others) + " other poses explain") +
+                 " the scan about as well. A view of where they differ most would tell them apart: around " + places +
+                 ".");
 }
 
 }  // namespace
@@ -111,7 +126,7 @@ std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) 
     told.push_back(percent(result.hidden_fraction) +
                    " of the surface was not seen: there symmetry and the template's shape decide.");
   }
-  for (const OpenStretch& open : result.open_stretches) told.push_back(open_stretch(open));
+  add_open_size(result, told);
   if (result.converged) add_ties(mesh, result, told);
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;
