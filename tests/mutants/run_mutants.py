@@ -83,21 +83,24 @@ def main():
             for number in numbers:
                 reaching[number].append((seconds, program, test))
 
+        common = os.path.commonpath([os.path.dirname(mutant[1]) for mutant in mutants])
+
         def attempt(number):
-            return killer(number, reaching[number])
+            found = killer(number, reaching[number])
+            if found is None:  # said at once: all of them may take an hour
+                _, path, line, column, name, mutant = mutants[number]
+                state = "survives" if reaching[number] else "not reached"
+                print(f"{state}: {os.path.relpath(path, common)}:{line}:{column}: {name} -> {mutant}", flush=True)
+            return found
 
         outcome = list(pool.map(attempt, range(len(mutants))))
 
     table = collections.defaultdict(lambda: [0, 0, 0])
-    common = os.path.commonpath([os.path.dirname(mutant[1]) for mutant in mutants])
-    for number, (_, path, line, column, name, mutant) in enumerate(mutants):
+    for number, (_, path, *_) in enumerate(mutants):
         row = table[os.path.relpath(os.path.dirname(path), common)]
         row[0] += 1
         row[1] += outcome[number] is not None
         row[2] += not reaching[number]
-        if outcome[number] is None:
-            state = "survives" if reaching[number] else "not reached"
-            print(f"{state}: {os.path.relpath(path, common)}:{line}:{column}: {name} -> {mutant}")
     print(f"{'folder':40} mutants killed  not reached")
     for folder, (count, killed, unreached) in sorted(table.items()):
         print(f"{folder:40} {count:7} {killed:6} {unreached:12}")
