@@ -15,6 +15,7 @@ mkdir -p "$build/seeds" "$build/found"
 "$build/tests/fuzz/write_bad_input" "$build/seeds" >/dev/null
 rm -f "$build"/seeds/large_* "$build"/seeds/shape_3000_*
 (($#)) || set -- $(cd "$build/tests/fuzz" && ls -d fuzz_* | sed 's/^fuzz_//')
+export LSAN_OPTIONS="suppressions=$root/tests/support/lsan.supp print_suppressions=0"
 jobs=$(nproc)
 each=$((seconds * jobs / $#))
 

@@ -34,18 +34,19 @@ asan_ubsan() {
 # in_shards PROGRAM: all its tests, on every core.
 in_shards() {
   echo "== ${1##*/}"
+  rm -f "$1".[0-9]*.log
   processes=
   for shard in $(seq 0 $((jobs - 1))); do
     (cd "$(dirname "$1")" && GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard "$1" --gtest_brief=1 \
       >"$1.$shard.log" 2>&1) &
     processes="$processes $!"
   done
-  passed=0
+  status=0
   for process in $processes; do
-    wait "$process" || passed=1
+    wait "$process" || status=1
   done
   cat "$1".[0-9]*.log
-  return $passed
+  return $status
 }
 
 # Whatever runs on several threads.

@@ -19,11 +19,6 @@ nlohmann::ordered_json matrix_rows(const Eigen::Matrix3d& matrix) {
   return rows;
 }
 
-// The largest.
-double open_stretch(const FitResult& result) {
-  return result.open_stretches.empty() ? 0 : result.open_stretches.front().most();
-}
-
 ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
   return {{"figure", "value"},
           {{"converged", result.converged ? "yes" : "no"},
@@ -37,7 +32,7 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
            {"rms distance of the inliers, of the diagonal", percent(result.rms)},
            {"visible coverage: share of the surface in view that the scan has", percent(result.visible_coverage)},
            {"share of the surface in view taken as cut off from the scan", percent(result.cut_off)},
-           {"size that the scan leaves open", percent(open_stretch(result))},
+           {"largest stretch that the scan leaves open", percent(result.open_stretch())},
            {"confidence, from 0 to 1", short_number(result.confidence, 2)},
            {"share of the surface that the scan did not see", percent(result.hidden_fraction)},
            {"largest symmetry residual added by the fit, of the diagonal", percent(symmetry.worst_excess)}}};
@@ -46,9 +41,7 @@ ReportTable figures(const FitResult& result, const SymmetryReport& symmetry) {
 nlohmann::ordered_json open_stretches_json(const FitResult& result) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const OpenStretch& open : result.open_stretches) {
-    nlohmann::ordered_json along = nlohmann::ordered_json::array();
-    for (int row = 0; row < 3; ++row) along.push_back({open.along(row, 0), open.along(row, 1), open.along(row, 2)});
-    list.push_back({{"along", along}, {"shorter", open.shorter}, {"longer", open.longer}});
+    list.push_back({{"along", matrix_rows(open.along)}, {"shorter", open.shorter}, {"longer", open.longer}});
   }
   return list;
 }

@@ -244,7 +244,7 @@ void tell_open_size(const PlacedScan& start, const FitOptions& options, const Ru
   for (std::size_t k = 0; k < result.others.size(); ++k) moves.push_back(result.others[k] * inverse(start.others[k]));
   result.open_stretches =
       open_stretches(with_others_moved(start, moves), start.views->silhouette.seen(), options, context, result);
-  if (!result.open_stretches.empty()) result.confidence *= 1 - result.open_stretches.front().most();
+  result.confidence *= 1 - result.open_stretch();
 }
 
 // How near the fit has brought the vertices to the targets. What it says of a landmark in the end counts, not whether

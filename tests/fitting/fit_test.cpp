@@ -140,23 +140,20 @@ TEST(Fit, IsNoLessConfidentWhereTheScanWasCutOff) {
   for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
     if (scan.points(i, 0) < middle + 0.1 * size) kept.push_back(i);
   }
-  const auto open = [](const FitResult& result) {
-    return result.open_stretches.empty() ? 0 : result.open_stretches.front().most();
-  };
   // How far the table goes on where the scan was cut is another matter.
   const auto fitted = [&] {
     FitResult result = fit({model.mesh, model.truth, scan, Similarity{}}, {}, context);
-    EXPECT_GT(result.confidence, 0.95 * (1 - open(result)));
+    EXPECT_GT(result.confidence, 0.95 * (1 - result.open_stretch()));
     return result;
   };
   const FitResult whole = fitted();
   EXPECT_EQ(whole.cut_off, 0);
-  EXPECT_LE(open(whole), 0.05);
+  EXPECT_LE(whole.open_stretch(), 0.05);
   scan.points = Points(scan.points(kept, Eigen::all));
   scan.viewpoints = Points(scan.viewpoints(kept, Eigen::all));
   const FitResult cut = fitted();
   EXPECT_GT(cut.cut_off, 0.1);
-  EXPECT_GT(open(cut), 0.05);
+  EXPECT_GT(cut.open_stretch(), 0.05);
 }
 
 // The crest of the taller back is nearer to the slat below it than to the template's crest.

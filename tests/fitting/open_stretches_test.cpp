@@ -95,6 +95,7 @@ TEST_F(OpenStretches, OfThreeFacesAreLongerOnesAlone) {
 TEST_F(OpenStretches, EndWhereTheViewpointShouldHaveSeenMore) {
   const Vector3d from(8, 7, 6);
   const std::vector<OpenStretch> found = open({1, 3, 5}, &from);
+  ASSERT_FALSE(found.empty());
   EXPECT_LT(most(found), 0.2);
   // The longest side, of which a twentieth is more than what counts as seen beyond a point.
   for (const OpenStretch& each : found) EXPECT_TRUE(each.along(0, 0) < 0.5 || each.most() <= 0.05);
@@ -110,14 +111,18 @@ TEST_F(OpenStretches, AlongOneAxisAreTold) {
 TEST_F(OpenStretches, OfATemplateOfFixedSizeAreNotOfAllOfIt) {
   FitOptions options;
   options.fixed_scale = true;
-  for (const OpenStretch& each : open({1, 3, 5}, nullptr, options)) EXPECT_LT(each.along.trace(), 2.5);
+  const std::vector<OpenStretch> found = open({1, 3, 5}, nullptr, options);
+  EXPECT_EQ(found.size(), 3U);
+  for (const OpenStretch& each : found) EXPECT_NEAR(each.along.trace(), 1, 1e-12);
 }
 
 // A group that turns two axes into one another leaves one way to stretch them.
 TEST_F(OpenStretches, KeepTheGroupOfTheWhole) {
   Region& region = result_.annotation.regions.front();
   region = make_region(*PointGroup::parse("Cinfv"), Vector3d::Zero(), GroupFrame::Identity(), region.faces, "round");
-  for (const OpenStretch& each : open({5})) {
+  const std::vector<OpenStretch> found = open({5});
+  EXPECT_EQ(found.size(), 3U);  // all of it, along the axis, across it
+  for (const OpenStretch& each : found) {
     EXPECT_NEAR((each.along * Vector3d::UnitZ() - each.along(2, 2) * Vector3d::UnitZ()).norm(), 0, 1e-6);
     EXPECT_NEAR(each.along(0, 0), each.along(1, 1), 1e-6);
   }

@@ -14,11 +14,6 @@
 #endif
 #include "scratch_file.h"
 
-// lib3mf keeps 160 bytes of libzip's for each file that it reads.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:lib3MF\nleak:libzip\n";
-}
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace orbifit;
   constexpr BadInputKind kKind = BadInputKind::FUZZED_KIND;

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 struct StretchPolicy {
   int points = 600;           // of the scan: the mean error of as many is known to a twentieth
-  int samples = 3000;         // of the surface
+  int samples = 3000;         // of the surface: legs of a tenth of its area have 300
   int rounds = 8;             // of ICP: what follows a stretch is a small motion
   double least = 0.05;        // stretch: less is what fits of noisy scans are off by
   int doublings = 2;          // of it: a fifth is as much as shapes of one kind differ
@@ -72,7 +72,7 @@ class Probe {
  public:
   Probe(const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options, const RunContext& context,
         const Mesh& fitted)
-      : scan_(scan), seen_(seen), surface_(fitted), size_(diagonal(fitted.vertices)) {
+      : scan_(scan), seen_(seen), surface_(fitted), areas_(face_areas(fitted)), size_(diagonal(fitted.vertices)) {
     const Index step = std::max<Index>(1, scan.points.rows() / kStretchPolicy.points);
     for (Index i = 0; i < scan.points.rows(); i += step) {
       if (surface_.index.within(scan.points.row(i), 2 * options.inlier_distance * size_)) points_.push_back(i);
@@ -80,22 +80,21 @@ class Probe {
     reach_ = std::max(2 * options.inlier_distance * size_, 2 * scan.spacing);
     Random random(context.seed, "stretches of a fit");
     samples_ = sample_surface(fitted, kStretchPolicy.samples, random);
-    const Eigen::VectorXd areas = face_areas(fitted);
     centre_.setZero();
-    for (Index f = 0; f < areas.size(); ++f) {
-      centre_ += areas[f] / areas.sum() * fitted.vertices(fitted.faces.row(f), Eigen::all).colwise().mean().transpose();
+    for (Index f = 0; f < areas_.size(); ++f) {
+      centre_ +=
+          areas_[f] / areas_.sum() * fitted.vertices(fitted.faces.row(f), Eigen::all).colwise().mean().transpose();
     }
   }
 
   // Those of the surface's moments of inertia.
   Matrix3d axes() const {
     const Mesh& mesh = surface_.mesh();
-    const Eigen::VectorXd areas = face_areas(mesh);
     Matrix3d moments = Matrix3d::Zero();
     for (Index f = 0; f < mesh.faces.rows(); ++f) {
       const Matrix3d corners = mesh.vertices(mesh.faces.row(f), Eigen::all).transpose().colwise() - centre_;
       const Vector3d sum = corners.rowwise().sum();
-      moments += areas[f] * (corners * corners.transpose() + sum * sum.transpose());
+      moments += areas_[f] * (corners * corners.transpose() + sum * sum.transpose());
     }
     return Eigen::SelfAdjointEigenSolver<Matrix3d>(moments).eigenvectors();
   }
@@ -136,6 +135,7 @@ class Probe {
   const PreparedScan& scan_;
   const SeenSurface& seen_;
   MatchSurface surface_;
+  Eigen::VectorXd areas_;  // of the faces
   double size_, reach_ = 0;
   std::vector<Index> points_;
   SurfaceSamples samples_;

@@ -87,8 +87,9 @@ struct LandmarkAgreement {
 
 /// A way in which a fitted shape can be stretched, and explains the scan as well.
 struct OpenStretch {
-  Eigen::Matrix3d along;  ///< projection onto the directions that are stretched, one, two or all of them; scan's frame
-  double shorter = 0, longer = 0;  ///< by up to this share, at least
+  /// Projection onto the directions that are stretched, scan's frame: of rank 1, 2 (across an axis) or 3 (all of it)
+  Eigen::Matrix3d along;
+  double shorter = 0, longer = 0;  ///< by at least this share of the length: 0, 0.05, 0.1 or 0.2
   double most() const { return std::max(shorter, longer); }
 };
 
@@ -125,8 +126,10 @@ struct FitResult {
   /// lacks, or that lies elsewhere, and not noise; and its middle, in the scan's frame.
   double unexplained_part = 0;
   Eigen::Vector3d unexplained_at = Eigen::Vector3d::Zero();
-  /// What the scan leaves open of the size, the largest first.
+  /// What the scan leaves open of the size, the largest first; not asked of a fit that failed.
   std::vector<OpenStretch> open_stretches;
+  /// The largest of them, a share; 0 for none.
+  double open_stretch() const { return open_stretches.empty() ? 0 : open_stretches.front().most(); }
   /// inlier_ratio * visible_coverage, less what was torn off, once more the unexplained part, and the largest open
   /// stretch, in [0, 1]
   double confidence = 0;
