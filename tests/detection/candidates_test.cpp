@@ -54,6 +54,17 @@ TEST(FindCandidates, SeesTheMirrorsOfABoxInAnyPose) {
   }
 }
 
+TEST(FindCandidates, SeesTheThreefoldAxesOfACubeFirst) {
+  const Mesh mesh = test::box(1, 1, 1);
+  const PreparedMesh prepared = prepare(mesh);
+  const RunContext context;
+  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 1000, 0.005, context, "test");
+  const DirectionSet set = hemisphere_directions(kScreenDirections);
+  const CandidateDirections found = find_candidates(patch, &set, context);
+  ASSERT_FALSE(found.threefold.empty());
+  EXPECT_LT(std::acos(found.threefold.front().cwiseAbs().dot(Vector3d::Ones().normalized())), 0.06);
+}
+
 TEST(FindCandidates, FarthestVerticesGiveTheAxesOfACube) {
   const Mesh mesh = test::box(1, 1, 1);
   const PreparedMesh prepared = prepare(mesh);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <ostream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -104,6 +106,57 @@ TEST(Arrange, TheOwnGroupStraightensACopy) {
   EXPECT_EQ(named(motions, &round).kind, Pattern::Kind::translation_1d);
   EXPECT_NE(named(motions).kind, Pattern::Kind::translation_1d);
 }
+
+TEST(Arrange, AScrewOfWhichPlacesAreEmpty) {
+  // No copy is one step from another that comes first: the step is half of the smallest motion, along the axis as well.
+  const Motion step = test::shift(0, 0, 0.07) * Motion::rotation({0, 0, 1}, 0.5, {1, 0, 0});
+  const Motion twice = step * step;
+  const Arrangement found = named({Motion{}, twice, twice * step, twice * twice * step});
+  ASSERT_EQ(found.kind, Pattern::Kind::screw);
+  EXPECT_LT(motion_distance(found.generators[0], step, {0, 0, 0}, 1), 1e-9);
+}
+
+TEST(Arrange, CopiesAlongAnArcThatAreTurnedAnyHowAreNone) {
+  const Vector3d centroid(0.1, 0.2, 0);
+  std::vector<Motion> copies;
+  for (int i = 0; i < 5; ++i) {
+    copies.push_back(Motion::rotation({0, 0, 1}, 0.4 * i, {1, 0, 0}) *
+                     Motion::rotation(Vector3d(1, 2, 3).normalized(), 1.1 * i * i, centroid));
+  }
+  EXPECT_EQ(named(copies).kind, Pattern::Kind::congruent);
+}
+
+struct Straightening {
+  const char* family;
+  bool vertical, horizontal, half_turn;  // whether the group has mirrors through its axis, across it, half-turns
+
+  friend void PrintTo(const Straightening& of, std::ostream* out) { *out << of.family; }
+};
+
+class Straightened : public testing::TestWithParam<Straightening> {};
+
+TEST_P(Straightened, TakesAwayWhatTheOwnGroupHas) {
+  const auto& [family, vertical, horizontal, half_turn] = GetParam();
+  const GroupPlacement own{*PointGroup::parse(family), GroupFrame::Identity(), Vector3d(0.1, 0.2, 0)};
+  const auto about = [&](double x, double y, double z) {
+    return Motion::about(Vector3d(x, y, z).asDiagonal().toDenseMatrix(), own.centre);
+  };
+  const std::vector<std::pair<Motion, bool>> elements{
+      {Motion{}, true}, {about(1, -1, 1), vertical}, {about(1, 1, -1), horizontal}, {about(1, -1, -1), half_turn}};
+  for (const auto& [element, has] : elements) {
+    const Motion copy = test::shift(0.3, 0.4, 0.5) * element * Motion::rotation({0, 0, 1}, 0.7, own.centre);
+    const double left = (straightened(copy, own).linear - Eigen::Matrix3d::Identity()).norm();
+    EXPECT_EQ(left < 1e-9, has) << element.linear;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, Straightened,
+                         testing::Values(Straightening{"Cinf", false, false, false},
+                                         Straightening{"Cinfv", true, false, false},
+                                         Straightening{"Cinfh", false, true, false},
+                                         Straightening{"Dinf", false, false, true},
+                                         Straightening{"Dinfh", true, true, true}),
+                         [](const auto& of) { return std::string(of.param.family); });
 
 // Places along an arc, of which some hold blocks that are off by a third of a step.
 struct Misplaced {
