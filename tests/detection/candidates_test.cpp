@@ -54,6 +54,19 @@ TEST(FindCandidates, SeesTheMirrorsOfABoxInAnyPose) {
   }
 }
 
+TEST(FindCandidates, FacesThatRepeatOthersSayNothing) {
+  Mesh mesh = test::box(1, 1.3, 2);
+  const Triangles once = mesh.faces;
+  mesh.faces.conservativeResize(2 * once.rows(), 3);
+  mesh.faces.bottomRows(once.rows()) = once;
+  const PreparedMesh prepared = prepare(mesh);
+  const RunContext context;
+  const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 1000, 0.005, context, "test");
+  const DirectionSet set = hemisphere_directions(500);
+  const CandidateDirections found = find_candidates(patch, &set, context);
+  EXPECT_TRUE(std::ranges::any_of(found.mirrors, [&](const Vector3d& d) { return std::abs(d.z()) > 0.99; }));
+}
+
 TEST(FindCandidates, SeesTheThreefoldAxesOfACubeFirst) {
   const Mesh mesh = test::box(1, 1, 1);
   const PreparedMesh prepared = prepare(mesh);

@@ -1,5 +1,7 @@
 #include "group/verification.h"
 
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "shapes.h"
@@ -50,6 +52,14 @@ TEST_F(VerifyBox, SameForAnyNumberOfThreads) {
   const Verification b = verify(patch_, motions, patch_.tolerance, 0, 0, three);
   EXPECT_EQ(a.kept, b.kept);
   EXPECT_EQ(a.cluster, b.cluster);
+}
+
+TEST_F(VerifyBox, AShareThatIsHopelessIsNotCountedToItsEnd) {
+  const Motion third = Motion::rotation(Eigen::Vector3d::UnitZ(), 2 * std::numbers::pi / 3, Eigen::Vector3d::Zero());
+  const double share = kept_share(patch_, third, patch_.tolerance, 0);
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(kept_share(patch_, third, patch_.tolerance, 0, 0.9), share);
+  EXPECT_EQ(kept_share(patch_, third, patch_.tolerance, 0, share), share);
 }
 
 TEST(Verify, SeesOneMissingBoltAsABlot) {
