@@ -121,7 +121,7 @@ TEST(Arrange, CopiesAlongAnArcThatAreTurnedAnyHowAreNone) {
   std::vector<Motion> copies;
   for (int i = 0; i < 5; ++i) {
     copies.push_back(Motion::rotation({0, 0, 1}, 0.4 * i, {1, 0, 0}) *
-                     Motion::rotation(Vector3d(1, 2, 3).normalized(), 1.1 * i * i, centroid));
+                     Motion::rotation(Vector3d(1, 2, 3).normalized(), 1.1 * i * (i - 1), centroid));
   }
   EXPECT_EQ(named(copies).kind, Pattern::Kind::congruent);
 }
