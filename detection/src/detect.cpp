@@ -44,6 +44,7 @@
 #include "search/revolution_regions.h"
 #include "support/found_region.h"
 #include "support/own_group.h"
+#include "support/trimmed_regions.h"
 #include "surface/components.h"
 #include "surface/repeated_parts.h"
 #include "surface/segments.h"
@@ -515,6 +516,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   drop_cut_discs(prepared, options.tolerance, context, found.regions, options.explanation);
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
+  trim_regions(prepared, options.tolerance, context, found.regions, options.explanation);
   const auto late = [&] { return spent(options, start, 1); };
   if (!late()) {
     const PartRegionOptions parts{options.tolerance, kMinShare, false, options.explanation, late, {}};

@@ -1,0 +1,158 @@
+#include "support/trimmed_regions.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "group/verification.h"
+#include "surface/face_points.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kSamples = 1000;
+constexpr double kMostTrimmed = 0.1;  // of a region's area: as much as later stages may spoil
+
+class Trimmer {
+ public:
+  /// \param motions  the group's elements but the identity
+  Trimmer(const PreparedMesh& prepared, double tolerance, const std::vector<Motion>& motions, const RunContext& context,
+          std::vector<int> faces)
+      : prepared_(prepared),
+        tolerance_(tolerance),
+        motions_(motions),
+        context_(context),
+        faces_(std::move(faces)),
+        in_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0) {
+    for (const int face : faces_) in_[static_cast<std::size_t>(face)] = 1;
+  }
+
+  // The faces that stay; nothing where too many would go. Faces go in patches that begin at the border, at those that
+  // are suspected, and where images lay on faces that went.
+  std::optional<std::vector<int>> run(const std::vector<int>& suspects) {
+    const double area = area_of(prepared_, faces_);
+    std::vector<int> asked = suspects;
+    for (const int face : faces_) {
+      if (at_border(face)) asked.push_back(face);
+    }
+    while (true) {
+      const SurfaceIndex rest = prepared_.index->part(faces_);
+      const std::vector<int> gone = leaving(rest, std::move(asked));
+      if (gone.empty()) return faces_;
+      for (const int face : gone) in_[static_cast<std::size_t>(face)] = 0;
+      std::erase_if(faces_, [&](int face) { return in_[static_cast<std::size_t>(face)] == 0; });
+      if (faces_.empty() || area_of(prepared_, faces_) < (1 - kMostTrimmed) * area) return std::nullopt;
+      asked = those_that_lose(gone);
+    }
+  }
+
+ private:
+  template <typename Look>
+  void for_neighbours(int face, const Look& look) const {
+    for (int k = 0; k < 3; ++k) {
+      const auto corner = static_cast<std::size_t>(prepared_.mesh.faces(face, k));
+      const auto vertex = static_cast<std::size_t>(prepared_.weld.group_of_vertex[corner]);
+      for (const int other : prepared_.faces_of_vertex[vertex]) look(other);
+    }
+  }
+
+  bool at_border(int face) const {
+    bool border = false;
+    for_neighbours(face, [&](int other) { border = border || in_[static_cast<std::size_t>(other)] == 0; });
+    return border;
+  }
+
+  bool stays(const SurfaceIndex& rest, int face) const {
+    std::array<Vector3d, 4> points{face_centroid(prepared_, face)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      points[k + 1] = prepared_.mesh.vertices.row(prepared_.mesh.faces(face, static_cast<Eigen::Index>(k)));
+    }
+    return std::ranges::all_of(motions_, [&](const Motion& motion) {
+      return std::ranges::all_of(points, [&](const Vector3d& p) { return rest.within(motion(p), tolerance_); });
+    });
+  }
+
+  // Of those that are asked, and around those that go, the faces that some element takes away from the rest.
+  std::vector<int> leaving(const SurfaceIndex& rest, std::vector<int> asked) const {
+    std::vector<char> seen(in_.size(), 0);
+    std::vector<int> gone;
+    while (!asked.empty()) {
+      std::erase_if(asked, [&](int face) {
+        return in_[static_cast<std::size_t>(face)] == 0 || std::exchange(seen[static_cast<std::size_t>(face)], 1) != 0;
+      });
+      std::vector<char> kept(asked.size(), 0);
+      parallel_for(context_, asked.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (i % 256 == 0) context_.check();
+          kept[i] = stays(rest, asked[i]) ? 1 : 0;
+        }
+      });
+      std::vector<int> around;
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        if (kept[i] != 0) continue;
+        gone.push_back(asked[i]);
+        for_neighbours(asked[i], [&](int other) { around.push_back(other); });
+      }
+      asked = std::move(around);
+    }
+    return gone;
+  }
+
+  // Faces that lay on one that is gone: the nearest to its images, and its own neighbours.
+  std::vector<int> those_that_lose(const std::vector<int>& gone) const {
+    const SurfaceIndex rest = prepared_.index->part(faces_);
+    std::vector<int> nearest(gone.size() * motions_.size(), -1);
+    parallel_for(context_, gone.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i % 256 == 0) context_.check();
+        const Vector3d centroid = face_centroid(prepared_, gone[i]);
+        for (std::size_t m = 0; m < motions_.size(); ++m) {
+          nearest[i * motions_.size() + m] = rest.nearest(motions_[m](centroid), 2 * tolerance_).face;
+        }
+      }
+    });
+    std::erase(nearest, -1);
+    for (const int face : gone) for_neighbours(face, [&](int other) { nearest.push_back(other); });
+    return nearest;
+  }
+
+  const PreparedMesh& prepared_;
+  double tolerance_;
+  const std::vector<Motion>& motions_;
+  const RunContext& context_;
+  std::vector<int> faces_;  // that are left, ascending
+  std::vector<char> in_;    // by face of the mesh: whether it is left
+};
+
+}  // namespace
+
+void trim_regions(const PreparedMesh& prepared, double tolerance, const RunContext& context,
+                  std::vector<FoundRegion>& regions, Explanation* explanation) {
+  for (FoundRegion& region : regions) {
+    const GroupPlacement& placement = region.placement;
+    if (placement.group.continuous()) continue;
+    const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "residual");
+    const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    if (measure_residual(patch, motions, context).max <= tolerance) continue;
+    std::optional<std::vector<int>> left =
+        Trimmer(prepared, tolerance, motions, context, region.faces).run(patch.samples.faces);
+    if (explanation != nullptr) {
+      explanation->notes.push_back(
+          {"trimming", placement.group.symbol() + " on " + region.name, true,
+           left ? std::to_string(region.faces.size() - left->size()) + " faces without an image go"
+                : "more than a tenth would go; kept as it is"});
+    }
+    if (!left) continue;
+    region.faces = std::move(*left);
+    region.area = area_of(prepared, region.faces);
+    region.residual.reset();
+  }
+}
+
+}  // namespace orbifit

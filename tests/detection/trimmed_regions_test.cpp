@@ -1,0 +1,127 @@
+#include "support/trimmed_regions.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "group/verification.h"
+#include "shapes.h"
+
+namespace orbifit {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kCells = 80;           // along each side of a plate
+constexpr double kTolerance = 0.01;  // of the diagonal: more than an edge
+
+// A plate z = 0 of kCells by kCells squares, raised where `height` says.
+template <typename Height>
+Mesh plate(const Height& height) {
+  Mesh mesh;
+  mesh.vertices.resize((kCells + 1) * (kCells + 1), 3);
+  for (int i = 0; i <= kCells; ++i) {
+    for (int j = 0; j <= kCells; ++j) {
+      const double x = 2.0 * i / kCells - 1;
+      const double y = 2.0 * j / kCells - 1;
+      mesh.vertices.row(i * (kCells + 1) + j) << x, y, height(x, y);
+    }
+  }
+  mesh.faces.resize(2 * kCells * kCells, 3);
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const int corner = i * (kCells + 1) + j;
+      mesh.faces.row(2 * (i * kCells + j)) << corner, corner + kCells + 1, corner + kCells + 2;
+      mesh.faces.row(2 * (i * kCells + j) + 1) << corner, corner + kCells + 2, corner + 1;
+    }
+  }
+  return mesh;
+}
+
+bool on_bump(double x, double y) {
+  return std::hypot(x - 0.4, y - 0.3) < 0.12;
+}
+
+FoundRegion region_of(const PreparedMesh& prepared, const char* symbol, std::vector<int> faces) {
+  FoundRegion region;
+  region.placement = {*PointGroup::parse(symbol), GroupFrame::Identity(), Vector3d::Zero()};
+  region.faces = std::move(faces);
+  region.area = area_of(prepared, region.faces);
+  region.residual = Residual{1, 1};
+  return region;
+}
+
+class TrimmedRegions : public testing::TestWithParam<const char*> {};
+
+TEST_P(TrimmedRegions, LoseWhatHasNoImageAndNoMore) {
+  // The plate has every such group but for one bump, which lies on none of their axes and planes.
+  const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
+  PreparedMesh prepared = prepare(mesh);
+  const Vector3d centre = inverse(prepared.input_of_normalised)(Vector3d::Zero());
+  std::vector<FoundRegion> regions{region_of(prepared, GetParam(), test::all_faces(mesh))};
+  regions[0].placement.centre = centre;
+  const std::vector<Motion> motions =
+      judged_motions(regions[0].placement.group, regions[0].placement.frame, regions[0].placement.centre);
+  trim_regions(prepared, kTolerance, RunContext{}, regions);
+  const std::vector<int>& left = regions[0].faces;
+  ASSERT_LT(left.size(), static_cast<std::size_t>(mesh.faces.rows()));
+  EXPECT_FALSE(regions[0].residual);
+  EXPECT_EQ(regions[0].area, area_of(prepared, left));
+  const SurfaceIndex surface(prepared.mesh, left);
+  for (const int face : left) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d corner = prepared.mesh.vertices.row(mesh.faces(face, k));
+      for (const Motion& motion : motions) EXPECT_TRUE(surface.within(motion(corner), kTolerance));
+    }
+  }
+  // What goes lies on the bump, or within four edges of it or of one of its images.
+  std::vector<int> gone;
+  std::ranges::set_difference(test::all_faces(mesh), left, std::back_inserter(gone));
+  for (const int face : gone) {
+    const Vector3d centroid = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
+    double nearest = (centroid.head<2>() - Eigen::Vector2d(0.4, 0.3)).norm();
+    for (const Motion& motion : motions) {
+      nearest = std::min(nearest, ((motion.linear * centroid).head<2>() - Eigen::Vector2d(0.4, 0.3)).norm());
+    }
+    EXPECT_LT(nearest, 0.05 + 4 * 2.0 / kCells) << centroid.transpose();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Groups, TrimmedRegions, testing::Values("C2", "C2v", "C4", "D4"));
+
+TEST(TrimRegions, LeaveAloneWhatIsExact) {
+  const Mesh mesh = plate([](double, double) { return 0.0; });
+  const PreparedMesh prepared = prepare(mesh);
+  std::vector<FoundRegion> regions{region_of(prepared, "C4v", test::all_faces(mesh))};
+  trim_regions(prepared, kTolerance, RunContext{}, regions);
+  EXPECT_EQ(regions[0].faces, test::all_faces(mesh));
+  EXPECT_TRUE(regions[0].residual);
+}
+
+TEST(TrimRegions, LeaveAloneWhatWouldLoseMoreThanATenth) {
+  // A quarter of the plate is raised: of C4 nothing would be left there or opposite.
+  const Mesh mesh = plate([](double x, double y) { return x > 0 && y > 0 ? 0.1 : 0.0; });
+  const PreparedMesh prepared = prepare(mesh);
+  std::vector<FoundRegion> regions{region_of(prepared, "C4", test::all_faces(mesh))};
+  Explanation explanation;
+  trim_regions(prepared, kTolerance, RunContext{}, regions, &explanation);
+  EXPECT_EQ(regions[0].faces, test::all_faces(mesh));
+  ASSERT_EQ(explanation.notes.size(), 1U);
+}
+
+TEST(TrimRegions, SameForAnyNumberOfThreads) {
+  const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
+  const PreparedMesh prepared = prepare(mesh);
+  RunContext three;
+  three.threads = 3;
+  std::vector<FoundRegion> one{region_of(prepared, "C4v", test::all_faces(mesh))};
+  std::vector<FoundRegion> other = one;
+  trim_regions(prepared, kTolerance, RunContext{}, one);
+  trim_regions(prepared, kTolerance, three, other);
+  EXPECT_EQ(one[0].faces, other[0].faces);
+}
+
+}  // namespace
+}  // namespace orbifit
