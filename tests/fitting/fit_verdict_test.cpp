@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -60,10 +61,39 @@ TEST_F(Verdict, TellsWhatTheScanLeavesOpenOfTheSize) {
   result_.open_stretches = {{Eigen::Matrix3d::Identity(), 0, 0.2},
                             {z * z.transpose(), 0.05, 0.1},
                             {Eigen::Matrix3d::Identity() - z * z.transpose(), 0.05, 0}};
+  result_.fitted = model_.mesh;
+  result_.fitted.vertices.col(2) *= 5;  // taller than wide
   EXPECT_EQ(verdict()[1],
-            "The scan leaves its size open: as a whole up to 20 % larger, along (0, 0, 1) from 5 % smaller to 10 % "
-            "larger, across (0, 0, 1) up to 5 % smaller; stretched so, it explains the scan as well.");
+            "The scan leaves the size open: all of it up to 20 % larger; its length, along (0, 0, 1), from 5 % smaller "
+            "to 10 % larger; its girth, across (0, 0, 1), up to 5 % smaller. Stretched so, it explains the scan as "
+            "well.");
   EXPECT_EQ(verdict().size(), 2U);
+}
+
+TEST_F(Verdict, CallsDimensionsByTheirRank) {
+  result_.fitted = model_.mesh;
+  result_.fitted.vertices = model_.mesh.vertices * Eigen::Vector3d(5, 1, 0.05).asDiagonal();
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  for (const auto& [axis, name] :
+       {std::pair{0, "its length, "}, std::pair{1, "its width, "}, std::pair{2, "its thickness, "}}) {
+    result_.open_stretches = {{axes.col(axis) * axes.col(axis).transpose(), 0, 0.1}};
+    EXPECT_TRUE(tells(verdict(), name)) << verdict()[1];
+  }
+}
+
+TEST_F(Verdict, TellsWhichGroupsTheScanContradicts) {
+  GroupAgreement group;
+  group.disagrees = true;
+  group.disagreement = 0.02;
+  group.held = 0.01;
+  group.free = 0.002;
+  result_.groups = {group};
+  const std::string sentence =
+      "The scan contradicts the symmetry of region 0: fitted without it, places that it takes to one another differ by "
+      "2 % of the diagonal, and the scan lies at 0.2 % in place of 1 %";
+  EXPECT_EQ(verdict()[1], sentence + ".");
+  result_.dropped = {0};
+  EXPECT_EQ(verdict()[1], sentence + "; it was dropped.");
 }
 
 TEST_F(Verdict, TellsPosesApartThatAreOthers) {

@@ -82,13 +82,6 @@ std::string to_text(const FitArguments& arguments, const std::vector<std::string
           count_of(result.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " in " +
           short_number(seconds, 3) + " s; " + result.stopped_because + "\n";
   for (const std::string& sentence : verdict) text += sentence + "\n";
-  for (const GroupAgreement& group : result.groups) {
-    if (!group.disagrees) continue;
-    const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
-    text += "region " + std::to_string(group.region) + ": an unconstrained fit contradicts its symmetry by " +
-            percent(group.disagreement) + " of the diagonal (rms " + percent(group.held) + ", without the group " +
-            percent(group.free) + (left_out ? "); dropped\n" : ")\n");
-  }
   return text;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <numbers>
 
 #include "symmetry/moving_surface.h"
 
@@ -61,16 +63,37 @@ Difference difference(const MovingSurface& surface, const Mesh& mesh, const Simi
   return result;
 }
 
-// "along (0, 0, 1) from 5 % smaller to 10 % larger".
-std::string open_stretch(const OpenStretch& open) {
+// What people call a dimension of a shape: by its rank among those across it.
+std::string dimension(const Mesh& shape, const Eigen::Vector3d& axis) {
+  constexpr int kDirections = 12;  // across it: a box's other two sides to 4 % of their ratio
+  const auto extent = [&](const Eigen::Vector3d& direction) {
+    const Eigen::VectorXd along = shape.vertices * direction;
+    return along.maxCoeff() - along.minCoeff();
+  };
+  const Eigen::Vector3d side = axis.unitOrthogonal();
+  const double own = extent(axis);
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double across = extent(axis_rotation(axis, std::numbers::pi * k / kDirections) * side);
+    least = std::min(least, across);
+    most = std::max(most, across);
+  }
+  return own >= most ? "length" : own <= least ? "thickness" : "width";
+}
+
+// "its length, along (0, 0, 1), from 5 % smaller to 10 % larger".
+std::string open_stretch(const Mesh& fitted, const OpenStretch& open) {
   const int directions = static_cast<int>(std::lround(open.along.trace()));
-  std::string way = "as a whole";
+  std::string way = "all of it";
   if (directions < 3) {
-    const Eigen::Matrix3d axis =
+    const Eigen::Matrix3d projection =
         directions == 1 ? open.along : Eigen::Matrix3d(Eigen::Matrix3d::Identity() - open.along);
     Eigen::Index column = 0;
-    axis.colwise().squaredNorm().maxCoeff(&column);
-    way = (directions == 1 ? "along " : "across ") + place(axis.col(column).normalized());
+    projection.colwise().squaredNorm().maxCoeff(&column);
+    const Eigen::Vector3d axis = projection.col(column).normalized();
+    way = directions == 1 ? "its " + dimension(fitted, axis) + ", along " + place(axis) + ","
+                          : "its girth, across " + place(axis) + ",";
   }
   if (open.shorter == 0) return way + " up to " + percent(open.longer) + " larger";
   if (open.longer == 0) return way + " up to " + percent(open.shorter) + " smaller";
@@ -79,9 +102,11 @@ std::string open_stretch(const OpenStretch& open) {
 
 void add_open_size(const FitResult& result, std::vector<std::string>& told) {
   std::string ways;
-  for (const OpenStretch& open : result.open_stretches) ways += (ways.empty() ? " " : ", ") + open_stretch(open);
+  for (const OpenStretch& open : result.open_stretches) {
+    ways += (ways.empty() ? " " : "; ") + open_stretch(result.fitted, open);
+  }
   if (!ways.empty())
-    told.push_back("The scan leaves its size open:" + ways + "; stretched so, it explains the scan as well.");
+    told.push_back("The scan leaves the size open:" + ways + ". Stretched so, it explains the scan as well.");
 }
 
 void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string>& told) {
@@ -133,7 +158,11 @@ std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) 
     const auto& regions = result.rest_annotation.regions;
     const auto region = std::ranges::find(regions, group.region, &Region::id);
     const std::string name = region != regions.end() && !region->name.empty() ? " (" + region->name + ")" : "";
-    told.push_back("The scan contradicts the symmetry of region " + std::to_string(group.region) + name + ".");
+    const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
+    told.push_back("The scan contradicts the symmetry of region " + std::to_string(group.region) + name +
+                   ": fitted without it, places that it takes to one another differ by " + percent(group.disagreement) +
+                   " of the diagonal, and the scan lies at " + percent(group.free) + " in place of " +
+                   percent(group.held) + (left_out ? "; it was dropped." : "."));
   }
   return told;
 }
