@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
 
 install_packages "${program_packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}"
 build=$root/build/coverage
-(cd "$root" && cmake --preset fuzz -B "$build" -Wno-dev -DORBIFIT_BUILD_FUZZERS=OFF -DORBIFIT_BUILD_TESTS=ON \
+(cd "$root" && cmake --preset fuzz -B "$build" -Wno-dev -DORBIFIT_BUILD_FUZZERS=OFF -DORBIFIT_BUILD_TESTS=ON -DORBIFIT_BUILD_BASELINES=ON \
   -DCMAKE_CXX_FLAGS="-fprofile-instr-generate -fcoverage-mapping" >"$build.log" 2>&1) || { cat "$build.log" >&2; exit 1; }
 cmake --build "$build" --target robustness_test batch_test
 

@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 
 constexpr int kSamples = 1000;
 constexpr double kMostTrimmed = 0.1;  // of a region's area: as much as later stages may spoil
+constexpr double kMostSagitta = 0.5;  // tolerances: with more of it facets lie off the surface, not faces off a region
 
 class Trimmer {
  public:
@@ -130,13 +131,39 @@ class Trimmer {
   std::vector<char> in_;    // by face of the mesh: whether it is left
 };
 
+// How far the facets of a round region lie inside the surface that they stand for, at most: c^2 / (8 r) for a chord c
+// at the radius r.
+double largest_sagitta(const PreparedMesh& prepared, const GroupPlacement& placement, const std::vector<int>& faces) {
+  const auto from = [&](int face, int k) -> Vector3d {
+    return prepared.mesh.vertices.row(prepared.mesh.faces(face, k)).transpose() - placement.centre;
+  };
+  const Vector3d axis = placement.group.has_axis() ? Vector3d(placement.frame.col(2)) : Vector3d::Zero();
+  double largest = 0;
+  for (const int face : faces) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d a = from(face, k);
+      const Vector3d b = from(face, (k + 1) % 3);
+      Vector3d out = (a + b) / 2;
+      out -= axis.dot(out) * axis;
+      const double radius = out.norm();
+      if (radius == 0) continue;
+      Vector3d chord = b - a;
+      chord -= axis.dot(chord) * axis + out.dot(chord) / (radius * radius) * out;
+      largest = std::max(largest, chord.squaredNorm() / (8 * radius));
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 void trim_regions(const PreparedMesh& prepared, double tolerance, const RunContext& context,
                   std::vector<FoundRegion>& regions, Explanation* explanation) {
   for (FoundRegion& region : regions) {
     const GroupPlacement& placement = region.placement;
-    if (placement.group.continuous()) continue;
+    if (placement.group.continuous() && largest_sagitta(prepared, placement, region.faces) > kMostSagitta * tolerance) {
+      continue;
+    }
     const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "residual");
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
     if (measure_residual(patch, motions, context).max <= tolerance) continue;
