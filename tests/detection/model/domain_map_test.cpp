@@ -60,5 +60,50 @@ TEST(DomainMap, TellsPlacesApartThatHaveTheSameMoments) {
   }
 }
 
+// Two boards across the x axis, each of two sheets that all but coincide, cut along one diagonal or the other.
+Mesh boards(double apart, unsigned cuts) {
+  Mesh mesh;
+  mesh.vertices.resize(16, 3);
+  mesh.faces.resize(8, 3);
+  const std::array<double, 4> places{1 + apart, 1 - apart, -1 - apart, -1 + apart};
+  for (int sheet = 0; sheet < 4; ++sheet) {
+    const double x = places[static_cast<std::size_t>(sheet)];
+    const int v = 4 * sheet;
+    mesh.vertices.middleRows(v, 4) << x, -0.2, -0.5, x, 0.2, -0.5, x, 0.2, 0.5, x, -0.2, 0.5;
+    if ((cuts >> static_cast<unsigned>(sheet) & 1U) != 0) {
+      mesh.faces.middleRows(2 * sheet, 2) << v, v + 1, v + 2, v, v + 2, v + 3;
+    } else {
+      mesh.faces.middleRows(2 * sheet, 2) << v, v + 1, v + 3, v + 1, v + 2, v + 3;
+    }
+  }
+  return mesh;
+}
+
+TEST(DomainMap, TakesSheetsThatAllButCoincideToTheirOwnImagesHoweverTheyAreCut) {
+  SymmetryAnnotation annotation;
+  annotation.regions = {region("D2h", Vector3d::UnitZ(), 0, 8)};
+  const double apart = 1e-4;
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::congruent;
+  std::vector<Motion> motions;
+  for (int sheet = 0; sheet < 4; ++sheet) {
+    Motion motion = sheet < 2 ? Motion{} : Motion::reflection(Vector3d::UnitX(), Vector3d::Zero());
+    if (sheet % 2 == 1) motion.translation.x() = (sheet < 2 ? -2 : 2) * apart;
+    pattern.instances.push_back({motion, {2 * sheet, 2 * sheet + 1}});
+    motions.push_back(motion);
+  }
+  annotation.patterns = {pattern};
+  for (unsigned cuts = 0; cuts < 16; ++cuts) {
+    const DomainMap domains(boards(apart, cuts), annotation, {motions});
+    for (std::size_t e = 0; e < domains.elements(0).size(); ++e) {
+      const bool across = domains.elements(0)[e].linear(0, 0) < 0;
+      for (int sheet = 0; sheet < 4; ++sheet) {
+        const std::vector image{1 + (across ? (sheet + 2) % 4 : sheet)};
+        EXPECT_EQ(domains.images_of(1 + sheet, 0, static_cast<int>(e)), image) << cuts << ' ' << e << ' ' << sheet;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace orbifit

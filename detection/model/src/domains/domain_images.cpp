@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kSamePiece = 0.0125;  // of the diagonal: 2.5 usual tolerances, as consistency's `reach`
-constexpr std::size_t kMarks = 32;     // of a place's faces, spread over it, tell it from its twins
+constexpr std::size_t kMarks = 32;     // of a place's corners, spread over it, tell it from its twins
 constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
 
 // Places that have no image yet, and those that are no image.
@@ -43,6 +43,17 @@ void pair_nearest(Unpaired& open, std::vector<std::pair<int, int>>& pairs, const
     open.from.erase(from);
     open.to.erase(to);
   }
+}
+
+// Corners, not centroids: flat sides may be cut into triangles either way.
+std::vector<int> corners_of(const Mesh& mesh, const std::vector<int>& faces) {
+  std::vector<int> result;
+  for (const int face : faces) {
+    for (const int vertex : mesh.faces.row(face)) result.push_back(vertex);
+  }
+  std::ranges::sort(result);
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
 }
 
 bool is_identity(const Motion& motion) {
@@ -91,9 +102,7 @@ void DomainMap::find_twins(const Mesh& mesh) {
   const auto mark = [&](int place) {
     std::vector<Eigen::Vector3d>& marks = twins_[place];
     if (!marks.empty()) return;
-    for (const int face : at(place).faces) {
-      marks.push_back(mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean().transpose());
-    }
+    for (const int vertex : corners_of(mesh, at(place).faces)) marks.emplace_back(mesh.vertices.row(vertex));
   };
   for (int p = 0; p < places(); ++p) {
     for (int q = 0; q < p; ++q) {
@@ -104,8 +113,8 @@ void DomainMap::find_twins(const Mesh& mesh) {
   }
 }
 
-// Of places that have twins: from the image of the one, some faces of it, to the other on the average, as a fraction of
-// the diagonal. 0 of others.
+// Of places that have twins: from the image of the one, some corners of it, to the other's on the average, as a
+// fraction of the diagonal. 0 of others.
 double DomainMap::piece_distance(int from, const Motion& motion, int to) const {
   const auto a = twins_.find(from);
   const auto b = twins_.find(to);

@@ -161,7 +161,7 @@ class DomainMap {
   std::vector<std::vector<int>> around_;                     // of each place, the places that hold all faces of it
   std::vector<PieceMoments> moments_;                        // of the faces of each set
   std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
-  std::map<int, std::vector<Eigen::Vector3d>> twins_;        // places that moments do not tell apart: faces' centroids
+  std::map<int, std::vector<Eigen::Vector3d>> twins_;        // places that moments do not tell apart: corners
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();         // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };
