@@ -50,6 +50,20 @@ TEST(TouchingPoints, AreWhereSurfacesMeetOrComeNear) {
   }
 }
 
+// Also where the one face that is near is the mesh's first.
+TEST(TouchingPoints, AreFoundOnASingleTriangle) {
+  Mesh mesh;
+  mesh.vertices.resize(3, 3);
+  mesh.vertices << -1, -1, 1.003, 1, -1, 1.003, 0, 1, 1.003;
+  mesh.faces.resize(1, 3);
+  mesh.faces << 0, 1, 2;
+  append(mesh, box({0.2, 0.2, 1}, 2));
+  const std::vector<TouchingPoints> touching = touching_of(mesh, 0.01);
+  const auto of_vertex = [](const TouchingPoints& at) { return at.points[1].barycentric.maxCoeff() > 1 - 1e-12; };
+  EXPECT_GT(std::ranges::count_if(touching, of_vertex), 3) << "corners of the box, on the triangle";
+  for (const TouchingPoints& at : touching) EXPECT_EQ(at.points[0].face, 0);
+}
+
 // A box that goes through a face meets it along its own outline, wherever vertices are.
 TEST(TouchingPoints, AreFoundWhereEdgesPierceFaces) {
   const std::vector<TouchingPoints> crossing = touching_of(two_boxes(-0.33), 1e-6);
@@ -144,6 +158,23 @@ TEST(Contacts, OneOfEachOrbitIsAsGoodAsAll) {
     const Eigen::MatrixXd gram_of_all = all.gram();
     EXPECT_GT(gram_of_all.norm(), 0) << name;
     EXPECT_LT((gram_of_some - gram_of_all).norm(), 1e-9 * gram_of_all.norm()) << name;
+  }
+}
+
+TEST(Contacts, DoNotDependOnUnits) {
+  const Stool stool(GroupMode::floating);
+  for (const double scale : {0.01, 100.0}) {
+    GeneratedModel model = stool.model;
+    model.mesh.vertices *= scale;
+    model.truth = transformed(model.truth, {scale, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()});
+    const Subspace subspace = subspace_of(model, GroupMode::floating, kRadius);
+    const std::vector<Contact> contacts = find_contacts(subspace, model.mesh, all_images(), RunContext{});
+    ASSERT_EQ(contacts.size(), stool.contacts.size()) << scale;
+    for (const Contact& contact : contacts) {
+      EXPECT_TRUE(std::ranges::any_of(stool.contacts, [&](const Contact& other) {
+        return (scale * other.point - contact.point).norm() < 1e-3 * scale;
+      }));
+    }
   }
 }
 

@@ -230,6 +230,24 @@ TEST(SymmetrizeSurface, BringsUnrelatedTessellationsTogether) {
   EXPECT_LT(report.largest_movement, 2 * before);
 }
 
+// The mesh's first face is an image as any other.
+TEST(SymmetrizeSurface, BringsAVertexToTheImageOfASingleFace) {
+  Mesh rough;
+  rough.vertices.resize(7, 3);
+  rough.vertices << 0.2, -1, 0, 2, 0, 0, 0.2, 1, 0, -0.2, -1, 0, -2, 0, 0, -0.2, 1, 0, -0.8, 0, 0.01;
+  rough.faces.resize(4, 3);
+  rough.faces << 0, 1, 2, 3, 6, 4, 4, 6, 5, 5, 6, 3;
+  SymmetryAnnotation mirror = whole(rough, "Cs");
+  mirror.regions[0] = make_region(PointGroup::parse("Cs").value(), Eigen::Vector3d::Zero(),
+                                  frame_about(Eigen::Vector3d::UnitX()), mirror.regions[0].faces, "whole");
+  const Mesh exact = symmetrized(rough, mirror, RunContext{});
+  const Eigen::Vector3d corner = exact.vertices.row(0);
+  const Eigen::Vector3d normal = face_normal(exact, 0);
+  const Eigen::Vector3d image = Eigen::Vector3d(-1, 1, 1).cwiseProduct(exact.vertices.row(6).transpose());
+  EXPECT_LT(std::abs(normal.dot(image - corner)), 1e-3);
+  EXPECT_LT(residual(exact, mirror), 0.2 * residual(rough, mirror));
+}
+
 // A mirrored part whose halves have unrelated tessellations, both finer than it is off the mirror plane: nothing folds,
 // and no image is farther from the surface than before.
 TEST(SymmetrizeSurface, FoldsNothingWhereVerticesAreCloserThanTheErrorIs) {
