@@ -516,8 +516,8 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   drop_cut_discs(prepared, options.tolerance, context, found.regions, options.explanation);
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
-  trim_regions(prepared, options.tolerance, context, found.regions, options.explanation);
   const auto late = [&] { return spent(options, start, 1); };
+  trim_regions(prepared, options.tolerance, context, found.regions, options.explanation, late);
   if (!late()) {
     const PartRegionOptions parts{options.tolerance, kMinShare, false, options.explanation, late, {}};
     std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),

@@ -111,6 +111,17 @@ TEST(TrimRegions, LeaveAloneWhatWouldLoseMoreThanATenth) {
   ASSERT_EQ(explanation.notes.size(), 1U);
 }
 
+TEST(TrimRegions, LeaveAloneWhatThereIsNoTimeFor) {
+  const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
+  const PreparedMesh prepared = prepare(mesh);
+  std::vector<FoundRegion> regions(2, region_of(prepared, "C2", test::all_faces(mesh)));
+  for (FoundRegion& region : regions) region.placement.centre = inverse(prepared.input_of_normalised)(Vector3d::Zero());
+  int asked = 0;
+  trim_regions(prepared, kTolerance, RunContext{}, regions, nullptr, [&] { return ++asked > 1; });
+  EXPECT_LT(regions[0].faces.size(), regions[1].faces.size());
+  EXPECT_EQ(regions[1].faces, test::all_faces(mesh));
+}
+
 TEST(TrimRegions, SameForAnyNumberOfThreads) {
   const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
   const PreparedMesh prepared = prepare(mesh);

@@ -158,8 +158,9 @@ double largest_sagitta(const PreparedMesh& prepared, const GroupPlacement& place
 }  // namespace
 
 void trim_regions(const PreparedMesh& prepared, double tolerance, const RunContext& context,
-                  std::vector<FoundRegion>& regions, Explanation* explanation) {
+                  std::vector<FoundRegion>& regions, Explanation* explanation, const std::function<bool()>& late) {
   for (FoundRegion& region : regions) {
+    if (late && late()) break;
     const GroupPlacement& placement = region.placement;
     if (placement.group.continuous() && largest_sagitta(prepared, placement, region.faces) > kMostSagitta * tolerance) {
       continue;
