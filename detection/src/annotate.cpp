@@ -13,7 +13,6 @@ namespace orbifit {
 
 namespace {
 
-constexpr int kSamples = 1000;
 // What stages after the one that found a region do to it must not spoil it. A share less than where it was verified:
 // there are other samples.
 constexpr double kMinKept = 0.9;
@@ -52,7 +51,7 @@ std::vector<Region> annotated(const PreparedMesh& prepared, std::vector<FoundReg
   std::vector<Region> regions;
   for (const FoundRegion& each : found) {
     const GroupPlacement& placement = each.placement;
-    const SurfacePatch patch = make_patch(prepared, each.faces, kSamples, tolerance, context, "residual");
+    const SurfacePatch patch = make_patch(prepared, each.faces, kResidualSamples, tolerance, context, "residual");
     const double kept = verify_group(patch, placement, context).joint;
     if (kept < kMinKept) {
       note_spoilt(explanation, each, kept);

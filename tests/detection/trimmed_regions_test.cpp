@@ -14,34 +14,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kCells = 80;           // along each side of a plate
+constexpr int kCells = 80;           // along each side of a sheet
 constexpr double kTolerance = 0.01;  // of the diagonal: more than an edge
 
-// A plate z = 0 of kCells by kCells squares, raised where `height` says.
-template <typename Height>
-Mesh plate(const Height& height) {
-  Mesh mesh;
-  mesh.vertices.resize((kCells + 1) * (kCells + 1), 3);
-  for (int i = 0; i <= kCells; ++i) {
-    for (int j = 0; j <= kCells; ++j) {
-      const double x = 2.0 * i / kCells - 1;
-      const double y = 2.0 * j / kCells - 1;
-      mesh.vertices.row(i * (kCells + 1) + j) << x, y, height(x, y);
-    }
-  }
-  mesh.faces.resize(2 * kCells * kCells, 3);
-  for (int i = 0; i < kCells; ++i) {
-    for (int j = 0; j < kCells; ++j) {
-      const int corner = i * (kCells + 1) + j;
-      mesh.faces.row(2 * (i * kCells + j)) << corner, corner + kCells + 1, corner + kCells + 2;
-      mesh.faces.row(2 * (i * kCells + j) + 1) << corner, corner + kCells + 2, corner + 1;
-    }
-  }
-  return mesh;
-}
+constexpr double kBump = 0.025;  // radius
+const Eigen::Vector2d kBumpAt(0.2, 0.15);
 
-bool on_bump(double x, double y) {
-  return std::hypot(x - 0.4, y - 0.3) < 0.12;
+// Flat, of side 1, but for a bump.
+Mesh bumpy() {
+  return test::sheet(kCells,
+                     [](double x, double y) { return (Eigen::Vector2d(x, y) - kBumpAt).norm() < kBump ? 0.05 : 0.0; });
 }
 
 FoundRegion region_of(const PreparedMesh& prepared, const char* symbol, std::vector<int> faces) {
@@ -49,15 +31,14 @@ FoundRegion region_of(const PreparedMesh& prepared, const char* symbol, std::vec
   region.placement = {*PointGroup::parse(symbol), GroupFrame::Identity(), Vector3d::Zero()};
   region.faces = std::move(faces);
   region.area = area_of(prepared, region.faces);
-  region.residual = Residual{1, 1};
   return region;
 }
 
 class TrimmedRegions : public testing::TestWithParam<const char*> {};
 
 TEST_P(TrimmedRegions, LoseWhatHasNoImageAndNoMore) {
-  // The plate has every such group but for one bump, which lies on none of their axes and planes.
-  const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
+  // The sheet has every such group but for one bump, which lies on none of their axes and planes.
+  const Mesh mesh = bumpy();
   PreparedMesh prepared = prepare(mesh);
   const Vector3d centre = inverse(prepared.input_of_normalised)(Vector3d::Zero());
   std::vector<FoundRegion> regions{region_of(prepared, GetParam(), test::all_faces(mesh))};
@@ -81,28 +62,29 @@ TEST_P(TrimmedRegions, LoseWhatHasNoImageAndNoMore) {
   std::ranges::set_difference(test::all_faces(mesh), left, std::back_inserter(gone));
   for (const int face : gone) {
     const Vector3d centroid = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
-    double nearest = (centroid.head<2>() - Eigen::Vector2d(0.4, 0.3)).norm();
+    double nearest = (centroid.head<2>() - kBumpAt).norm();
     for (const Motion& motion : motions) {
-      nearest = std::min(nearest, ((motion.linear * centroid).head<2>() - Eigen::Vector2d(0.4, 0.3)).norm());
+      nearest = std::min(nearest, ((motion.linear * centroid).head<2>() - kBumpAt).norm());
     }
-    EXPECT_LT(nearest, 0.05 + 4 * 2.0 / kCells) << centroid.transpose();
+    EXPECT_LT(nearest, kBump + 4.0 / kCells) << centroid.transpose();
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Groups, TrimmedRegions, testing::Values("C2", "C2v", "C4", "D4"));
 
 TEST(TrimRegions, LeaveAloneWhatIsExact) {
-  const Mesh mesh = plate([](double, double) { return 0.0; });
+  const Mesh mesh = test::sheet(kCells, [](double, double) { return 0.0; });
   const PreparedMesh prepared = prepare(mesh);
   std::vector<FoundRegion> regions{region_of(prepared, "C4v", test::all_faces(mesh))};
   trim_regions(prepared, kTolerance, RunContext{}, regions);
   EXPECT_EQ(regions[0].faces, test::all_faces(mesh));
-  EXPECT_TRUE(regions[0].residual);
+  ASSERT_TRUE(regions[0].residual);
+  EXPECT_LT(regions[0].residual->max, 1e-12);
 }
 
 TEST(TrimRegions, LeaveAloneWhatWouldLoseMoreThanATenth) {
-  // A quarter of the plate is raised: of C4 nothing would be left there or opposite.
-  const Mesh mesh = plate([](double x, double y) { return x > 0 && y > 0 ? 0.1 : 0.0; });
+  // A quarter of the sheet is raised: of C4 nothing would be left there or opposite.
+  const Mesh mesh = test::sheet(kCells, [](double x, double y) { return x > 0 && y > 0 ? 0.05 : 0.0; });
   const PreparedMesh prepared = prepare(mesh);
   std::vector<FoundRegion> regions{region_of(prepared, "C4", test::all_faces(mesh))};
   Explanation explanation;
@@ -112,7 +94,7 @@ TEST(TrimRegions, LeaveAloneWhatWouldLoseMoreThanATenth) {
 }
 
 TEST(TrimRegions, LeaveAloneWhatThereIsNoTimeFor) {
-  const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
+  const Mesh mesh = bumpy();
   const PreparedMesh prepared = prepare(mesh);
   std::vector<FoundRegion> regions(2, region_of(prepared, "C2", test::all_faces(mesh)));
   for (FoundRegion& region : regions) region.placement.centre = inverse(prepared.input_of_normalised)(Vector3d::Zero());
@@ -123,7 +105,7 @@ TEST(TrimRegions, LeaveAloneWhatThereIsNoTimeFor) {
 }
 
 TEST(TrimRegions, SameForAnyNumberOfThreads) {
-  const Mesh mesh = plate([](double x, double y) { return on_bump(x, y) ? 0.1 : 0.0; });
+  const Mesh mesh = bumpy();
   const PreparedMesh prepared = prepare(mesh);
   RunContext three;
   three.threads = 3;

@@ -65,7 +65,7 @@ TEST_F(Verdict, TellsWhatTheScanLeavesOpenOfTheSize) {
   result_.fitted.vertices.col(2) *= 5;  // taller than wide
   EXPECT_EQ(verdict()[1],
             "The scan leaves the size open: all of it up to 20 % larger; its length, along (0, 0, 1), from 5 % smaller "
-            "to 10 % larger; its girth, across (0, 0, 1), up to 5 % smaller. Stretched so, it explains the scan as "
+            "to 10 % larger; its girth about (0, 0, 1), up to 5 % smaller. Stretched so, it explains the scan as "
             "well.");
   EXPECT_EQ(verdict().size(), 2U);
 }
@@ -89,8 +89,9 @@ TEST_F(Verdict, TellsWhichGroupsTheScanContradicts) {
   group.free = 0.002;
   result_.groups = {group};
   const std::string sentence =
-      "The scan contradicts the symmetry of region 0: fitted without it, places that it takes to one another differ by "
-      "2 % of the diagonal, and the scan lies at 0.2 % in place of 1 %";
+      "The scan contradicts the symmetry of region 0: fitted without it, places that are images of one another differ "
+      "by "
+      "2 % of the diagonal, and the scan lies 0.2 % from the fit in place of 1 %";
   EXPECT_EQ(verdict()[1], sentence + ".");
   result_.dropped = {0};
   EXPECT_EQ(verdict()[1], sentence + "; it was dropped.");

@@ -67,7 +67,7 @@ bool ClaimQuotient::lies_within_accepted(const std::vector<std::size_t>& family)
         const int atom = sample.orbit.front().atom;
         if (atoms_.piece(claim, atom) >= 0 && atoms_.piece(known, atom) < 0) outside += sample.weight;
       }
-      return outside <= (whole ? 0 : EvidencePolicy{}.sliver * area);
+      return outside <= (whole ? 0 : kEvidencePolicy.sliver * area);
     });
   });
 }

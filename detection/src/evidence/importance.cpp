@@ -89,12 +89,12 @@ Chosen chosen_families(const Weighed& weighed, const RunContext& context) {
     rated.push_back({family, !whole, area, area * halvings_of(weighed.claims[family.front()])});
   }
   std::ranges::stable_sort(rated, {}, [](const Rated& each) { return std::pair(each.within_a_part, -each.saving); });
-  const EvidencePolicy policy;
   Chosen result;
   for (Rated& each : rated) {
     context.check();
-    const bool says_more = quotient.saving(each.family) > policy.sliver * quotient.named_area(each.family).left ||
-                           (each.area >= policy.main_part * surface && !quotient.lies_within_accepted(each.family));
+    const bool says_more =
+        quotient.saving(each.family) > kEvidencePolicy.sliver * quotient.named_area(each.family).left ||
+        (each.area >= kEvidencePolicy.main_part * surface && !quotient.lies_within_accepted(each.family));
     if (says_more) quotient.accept(each.family);
     (says_more ? result.kept : result.left_out).push_back(std::move(each.family));
   }

@@ -15,7 +15,15 @@ struct EvidencePolicy {
   /// Share of the mesh's area from which on a region or pattern (with its images) is a main part: it is listed unless
   /// another holds it, since it tells how others stand to one another.
   double main_part = 0.2;
+  /// Share of a region's area that may be taken from its border: a region that loses more ends within a surface whose
+  /// faces are too large for its group, and loses on with each face that goes.
+  double trimmed = 0.1;
+  /// Tolerances by which the facets of a round region may lie inside what they stand for: with more of it they
+  /// themselves, not faces that belong to something else, are what misses.
+  double sagitta = 0.5;
 };
+
+inline constexpr EvidencePolicy kEvidencePolicy;
 
 /// How finely the quotient of a surface is measured.
 struct QuotientResolution {

@@ -54,6 +54,8 @@ std::string objection(const Verification& verification, const VerificationLimits
 double kept_share(const SurfacePatch& patch, const Motion& motion, double tolerance, int samples,
                   double give_up_below = 0);
 
+inline constexpr int kResidualSamples = 1000;  ///< of a region, at most as many as its residual asks for
+
 /// Distances between g(S) and S over samples and motions, in the mesh's diagonal.
 /// \param queries how many pairs of a sample and a motion to measure, about
 Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context,

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "evidence/policy.h"
 #include "group/verification.h"
 #include "surface/face_points.h"
 
@@ -15,10 +16,6 @@ namespace orbifit {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr int kSamples = 1000;
-constexpr double kMostTrimmed = 0.1;  // of a region's area: as much as later stages may spoil
-constexpr double kMostSagitta = 0.5;  // tolerances: with more of it facets lie off the surface, not faces off a region
 
 class Trimmer {
  public:
@@ -48,7 +45,7 @@ class Trimmer {
       if (gone.empty()) return faces_;
       for (const int face : gone) in_[static_cast<std::size_t>(face)] = 0;
       std::erase_if(faces_, [&](int face) { return in_[static_cast<std::size_t>(face)] == 0; });
-      if (faces_.empty() || area_of(prepared_, faces_) < (1 - kMostTrimmed) * area) return std::nullopt;
+      if (faces_.empty() || area_of(prepared_, faces_) < (1 - kEvidencePolicy.trimmed) * area) return std::nullopt;
       asked = those_that_lose(gone);
     }
   }
@@ -162,12 +159,15 @@ void trim_regions(const PreparedMesh& prepared, double tolerance, const RunConte
   for (FoundRegion& region : regions) {
     if (late && late()) break;
     const GroupPlacement& placement = region.placement;
-    if (placement.group.continuous() && largest_sagitta(prepared, placement, region.faces) > kMostSagitta * tolerance) {
+    if (placement.group.continuous() &&
+        largest_sagitta(prepared, placement, region.faces) > kEvidencePolicy.sagitta * tolerance) {
       continue;
     }
-    const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "residual");
+    if (region.residual && region.residual->max <= tolerance) continue;
+    const SurfacePatch patch = make_patch(prepared, region.faces, kResidualSamples, tolerance, context, "residual");
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-    if (measure_residual(patch, motions, context).max <= tolerance) continue;
+    if (!region.residual) region.residual = measure_residual(patch, motions, context);
+    if (region.residual->max <= tolerance) continue;
     std::optional<std::vector<int>> left =
         Trimmer(prepared, tolerance, motions, context, region.faces).run(patch.samples.faces);
     if (explanation != nullptr) {
@@ -176,7 +176,7 @@ void trim_regions(const PreparedMesh& prepared, double tolerance, const RunConte
            left ? std::to_string(region.faces.size() - left->size()) + " faces without an image go"
                 : "more than a tenth would go; kept as it is"});
     }
-    if (!left) continue;
+    if (!left || left->size() == region.faces.size()) continue;
     region.faces = std::move(*left);
     region.area = area_of(prepared, region.faces);
     region.residual.reset();

@@ -93,7 +93,7 @@ std::string open_stretch(const Mesh& fitted, const OpenStretch& open) {
     projection.colwise().squaredNorm().maxCoeff(&column);
     const Eigen::Vector3d axis = projection.col(column).normalized();
     way = directions == 1 ? "its " + dimension(fitted, axis) + ", along " + place(axis) + ","
-                          : "its girth, across " + place(axis) + ",";
+                          : "its girth about " + place(axis) + ",";
   }
   if (open.shorter == 0) return way + " up to " + percent(open.longer) + " larger";
   if (open.longer == 0) return way + " up to " + percent(open.shorter) + " smaller";
@@ -160,9 +160,9 @@ std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) 
     const std::string name = region != regions.end() && !region->name.empty() ? " (" + region->name + ")" : "";
     const bool left_out = std::ranges::find(result.dropped, group.region) != result.dropped.end();
     told.push_back("The scan contradicts the symmetry of region " + std::to_string(group.region) + name +
-                   ": fitted without it, places that it takes to one another differ by " + percent(group.disagreement) +
-                   " of the diagonal, and the scan lies at " + percent(group.free) + " in place of " +
-                   percent(group.held) + (left_out ? "; it was dropped." : "."));
+                   ": fitted without it, places that are images of one another differ by " +
+                   percent(group.disagreement) + " of the diagonal, and the scan lies " + percent(group.free) +
+                   " from the fit in place of " + percent(group.held) + (left_out ? "; it was dropped." : "."));
   }
   return told;
 }

@@ -45,17 +45,6 @@ void pair_nearest(Unpaired& open, std::vector<std::pair<int, int>>& pairs, const
   }
 }
 
-// Corners, not centroids: flat sides may be cut into triangles either way.
-std::vector<int> corners_of(const Mesh& mesh, const std::vector<int>& faces) {
-  std::vector<int> result;
-  for (const int face : faces) {
-    for (const int vertex : mesh.faces.row(face)) result.push_back(vertex);
-  }
-  std::ranges::sort(result);
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
-
 bool is_identity(const Motion& motion) {
   return motion.linear.isIdentity(0) && motion.translation.isZero(0);
 }
@@ -102,7 +91,8 @@ void DomainMap::find_twins(const Mesh& mesh) {
   const auto mark = [&](int place) {
     std::vector<Eigen::Vector3d>& marks = twins_[place];
     if (!marks.empty()) return;
-    for (const int vertex : corners_of(mesh, at(place).faces)) marks.emplace_back(mesh.vertices.row(vertex));
+    // Not the faces' centroids: flat sides may be cut into triangles either way.
+    for (const int vertex : vertices_of_faces(mesh, at(place).faces)) marks.emplace_back(mesh.vertices.row(vertex));
   };
   for (int p = 0; p < places(); ++p) {
     for (int q = 0; q < p; ++q) {
