@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Which lines of the readers the tests of bad input reach: `tests/coverage.sh`, from anywhere. Builds these tests once
 # more, with clang's coverage, runs them, and prints a line a file; build/coverage/lines holds each line with its count.
-# Some twenty minutes on two cores; not part of CI.
+# Some forty minutes on two cores; not part of CI. Files that read may write as well, which bad input does not reach.
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
 
 install_packages "${program_packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}"
