@@ -15,6 +15,7 @@
 
 #include "base/random.h"
 #include "basis/subspace_parts.h"
+#include "geometry/vertex_grid.h"
 #include "suite/detection_suite.h"
 #include "support/parts.h"
 #include "support/subspaces.h"
@@ -125,6 +126,65 @@ TEST_P(FarFromConsistent, LosesAllThatItLosesAtOnce) {
 INSTANTIATE_TEST_SUITE_P(Models, FarFromConsistent,
                          testing::Combine(testing::Values("table", "chair", "armchair", "car", "wind_mill"),
                                           testing::Values(2e-3, 5e-3, 1e-2, 3e-2)));
+
+std::vector<int> faces_between(const Mesh& mesh, double low, double high) {
+  std::vector<int> result;
+  for (int f = 0; f < static_cast<int>(mesh.faces.rows()); ++f) {
+    double sum = 0;
+    for (const int vertex : mesh.faces.row(f)) sum += mesh.vertices(vertex, 2);
+    if (low < sum / 3 && sum / 3 < high) result.push_back(f);
+  }
+  return result;
+}
+
+// How far any vertex's displacement is from what a region that holds it makes of that of the vertex at its image.
+double worst_at_vertices(const Mesh& mesh, const SymmetryAnnotation& annotation, const Points& displacements) {
+  double worst = 0;
+  const VertexGrid grid(mesh.vertices, 1e-9);
+  for (const Region& region : annotation.regions) {
+    for (const int v : vertices_of_faces(mesh, region.faces)) {
+      for (const Motion& element : region.elements) {
+        grid.visit(element(mesh.vertices.row(v).transpose()), [&](int image) {
+          const Vector3d there = displacements.row(image).transpose();
+          worst = std::max(worst, (there - element.linear * displacements.row(v).transpose()).norm());
+        });
+      }
+    }
+  }
+  return worst;
+}
+
+// Of a box that is symmetric up and down, its ends and its belt, which lies off its middle: where the upper end goes
+// beyond the image of the lower one, that image is the belt's.
+TEST(ConsistentAnnotation, TakesBordersBackWhereVerticesCannotFollowBothSides) {
+  GeneratedModel model = whole(box({0.5, 0.5, 1}, 16), {PointGroup::Family::Cs, 1}, Vector3d::Zero());
+  const Mesh& mesh = model.mesh;
+  const auto add = [&](const PointGroup& group, std::vector<int> faces) {
+    model.truth.regions.push_back(
+        make_region(group, Vector3d::Zero(), frame_about(Vector3d::UnitZ()), std::move(faces), group.symbol()));
+    model.truth.regions.back().id = static_cast<int>(model.truth.regions.size()) - 1;
+  };
+  std::vector<int> ends = faces_between(mesh, -2, -0.5);
+  const std::vector<int> upper = faces_between(mesh, 0.25, 2);
+  ends.insert(ends.end(), upper.begin(), upper.end());
+  std::ranges::sort(ends);
+  add({PointGroup::Family::Cnv, 4}, ends);
+  add({PointGroup::Family::Cnv, 2}, faces_between(mesh, -0.5, 0.25));
+  const ConsistentAnnotation result = consistent_annotation(mesh, model.truth, RunContext{});
+  ASSERT_EQ(result.annotation.regions.size(), 3U) << said(result);
+  EXPECT_EQ(result.annotation.regions[2].faces, model.truth.regions[2].faces);
+  std::vector<int> outside = faces_between(mesh, -2, -0.5);
+  const std::vector<int> top = faces_between(mesh, 0.5, 2);
+  outside.insert(outside.end(), top.begin(), top.end());
+  std::ranges::sort(outside);
+  EXPECT_EQ(result.annotation.regions[1].faces, outside);
+  SubspaceOptions options;
+  options.mode = GroupMode::fixed;
+  const Subspace subspace = build_subspace(mesh, result.annotation, options, RunContext{});
+  const Points displacements = vertex_displacements(subspace, random_state(subspace, 0.05));
+  EXPECT_GT(displacements.rowwise().norm().maxCoeff(), 1e-2);
+  EXPECT_LT(worst_at_vertices(mesh, result.annotation, displacements), 1e-12);
+}
 
 TEST(ConsistentAnnotation, LeavesOutARegionThatClashesAndSaysSo) {
   const GeneratedModel model = generate("table");

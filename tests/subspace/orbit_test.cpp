@@ -120,6 +120,43 @@ TEST_P(OrbitOnAnAxis, MovesAlongItAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Axes, OrbitOnAnAxis, testing::Range(0, 16));
 
+// Two rods end on an axis at one place, each its own part; half-turns about the rods' middles take far ends there, to
+// rounding only. Which end is seen from where is nothing that the field may depend on.
+TEST(Orbit, OfAPointBesideAnotherPartIsTheSameFromEachOfItsPlaces) {
+  constexpr double kOff = 1e-8;
+  Mesh mesh;
+  mesh.vertices.resize(6, 3);
+  mesh.vertices << 0, 0, 0, 1, 0, 0, 0.5, 0, 0.1, 0, 0, 0, -1, 0, 0, -0.5, 0, 0.1;
+  mesh.faces.resize(2, 3);
+  mesh.faces << 0, 1, 2, 3, 4, 5;
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  annotation.regions.resize(3);
+  const auto give = [&](std::size_t r, const Motion& motion, std::vector<int> faces) {
+    annotation.regions[r].name = std::to_string(r);
+    annotation.regions[r].elements = {Motion{}, motion};
+    annotation.regions[r].generators = {motion};
+    annotation.regions[r].group = PointGroup{PointGroup::Family::Cn, 2};
+    annotation.regions[r].faces = std::move(faces);
+  };
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  give(0, Motion::rotation(up, M_PI, Eigen::Vector3d::Zero()), {0, 1});
+  give(1, Motion::rotation(up, M_PI, {0.5 + kOff, 0, 0}), {0});
+  give(2, Motion::rotation(up, M_PI, {-0.5 - kOff, 0, 0}), {1});
+  const RegionMap regions(mesh, annotation, RunContext{});
+  GroupWords words(regions, true);
+  ClosureOptions options;
+  options.doublet = 1e-6;
+  const int set = regions.set_of_face(0);
+  const Eigen::Vector3d end(1, 0, 0);
+  const Motion& turn = annotation.regions[1].elements[1];
+  const Orbit here = snapped_orbit_of(end, set, regions, words, options);
+  const Orbit there = snapped_orbit_of(turn(end), regions.carried_set(set, 1, 1), regions, words, options);
+  ASSERT_EQ(here.points.size(), 4U);
+  EXPECT_EQ(there.points.size(), here.points.size());
+  EXPECT_EQ(here.constraints.size(), there.constraints.size());
+  EXPECT_LT((turn(here.points.front().position) - there.points.front().position).norm(), 1e-15);
+}
+
 TEST(Orbit, FixedPointIsFixedAndNearest) {
   const Motion a = Motion::reflection({1, 0, 0}, {0.1, 0, 0});
   const Motion b = Motion::reflection({0, 1, 0}, {0, -0.2, 0});

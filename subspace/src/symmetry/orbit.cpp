@@ -229,12 +229,12 @@ class Closure {
     turn_alike(from, place, element, motion, known);
   }
 
-  // To go by a word and come back by that of the point it arrives at keeps the seed, or nearly.
+  // To go by a word and come back by that of the known point it arrives at keeps the seed, or nearly. A point of other
+  // places that merely lies there is another one.
   void note_stabiliser(int known, int word) {
-    if (!(options_.snap > 0)) return;
-    const Motion back =
-        known > 0 ? inverse(words_.motion(orbit_.points[static_cast<std::size_t>(known)].word)) : Motion{};
-    const Motion loop = back * words_.motion(word);
+    if (!(options_.snap > 0) || known < 0) return;
+    const Motion loop =
+        inverse(words_.motion(orbit_.points[static_cast<std::size_t>(known)].word)) * words_.motion(word);
     const Eigen::Vector3d& start = orbit_.points.front().position;
     if ((loop(start) - start).norm() >= options_.snap) return;
     if ((loop.linear - Eigen::Matrix3d::Identity()).norm() > 1e-7) orbit_.stabilisers.push_back(loop);

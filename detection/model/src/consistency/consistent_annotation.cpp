@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "consistency/closed_borders.h"
 #include "consistency/consistency_choice.h"
 
 namespace orbifit {
@@ -28,7 +29,8 @@ ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnot
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
   ConsistentAnnotation result = chosen_annotation(mesh, annotation, context);
   // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
-  for (bool settled = result.left_out.empty() && result.added == 0; !settled;) {
+  bool settled = result.left_out.empty() && result.added == 0;
+  while (close_borders(mesh, result.annotation, context) || !settled) {
     ConsistentAnnotation again = chosen_annotation(mesh, result.annotation, context);
     settled = again.left_out.empty();
     result.annotation = std::move(again.annotation);

@@ -16,15 +16,6 @@ constexpr std::size_t kMaxSets = 20000;
 // Elements that differ by less are one, in entries of their matrices: the next are farther apart by far.
 constexpr double kSameElement = 1e-6;
 
-std::vector<std::vector<Motion>> motions_of(const SymmetryAnnotation& annotation) {
-  std::vector<std::vector<Motion>> result;
-  for (const Pattern& pattern : annotation.patterns) {
-    result.emplace_back();
-    for (const PatternInstance& instance : pattern.instances) result.back().push_back(instance.motion);
-  }
-  return result;
-}
-
 int element_like(const std::vector<Motion>& elements, const Motion& motion) {
   const auto found = std::ranges::find_if(
       elements, [&](const Motion& m) { return (m.linear - motion.linear).cwiseAbs().maxCoeff() < kSameElement; });
@@ -34,7 +25,7 @@ int element_like(const std::vector<Motion>& elements, const Motion& motion) {
 class Check {
  public:
   Check(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
-      : annotation_(annotation), context_(context), domains_(mesh, annotation, motions_of(annotation)) {
+      : annotation_(annotation), context_(context), domains_(mesh, annotation, instance_motions(annotation)) {
     for (std::size_t r = 0; r < annotation.regions.size(); ++r) claims_.push_back({false, r});
     for (std::size_t p = 0; p < annotation.patterns.size(); ++p) {
       claims_.insert(claims_.end(), annotation.patterns[p].instances.size(), {true, p});
@@ -132,6 +123,15 @@ class Check {
 };
 
 }  // namespace
+
+std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& annotation) {
+  std::vector<std::vector<Motion>> result;
+  for (const Pattern& pattern : annotation.patterns) {
+    result.emplace_back();
+    for (const PatternInstance& instance : pattern.instances) result.back().push_back(instance.motion);
+  }
+  return result;
+}
 
 Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
   return Check(mesh, annotation, context).run();

@@ -22,6 +22,9 @@ struct Claim {
 /// Two claims, the lesser first, and how often the one's motions lose the other, or find it where it was not.
 using Disagreements = std::map<std::pair<Claim, Claim>, int>;
 
+/// Of each pattern, the motions of its instances, as a DomainMap wants them.
+std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& annotation);
+
 /// Whether the motions of all regions and patterns take sets of places to sets of places, as a groupoid does: from each
 /// set that a face or a vertex of the mesh has, each motion goes to one set that has an image of every member, its
 /// inverse comes back, and to go by two motions of one group is to go by their product. Then the closure of a point
