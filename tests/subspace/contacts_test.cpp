@@ -163,13 +163,15 @@ TEST(Contacts, OneOfEachOrbitIsAsGoodAsAll) {
 
 TEST(Contacts, DoNotDependOnUnits) {
   const Stool stool(GroupMode::floating);
-  for (const double scale : {0.01, 100.0}) {
+  const std::size_t orbits = find_contacts(stool.subspace, stool.model.mesh, {}, RunContext{}).size();
+  for (const double scale : {1e-6, 0.01, 100.0, 1e6}) {
     GeneratedModel model = stool.model;
     model.mesh.vertices *= scale;
     model.truth = transformed(model.truth, {scale, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()});
     const Subspace subspace = subspace_of(model, GroupMode::floating, kRadius);
     const std::vector<Contact> contacts = find_contacts(subspace, model.mesh, all_images(), RunContext{});
     ASSERT_EQ(contacts.size(), stool.contacts.size()) << scale;
+    EXPECT_EQ(find_contacts(subspace, model.mesh, {}, RunContext{}).size(), orbits) << scale;
     for (const Contact& contact : contacts) {
       EXPECT_TRUE(std::ranges::any_of(stool.contacts, [&](const Contact& other) {
         return (scale * other.point - contact.point).norm() < 1e-3 * scale;

@@ -222,6 +222,17 @@ Mesh planar_patch(int cells) {
   return mesh;
 }
 
+// 0.3 is a hair more than three times 0.1 in doubles.
+TEST(Tessellation, CutsASideThatIsAMultipleNoFurther) {
+  Mesh mesh;
+  mesh.vertices.resize(3, 3);
+  mesh.vertices << 0, 0, 0, 0.1 + 0.2, 0, 0, 0, 0.1 + 0.2, 0;
+  mesh.faces.resize(1, 3);
+  mesh.faces << 0, 1, 2;
+  EXPECT_EQ(tessellated(mesh, 0.1 * std::sqrt(2.0)).faces.rows(), 9);
+  EXPECT_EQ(tessellated(mesh, 0.099 * std::sqrt(2.0)).faces.rows(), 16);
+}
+
 TEST(CotangentLaplacian, IsLinearlyPreciseInsideAPlanarPatch) {
   const int cells = 8;
   const Mesh mesh = planar_patch(cells);

@@ -157,6 +157,43 @@ TEST(Orbit, OfAPointBesideAnotherPartIsTheSameFromEachOfItsPlaces) {
   EXPECT_LT((turn(here.points.front().position) - there.points.front().position).norm(), 1e-15);
 }
 
+// Between two mirrors, nearer to each than points are told apart, and farther from the axis than that: it is on both
+// mirrors, whichever of the points around the axis are met first.
+class OrbitNearAnAxis : public testing::TestWithParam<int> {};
+
+TEST_P(OrbitNearAnAxis, IsTheAxis) {
+  constexpr double kDoublet = 1e-6;
+  constexpr int kFold = 8;
+  Mesh mesh;
+  two_regions({Motion{}}, {Motion{}}, mesh);
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  const Eigen::Vector3d centre(0.3, -0.2, 0.1);
+  annotation.regions = {
+      make_region({PointGroup::Family::Cnv, kFold}, centre, Random(GetParam(), "frame").rotation(), {0}, "ring")};
+  const RegionMap regions(mesh, annotation, RunContext{});
+  GroupWords words(regions, true);
+  ClosureOptions options;
+  options.doublet = kDoublet;
+  const double radius = 0.7 * kDoublet / (2 * std::sin(M_PI / (2 * kFold)));
+  const Region& ring = annotation.regions[0];
+  const Motion* mirror = nullptr;
+  for (const Motion& element : ring.elements) {
+    if (element.linear.determinant() < 0) mirror = &element;
+  }
+  ASSERT_NE(mirror, nullptr);
+  // Across the mirror, then half of the angle between two of them.
+  const Eigen::Vector3d normal = (Eigen::Matrix3d::Identity() - mirror->linear).col(0).stableNormalized();
+  const Motion turn = Motion::rotation(ring.axis, M_PI / 2 + M_PI / (2 * kFold), Eigen::Vector3d::Zero());
+  const Eigen::Vector3d seed = centre + 0.2 * ring.axis + radius * (turn.linear * normal);
+  for (const Motion& element : ring.elements) {
+    const Orbit orbit = snapped_orbit_of(element(seed), regions.set_of_face(0), regions, words, options);
+    EXPECT_EQ(orbit.points.size(), 1U);
+    EXPECT_LT((orbit.points.front().position - centre).cross(ring.axis).norm(), 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Frames, OrbitNearAnAxis, testing::Range(0, 16));
+
 TEST(Orbit, FixedPointIsFixedAndNearest) {
   const Motion a = Motion::reflection({1, 0, 0}, {0.1, 0, 0});
   const Motion b = Motion::reflection({0, 1, 0}, {0, -0.2, 0});

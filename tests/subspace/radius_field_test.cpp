@@ -7,6 +7,7 @@
 #include "orbifit/datasets_tools/generate.h"
 #include "orbifit/model/errors.h"
 
+#include "base/random.h"
 #include "geometry/point_index.h"
 #include "temporary_folder.h"
 
@@ -96,6 +97,34 @@ Mesh slab(double height) {
   mesh.faces << 1, 0, 8, 2, 1, 8, 3, 2, 8, 0, 3, 8, 4, 5, 9, 5, 6, 9, 6, 7, 9, 7, 4, 9, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6,
       5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7;
   return mesh;
+}
+
+// Triangles without common vertices: what is near in space grades all the same, each vertex by the eight nearest.
+TEST(RadiusFieldOfSoup, IsGradedBetweenNeighboursInSpace) {
+  constexpr int kTriangles = 200;
+  constexpr int kNeighbours = 8;
+  Random random(5, "soup");
+  Mesh mesh;
+  mesh.vertices.resize(3 * kTriangles, 3);
+  mesh.faces.resize(kTriangles, 3);
+  for (Eigen::Index f = 0; f < kTriangles; ++f) {
+    const Eigen::RowVector3d centre = Eigen::RowVector3d(random.uniform(), random.uniform(), 0.2 * random.uniform());
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      mesh.vertices.row(3 * f + k) = centre + 0.01 * random.direction().transpose();
+      mesh.faces(f, k) = static_cast<int>(3 * f + k);
+    }
+  }
+  RadiusFieldOptions options;
+  options.base = 0.02;
+  options.areas = {{Eigen::Vector3d(0.5, 0.5, 0.1), 0.4, 10}};
+  const Eigen::VectorXd radii = radius_field(mesh, options, RunContext{});
+  EXPECT_GT(radii.maxCoeff(), 2 * options.base);
+  const PointIndex index(mesh.vertices);
+  for (Eigen::Index v = 0; v < radii.size(); ++v) {
+    for (const auto& near : index.nearest(mesh.vertices.row(v).transpose(), kNeighbours + 1)) {
+      EXPECT_LE(radii[v], radii[near.index] + options.gradation * near.distance + 1e-12);
+    }
+  }
 }
 
 TEST(RadiusFieldOfThickness, IsHalfTheThicknessOfASlab) {

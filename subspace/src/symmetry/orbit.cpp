@@ -216,7 +216,7 @@ class Closure {
       if (continuous_place(set) != continuous_place(carried)) turn_back(continuous_place(set));
       if (set != carried) known = doublets_.find(position, set);
     }
-    note_stabiliser(known, word);
+    note_stabiliser(known, word, set);
     if (known >= 0) {
       meet(known, word, arrival, carried);
     } else {
@@ -229,12 +229,17 @@ class Closure {
     turn_alike(from, place, element, motion, known);
   }
 
-  // To go by a word and come back by that of the known point it arrives at keeps the seed, or nearly. A point of other
-  // places that merely lies there is another one.
-  void note_stabiliser(int known, int word) {
+  // To go by a word to where the seed is keeps it, or nearly; so does to go and come back by that of the known point it
+  // arrives at. Both are looked at: of several points that near one another, which is met depends on their order. A
+  // point of other places that merely lies there is another one.
+  void note_stabiliser(int known, int word, int set) {
     if (!(options_.snap > 0) || known < 0) return;
-    const Motion loop =
-        inverse(words_.motion(orbit_.points[static_cast<std::size_t>(known)].word)) * words_.motion(word);
+    const Motion& way = words_.motion(word);
+    if (regions_.comparable(set, set_of(0))) note_if_near(way);
+    if (known > 0) note_if_near(inverse(words_.motion(orbit_.points[static_cast<std::size_t>(known)].word)) * way);
+  }
+
+  void note_if_near(const Motion& loop) {
     const Eigen::Vector3d& start = orbit_.points.front().position;
     if ((loop(start) - start).norm() >= options_.snap) return;
     if ((loop.linear - Eigen::Matrix3d::Identity()).norm() > 1e-7) orbit_.stabilisers.push_back(loop);

@@ -33,7 +33,7 @@ class BorderCheck {
     for (int vertex = 0; vertex < static_cast<int>(sets_.size()); ++vertex) {
       if (vertex % 1024 == 0) context_.check();
       const std::vector<int> places = domains_.set_places(set_of(vertex));
-      if (places.size() < 2) continue;
+      if (places.size() == 1 && domains_.whole(places.front())) continue;
       for (const int place : places) {
         for (int e = 0; e < static_cast<int>(domains_.elements(place).size()); ++e) follow(vertex, place, e);
       }
@@ -44,21 +44,33 @@ class BorderCheck {
  private:
   int set_of(int vertex) const { return sets_[static_cast<std::size_t>(vertex)]; }
 
+  // The sets of the points that a place has at a position.
+  std::set<int> sets_at(const Eigen::Vector3d& position, int place) const {
+    std::set<int> result;
+    grid_.visit(position, [&](int vertex) {
+      if (domains_.holds(set_of(vertex), place)) result.insert(set_of(vertex));
+    });
+    return result;
+  }
+
   void follow(int vertex, int place, int element) {
+    const Eigen::Vector3d position = mesh_.vertices.row(vertex).transpose();
     const int carried = domains_.carried_set(set_of(vertex), place, element);
     const int arrival = domains_.arrival(place, element);
-    const Motion& motion = domains_.elements(place)[static_cast<std::size_t>(element)];
-    bool kept = false;
-    std::set<int> there;
-    grid_.visit(motion(mesh_.vertices.row(vertex).transpose()), [&](int other) {
-      const int set = set_of(other);
-      kept = kept || domains_.contains(set, carried);
-      if (domains_.holds(set, arrival)) there.insert(set);
-    });
-    if (kept || there.size() != 1) return;  // of several, which is meant is not known
+    const std::set<int> there = sets_at(domains_.elements(place)[static_cast<std::size_t>(element)](position), arrival);
+    if (there.size() != 1 || there.contains(carried)) return;  // of several, which is meant is not known
+    const int only = *there.begin();
+    if (domains_.contains(only, carried)) {
+      // Of parts that touch, the place has another here, whose image that is.
+      const bool others = std::ranges::any_of(sets_at(position, place), [&](int other) {
+        return other != set_of(vertex) && domains_.carried_set(other, place, element) == only;
+      });
+      if (others) result_[static_cast<std::size_t>(place)].insert(vertex);
+      return;
+    }
     for (const int other : domains_.set_places(set_of(vertex))) {
       const std::vector<int> images = domains_.images_of(other, place, element);
-      if (std::ranges::all_of(images, [&](int image) { return domains_.holds(*there.begin(), image); })) continue;
+      if (std::ranges::all_of(images, [&](int image) { return domains_.holds(only, image); })) continue;
       const bool smaller = domains_.face_count(place) < domains_.face_count(other);
       result_[static_cast<std::size_t>(smaller ? place : other)].insert(vertex);
     }
@@ -96,7 +108,8 @@ bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunCo
     std::vector<int> taken;
     std::size_t loser = 0;
     for (std::size_t place = 0; place < faces.size(); ++place) {
-      if (conflicts[place].empty() || domains.continuum(static_cast<int>(place)) != nullptr) continue;
+      const auto number = static_cast<int>(place);
+      if (conflicts[place].empty() || domains.whole(number) || domains.continuum(number) != nullptr) continue;
       std::vector<int> around = faces_around(mesh, *faces[place], conflicts[place]);
       const double share = static_cast<double>(around.size()) / static_cast<double>(faces[place]->size());
       if (around.empty() || share >= least) continue;
