@@ -22,8 +22,14 @@ void read_three_mf_of_bytes(std::span<const std::uint8_t> bytes) {
 }
 
 void decode_draco_of_bytes(std::span<const std::uint8_t> bytes) {
-  constexpr std::array<gltf::DracoRequest, 2> kRequests{{{0, gltf::kFloat, 3}, {1, gltf::kByte, 2}}};
-  constexpr std::array<std::size_t, 2> kRowSizes{12, 2};  // bytes
+  constexpr std::array<gltf::DracoRequest, 7> kRequests{{{0, gltf::kFloat, 3},
+                                                         {1, gltf::kByte, 2},
+                                                         {0, gltf::kUnsignedByte, 3},
+                                                         {0, gltf::kShort, 3},
+                                                         {1, gltf::kUnsignedShort, 4},
+                                                         {0, gltf::kUnsignedInt, 1},
+                                                         {77, gltf::kFloat, 3}}};
+  constexpr std::array<std::size_t, 7> kRowSizes{12, 2, 3, 6, 8, 4, 12};  // bytes
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   for (std::size_t count = 0; count <= kRequests.size(); ++count) {
     gltf::DracoMesh mesh;

@@ -80,6 +80,10 @@ void add_annotations(BadInputs& files) {
   change("parent_itself", R"("parent": null)", R"("parent": 0)");
   change("parent_missing", R"("parent": null)", R"("parent": 77)");
   change("residual_negative", R"("rms": )", R"("rms": -1, "was": )");
+  change("importance_half", R"("parent": null)", R"("parent": null, "importance": 0.5)");
+  change("importance_negative", R"("parent": null)", R"("parent": null, "importance": -0.5)");
+  change("importance_2", R"("parent": null)", R"("parent": null, "importance": 2)");
+  change("importance_word", R"("parent": null)", R"("parent": null, "importance": "large")");
   change("name_missing", R"("name")", R"("title")");
   change("pattern_word", R"("patterns": [)", R"("patterns": ["row")");
   change("pattern_kind", R"("patterns": [)", R"("patterns": [{"id": 0, "name": "", "kind": "helix"})");

@@ -233,7 +233,7 @@ class Closure {
   // arrives at. Both are looked at: of several points that near one another, which is met depends on their order. A
   // point of other places that merely lies there is another one.
   void note_stabiliser(int known, int word, int set) {
-    if (!(options_.snap > 0) || known < 0) return;
+    if (!(options_.snap > 0)) return;
     const Motion& way = words_.motion(word);
     if (regions_.comparable(set, set_of(0))) note_if_near(way);
     if (known > 0) note_if_near(inverse(words_.motion(orbit_.points[static_cast<std::size_t>(known)].word)) * way);
