@@ -366,6 +366,102 @@ TEST_P(OverlappingPattern, IsKeptBesideTheGroupsAroundIt) {
 
 INSTANTIATE_TEST_SUITE_P(Models, OverlappingPattern, testing::Values("facade", "chain"));
 
+Motion shifted(const Vector3d& way) {
+  return {Eigen::Matrix3d::Identity(), way};
+}
+
+Pattern row(const Motion& step, std::size_t count) {
+  Pattern result;
+  result.name = "row";
+  result.kind = step.linear.isIdentity() ? Pattern::Kind::translation_1d : Pattern::Kind::rotation;
+  result.generators = {step};
+  Motion motion;
+  for (std::size_t k = 0; k < count; ++k) {
+    result.instances.push_back({motion, {}});
+    motion = step * motion;
+  }
+  return result;
+}
+
+// Five pieces of one bar, each ending where the next begins: there the pieces give up a strip, and so they do at the
+// bar's ends, where it has its images.
+TEST(ConsistentAnnotation, CopiesThatTouchGiveUpWhereTheyDo) {
+  constexpr int kCells = 40;
+  const Mesh mesh = box({2.5, 0.5, 0.5}, kCells);
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  annotation.patterns = {row(shifted({1, 0, 0}), 5)};
+  const auto cells = [&](double low, double high) {
+    std::vector<int> result;
+    for (int f = 0; f < static_cast<int>(mesh.faces.rows()); ++f) {
+      const Eigen::VectorXd x = mesh.vertices(Eigen::VectorXi(mesh.faces.row(f)), 0);
+      if (x.minCoeff() > low - 1e-9 && x.maxCoeff() < high + 1e-9 && x.minCoeff() < x.maxCoeff()) result.push_back(f);
+    }
+    return result;
+  };
+  for (int k = 0; k < 5; ++k) {
+    annotation.patterns[0].instances[static_cast<std::size_t>(k)].faces = cells(k - 2.5, k - 1.5);
+  }
+  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+  ASSERT_TRUE(result.left_out.empty()) << said(result);
+  for (int k = 0; k < 5; ++k) {
+    const double strip = 5.0 / kCells;
+    EXPECT_EQ(result.annotation.patterns[0].instances[static_cast<std::size_t>(k)].faces,
+              cells(k - 2.5 + strip, k - 1.5 - strip));
+  }
+  expect_exact(mesh, result.annotation);
+}
+
+// Seats around half a circle, below a mirror: what a detector's step climbs is its error, which no turn takes away.
+TEST(ConsistentAnnotation, RotationsDoNotClimb) {
+  Mesh mesh;
+  const Motion step = Motion::rotation(Vector3d::UnitZ(), std::numbers::pi / 7, Vector3d::Zero());
+  SymmetryAnnotation annotation;
+  Pattern seats = row(Motion{step.linear, {0, 0, 1e-3}}, 8);
+  Motion place{Eigen::Matrix3d::Identity(), {3, 0, 0}};
+  for (PatternInstance& seat : seats.instances) {
+    seat.faces = append(mesh, box({0.2, 0.3, 0.4}, 3), place);
+    place = step * place;
+  }
+  annotation = empty_annotation(mesh, 0.005);
+  annotation.regions = {make_region(*PointGroup::parse("Cs"), Vector3d::Zero(), frame_about(Vector3d::UnitX()),
+                                    all_faces(mesh), "whole")};
+  annotation.patterns = {seats};
+  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+  ASSERT_TRUE(result.left_out.empty()) << said(result);
+  const Motion& fitted = result.annotation.patterns[0].generators[0];
+  EXPECT_LT(std::abs(fitted.translation.z()), 1e-12);
+  expect_exact(mesh, result.annotation);
+}
+
+// A row of five, and mirrors between neighbours, each a tenth of a tolerance off in its own way, as a detector finds
+// from many seeds: together they save more, but they contradict one another, and the row all of them.
+TEST(ConsistentAnnotation, APatternIsHeldAgainstAllVersionsOfWhatContradictsIt) {
+  constexpr int kVersions = 12;
+  Mesh mesh;
+  Pattern bars = row(shifted({1, 0, 0}), 5);
+  for (std::size_t k = 0; k < 5; ++k) {
+    bars.instances[k].faces = append(mesh, body({0.2, 0.3, 0.4}, 3), shifted({static_cast<double>(k), 0, 0}));
+  }
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  Random random(2, "versions");
+  for (std::size_t k = 0; k + 1 < 5; ++k) {
+    for (int version = 0; version < kVersions; ++version) {
+      std::vector<int> faces = bars.instances[k].faces;
+      const std::vector<int>& next = bars.instances[k + 1].faces;
+      faces.insert(faces.end(), next.begin(), next.end());
+      const Vector3d off = 1e-3 * random.direction();
+      annotation.regions.push_back(make_region(*PointGroup::parse("Cs"),
+                                               Vector3d(static_cast<double>(k) + 0.5, 0, 0) + off,
+                                               frame_about((Vector3d::UnitX() + off).normalized()), faces, "pair"));
+      annotation.regions.back().id = static_cast<int>(annotation.regions.size()) - 1;
+    }
+  }
+  annotation.patterns = {bars};
+  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+  EXPECT_EQ(result.annotation.patterns.size(), 1U) << said(result);
+  expect_exact(mesh, result.annotation);
+}
+
 struct Car {
   Mesh mesh;
   SymmetryAnnotation annotation;

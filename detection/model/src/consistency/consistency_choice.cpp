@@ -27,12 +27,14 @@ class Choice {
 
   ConsistentAnnotation run() {
     {
-      ConsistencySearch search(mesh_, annotation_, shapes_, {}, context_);
+      ConsistencySearch search(mesh_, annotation_, shapes_, {}, {}, context_);
       if (search.agrees() && disagreements(mesh_, annotation_, context_).empty()) return {annotation_, {}, 0, 0};
       for (std::size_t i = 0; i < annotation_.regions.size(); ++i) savings_[{false, i}] = search.saving({false, i});
       for (std::size_t i = 0; i < annotation_.patterns.size(); ++i) savings_[{true, i}] = search.saving({true, i});
     }
     best_ = search(excluded_);
+    while (prefer_a_pattern()) {
+    }
     while (improve()) {
     }
     readmit();
@@ -42,7 +44,7 @@ class Choice {
 
  private:
   ConsistencyOutcome search(const Excluded& excluded) {
-    return ConsistencySearch(mesh_, annotation_, shapes_, excluded, context_).run();
+    return ConsistencySearch(mesh_, annotation_, shapes_, excluded, preferred_, context_).run();
   }
 
   double saving(const std::vector<Claim>& family) const {
@@ -57,6 +59,22 @@ class Choice {
                       : std::pair(annotation_.regions[claim.number].name, annotation_.regions[claim.number].id);
     if (!name.empty()) return "\"" + name + "\"";
     return (claim.pattern ? "pattern " : "region ") + std::to_string(id);
+  }
+
+  // Of what overlaps it there are as many versions as a detector has seeds, each of which would take the next one's
+  // place: a pattern that saves more than they is held against all of them at once.
+  // \return whether one was
+  bool prefer_a_pattern() {
+    std::vector<Refused> refused = best_.refused;
+    std::ranges::stable_sort(refused, std::greater<>(), &Refused::saving);
+    for (const Refused& each : refused) {
+      const Claim& claim = each.claims.front();
+      if (!claim.pattern || !tried_patterns_.insert(claim.number).second) continue;
+      preferred_.insert(claim.number);
+      if (take(excluded_, search(excluded_))) return true;
+      preferred_.erase(claim.number);
+    }
+    return false;
   }
 
   // \return whether something refused could be kept instead of what was in its way, to the good of the whole
@@ -126,7 +144,9 @@ class Choice {
   const RunContext& context_;
   RegionShapes shapes_;
   Excluded excluded_;
-  std::map<Claim, double> savings_;  // of all claims, whole
+  std::set<std::size_t> preferred_;       // patterns with which all else is to agree
+  std::set<std::size_t> tried_patterns_;  // that were, or would have been
+  std::map<Claim, double> savings_;       // of all claims, whole
   ConsistencyOutcome best_;
   std::set<Excluded> tried_;
 };

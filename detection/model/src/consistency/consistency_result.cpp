@@ -36,15 +36,16 @@ bool ConsistencySearch::drop_contradictions() {
         has_image = match.share >= 0.5;
       }
       if (has_image) continue;
-      const bool mover_is_smaller = shapes_.area(move.domain) < shapes_.area(known.shape);
-      const std::string reason = "it overlaps " + (mover_is_smaller ? label(j) : name_of(move)) +
-                                 ", and the one's group has no image of the other";
       const Claim mover = mover_of(move);
-      const Claim loser = mover_is_smaller ? mover : Claim{false, j};
+      const bool mover_is_less = mover.pattern ? !preferred_.contains(mover.number) && saving(mover) < saving(j)
+                                               : shapes_.area(move.domain) < shapes_.area(known.shape);
+      const std::string reason = "it overlaps " + (mover_is_less ? label(j) : name_of(move)) +
+                                 ", and the one's group has no image of the other";
+      const Claim loser = mover_is_less ? mover : Claim{false, j};
       if (!loser.pattern && regions_[loser.number].source >= 0) {
         regions_[loser.number].state = State::out;
       } else {
-        refuse({loser}, {reason, {mover_is_smaller ? Claim{false, j} : mover}});
+        refuse({loser}, {reason, {mover_is_less ? Claim{false, j} : mover}});
       }
       return true;
     }

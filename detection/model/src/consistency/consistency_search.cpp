@@ -29,7 +29,8 @@ RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnota
 }
 
 ConsistencySearch::ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, RegionShapes& shapes,
-                                     const std::map<Claim, std::string>& excluded, const RunContext& context)
+                                     const std::map<Claim, std::string>& excluded,
+                                     const std::set<std::size_t>& preferred, const RunContext& context)
     : mesh_(mesh),
       annotation_(annotation),
       context_(context),
@@ -37,7 +38,8 @@ ConsistencySearch::ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation&
       tolerance_(annotation.tolerance * diagonal_),
       rounding_(policy_.exact * (diagonal_ + mesh.vertices.cwiseAbs().maxCoeff())),
       shapes_(shapes),
-      given_shapes_(shapes.count()) {
+      given_shapes_(shapes.count()),
+      preferred_(preferred) {
   int shape = 0;
   for (const Region& region : annotation.regions) {
     regions_.push_back({region, shape++, place_of(region), State::waiting, -1, regions_.size()});
@@ -174,6 +176,16 @@ void ConsistencySearch::add_moves_of_pattern(std::size_t pattern) {
   }
 }
 
+void ConsistencySearch::find_moves() {
+  moves_.clear();
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (regions_[i].state == State::placed) add_moves_of_region(i);
+  }
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    if (patterns_[i].state == State::placed) add_moves_of_pattern(i);
+  }
+}
+
 ConsistencyOutcome ConsistencySearch::run() {
   struct Item {
     bool pattern;
@@ -202,17 +214,10 @@ ConsistencyOutcome ConsistencySearch::run() {
       if (patterns_[item.number].state == State::waiting) place_pattern(item.number);
     } else if (regions_[item.number].state == State::waiting) {
       place_family(item.number);
+      if (regions_[item.number].state == State::placed) yield_to_preferred(item.number);
     }
   }
-  while (drop_contradictions()) {
-    moves_.clear();
-    for (std::size_t i = 0; i < regions_.size(); ++i) {
-      if (regions_[i].state == State::placed) add_moves_of_region(i);
-    }
-    for (std::size_t i = 0; i < patterns_.size(); ++i) {
-      if (patterns_[i].state == State::placed) add_moves_of_pattern(i);
-    }
-  }
+  while (drop_contradictions()) find_moves();
   const double saved = total_saving();
   return {result(), saved, std::move(refused_)};
 }

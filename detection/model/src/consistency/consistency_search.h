@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "orbifit/model/consistent_annotation.h"
@@ -73,8 +75,10 @@ class ConsistencySearch {
  public:
   /// \param shapes  of the regions' faces, then of the patterns' instances' (shapes_of()); more are added
   /// \param excluded  what is left out from the start, and why
+  /// \param preferred  patterns, by number, with which all else is to agree
   ConsistencySearch(const Mesh& mesh, const SymmetryAnnotation& annotation, RegionShapes& shapes,
-                    const std::map<Claim, std::string>& excluded, const RunContext& context);
+                    const std::map<Claim, std::string>& excluded, const std::set<std::size_t>& preferred,
+                    const RunContext& context);
   ~ConsistencySearch();
   ConsistencySearch(const ConsistencySearch&) = delete;
   ConsistencySearch& operator=(const ConsistencySearch&) = delete;
@@ -187,6 +191,11 @@ class ConsistencySearch {
   Claim mover_of(const Move& move) const;
 
   void place_pattern(std::size_t number);
+  void yield_to_preferred(std::size_t region);
+  bool keeps_group(const KnownPattern& known, std::size_t region) const;
+  std::vector<int> given_up(const KnownPattern& known, std::size_t instance) const;
+  bool trim_pattern(KnownPattern& known);
+  std::variant<KnownPattern, Refusal> fitted(const KnownPattern& known);
   Verdict fit_pattern(KnownPattern& known) const;
   Verdict follow_from(std::size_t root, const KnownPattern& known, InstanceOrbits& orbits) const;
   std::optional<std::size_t> arrival_of(const KnownPattern& known, std::size_t from, const Move& move,
@@ -202,6 +211,7 @@ class ConsistencySearch {
 
   void add_moves_of_region(std::size_t region);
   void add_moves_of_pattern(std::size_t pattern);
+  void find_moves();
   bool drop_contradictions();
   void trim_slivers();
   ConsistentAnnotation result();
@@ -219,6 +229,7 @@ class ConsistencySearch {
   std::vector<KnownRegion> regions_;
   std::vector<KnownPattern> patterns_;
   std::vector<Move> moves_;
+  std::set<std::size_t> preferred_;  // patterns
   std::vector<LeftOut> left_out_;
   std::vector<Refused> refused_;
   double largest_movement_ = 0;  // mesh units

@@ -1,6 +1,7 @@
 // Patterns in a consistent annotation: where the groups around take their instances, and whether both agree.
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -114,18 +115,122 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
   return std::nullopt;
 }
 
+// Whether the pattern's motions take a region's group to itself.
+bool ConsistencySearch::keeps_group(const KnownPattern& known, std::size_t region) const {
+  const GroupPlace& place = *regions_[region].place;
+  return std::ranges::all_of(known.pattern.instances, [&](const PatternInstance& instance) {
+    return group_distance(place, instance.motion, place, extent(region)) <= 10 * rounding_;
+  });
+}
+
+// What an instance gives up: where it touches another, since a point on both has an image on every pair of neighbours
+// but the last; where it touches a region whose group its motions do not keep; and where it overlaps a region and
+// neither holds the other, what one of them has less of.
+std::vector<int> ConsistencySearch::given_up(const KnownPattern& known, std::size_t instance) const {
+  const int shape = known.shapes[instance];
+  std::vector<int> result;
+  const auto add = [&](const std::vector<int>& faces) { result.insert(result.end(), faces.begin(), faces.end()); };
+  for (const int other : known.shapes) {
+    if (other != shape && shapes_.touch(shape, other)) add(shapes_.faces_at(shape, other));
+  }
+  for (std::size_t r = 0; r < regions_.size(); ++r) {
+    const KnownRegion& region = regions_[r];
+    if (region.state != State::placed || !shapes_.touch(shape, region.shape)) continue;
+    if (!shapes_.meet(shape, region.shape)) {
+      if (!keeps_group(known, r)) add(shapes_.faces_at(shape, region.shape));
+      continue;
+    }
+    if (shapes_.within(shape, region.shape) || shapes_.within(region.shape, shape)) continue;
+    if (2 * shapes_.common_area(shape, region.shape) < shapes_.area(shape)) {
+      add(shapes_.faces_at(shape, region.shape));
+      continue;
+    }
+    std::vector<int> outside;
+    std::ranges::set_difference(shapes_.faces(shape), shapes_.faces(region.shape), std::back_inserter(outside));
+    add(outside);
+  }
+  std::ranges::sort(result);
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+// All instances give up what one does. \return whether enough is left of each
+bool ConsistencySearch::trim_pattern(KnownPattern& known) {
+  const int before = shapes_.count();
+  std::vector<PatternInstance>& instances = known.pattern.instances;
+  std::vector<std::vector<int>> lost;
+  for (std::size_t t = 0; t < known.shapes.size(); ++t) lost.push_back(given_up(known, t));
+  if (std::ranges::all_of(lost, [](const auto& faces) { return faces.empty(); })) return true;
+  const auto lose_images = [&](std::size_t from, std::size_t to) {
+    if (lost[from].empty() || from == to) return;
+    const Motion motion = instances[to].motion * inverse(instances[from].motion);
+    const int part = shapes_.add(lost[from]);
+    const std::vector<int> faces = shapes_.image_faces(part, known.shapes[from], motion, known.shapes[to]);
+    shapes_.keep(before);
+    std::vector<int> both;
+    std::ranges::set_union(lost[to], faces, std::back_inserter(both));
+    lost[to] = std::move(both);
+  };
+  for (std::size_t t = 1; t < lost.size(); ++t) lose_images(t, 0);
+  for (std::size_t t = 1; t < lost.size(); ++t) lose_images(0, t);
+  std::vector<int> shapes;
+  for (std::size_t t = 0; t < lost.size(); ++t) {
+    const int shape = known.shapes[t];
+    std::vector<int> left;
+    std::ranges::set_difference(shapes_.faces(shape), lost[t], std::back_inserter(left));
+    if (left.empty()) break;
+    shapes.push_back(shapes_.add(left));
+    if (shapes_.area(shapes.back()) < policy_.left * shapes_.area(shape)) break;
+  }
+  if (shapes.size() < lost.size() || shapes_.area(shapes.back()) < policy_.left * shapes_.area(known.shapes.back())) {
+    shapes_.keep(before);
+    return false;
+  }
+  for (std::size_t t = 0; t < lost.size(); ++t) instances[t].faces = shapes_.faces(shapes[t]);
+  known.shapes = std::move(shapes);
+  return true;
+}
+
+// Trimmed and fitted to what is placed, or why it cannot be.
+std::variant<ConsistencySearch::KnownPattern, ConsistencySearch::Refusal> ConsistencySearch::fitted(
+    const KnownPattern& known) {
+  KnownPattern result = known;
+  if (result.shapes.size() < 2) return Refusal{"it has fewer than two instances", {}};
+  if (!trim_pattern(result)) return Refusal{"regions that overlap it leave too little of its instances", {}};
+  if (Verdict refusal = fit_pattern(result)) return *refusal;
+  return result;
+}
+
 void ConsistencySearch::place_pattern(std::size_t number) {
-  KnownPattern fitted = patterns_[number];
-  Verdict refusal;
-  if (fitted.shapes.size() < 2) refusal = Refusal{"it has fewer than two instances", {}};
-  if (!refusal) refusal = fit_pattern(fitted);
-  if (refusal) {
+  auto result = fitted(patterns_[number]);
+  if (const Refusal* refusal = std::get_if<Refusal>(&result)) {
     refuse({{true, number}}, *refusal);
     return;
   }
-  patterns_[number] = std::move(fitted);
+  patterns_[number] = std::move(std::get<KnownPattern>(result));
   patterns_[number].state = State::placed;
   add_moves_of_pattern(number);
+}
+
+// A family that was just placed goes again where a preferred pattern would not agree with it.
+void ConsistencySearch::yield_to_preferred(std::size_t region) {
+  for (const std::size_t number : preferred_) {
+    if (patterns_[number].state != State::waiting) continue;
+    const int before = shapes_.count();
+    const bool agrees = std::holds_alternative<KnownPattern>(fitted(patterns_[number]));
+    shapes_.keep(before);
+    if (agrees) continue;
+    std::vector<Claim> family;
+    for (std::size_t i = 0; i < regions_.size(); ++i) {
+      if (regions_[i].state == State::placed && regions_[i].family == regions_[region].family) {
+        family.push_back({false, i});
+      }
+    }
+    refuse(std::move(family),
+           {"it contradicts \"" + patterns_[number].pattern.name + "\", which saves more", {{true, number}}});
+    find_moves();
+    return;
+  }
 }
 
 }  // namespace orbifit

@@ -130,6 +130,13 @@ std::vector<std::vector<int>> single_steps(std::size_t count) {
   return result;
 }
 
+// Without what it shifts along its axis, which is the detector's error.
+Motion turned_only(Motion motion) {
+  const Vector3d axis = Eigen::AngleAxisd(motion.linear).axis();
+  motion.translation -= axis.dot(motion.translation) * axis;
+  return motion;
+}
+
 // Nothing where an image is farther than `near` from all products of single steps. \param own  the group that keeps the
 // first instance
 std::optional<std::vector<StepImage>> images_of_steps(const std::vector<Motion>& steps,
@@ -251,10 +258,14 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known, c
   const std::vector<Motion>& normalisers = orbits.normalisers;
   Pattern& pattern = known.pattern;
   const Extent& extent = shapes_.extent(known.shapes[0]);
-  const Steps given(pattern.generators, extent);
+  std::vector<Motion> generators = pattern.generators;
+  if (pattern.kind == Pattern::Kind::rotation) {
+    for (Motion& generator : generators) generator = turned_only(generator);
+  }
+  const Steps given(generators, extent);
   const double near = length(policy_.same_group);
   const std::vector<Motion> own = closure(orbits.stabilisers[0], extent, near);
-  const auto images = images_of_steps(pattern.generators, normalisers, own, extent, near);
+  const auto images = images_of_steps(generators, normalisers, own, extent, near);
   if (!images) return "the groups around it do not keep its steps";
   const auto hard = [&](const VectorXd& x) {
     std::vector<double> rows;
@@ -265,11 +276,17 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known, c
     }
     return as_vector(rows);
   };
-  const VectorXd missed = hard(VectorXd::Zero(given.unknowns()));
-  if (missed.size() == 0 || missed.cwiseAbs().maxCoeff() <= rounding_) return std::nullopt;
-  const auto soft = [](const VectorXd& x) { return x; };
-  const VectorXd x = nearest_solution(given.unknowns(), hard, soft, extent.reach);
-  if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its steps cannot agree with the groups around it";
+  VectorXd x = VectorXd::Zero(given.unknowns());
+  const VectorXd missed = hard(x);
+  if (missed.size() > 0 && missed.cwiseAbs().maxCoeff() > rounding_) {
+    x = nearest_solution(
+        given.unknowns(), hard, [](const VectorXd& y) { return y; }, extent.reach);
+    if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its steps cannot agree with the groups around it";
+  } else if (std::ranges::equal(generators, pattern.generators, [&](const Motion& a, const Motion& b) {
+               return distance(a, b, extent) <= rounding_;
+             })) {
+    return std::nullopt;
+  }
   const std::vector<Motion> steps = given.at(x);
   // Instances are products of steps: counted with the steps as they were, put together of the new ones.
   for (PatternInstance& instance : pattern.instances) {

@@ -45,12 +45,14 @@ struct ConsistentAnnotation {
 /// that cannot be placed within the annotation's tolerance is refused, with its reason. Of two regions that overlap in
 /// part, and where the one's group has no image of the other, the smaller gives up what the larger takes of it, with
 /// all images of that, as long as half of it stays. Patterns take part in the same way: their steps are fitted to the
-/// groups around them, and take regions within one instance to those of the others.
+/// groups around them, and take regions within one instance to those of the others. Copies that touch one another, or a
+/// region whose group the pattern's motions do not keep, give up the faces there.
 ///
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
 /// barred it where that saves more, and so is what was given up. A region of order |G| saves its area log2 |G| times,
 /// as often as its group halves it, and a pattern of n instances theirs log2 n times. Regions of the whole are never
-/// given up. What a region holds of another but for a sliver at the border counts as all of it.
+/// given up. What a region holds of another but for a sliver at the border counts as all of it. At last regions give up
+/// faces around vertices whose images lie in regions that they do not.
 ///
 /// An annotation that is consistent comes back as it is.
 /// \pre the annotation fits the mesh (read_annotation checks it)
