@@ -433,35 +433,6 @@ TEST(ConsistentAnnotation, RotationsDoNotClimb) {
   expect_exact(mesh, result.annotation);
 }
 
-// A row of five, and mirrors between neighbours, each a tenth of a tolerance off in its own way, as a detector finds
-// from many seeds: together they save more, but they contradict one another, and the row all of them.
-TEST(ConsistentAnnotation, APatternIsHeldAgainstAllVersionsOfWhatContradictsIt) {
-  constexpr int kVersions = 12;
-  Mesh mesh;
-  Pattern bars = row(shifted({1, 0, 0}), 5);
-  for (std::size_t k = 0; k < 5; ++k) {
-    bars.instances[k].faces = append(mesh, body({0.2, 0.3, 0.4}, 3), shifted({static_cast<double>(k), 0, 0}));
-  }
-  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
-  Random random(2, "versions");
-  for (std::size_t k = 0; k + 1 < 5; ++k) {
-    for (int version = 0; version < kVersions; ++version) {
-      std::vector<int> faces = bars.instances[k].faces;
-      const std::vector<int>& next = bars.instances[k + 1].faces;
-      faces.insert(faces.end(), next.begin(), next.end());
-      const Vector3d off = 1e-3 * random.direction();
-      annotation.regions.push_back(make_region(*PointGroup::parse("Cs"),
-                                               Vector3d(static_cast<double>(k) + 0.5, 0, 0) + off,
-                                               frame_about((Vector3d::UnitX() + off).normalized()), faces, "pair"));
-      annotation.regions.back().id = static_cast<int>(annotation.regions.size()) - 1;
-    }
-  }
-  annotation.patterns = {bars};
-  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
-  EXPECT_EQ(result.annotation.patterns.size(), 1U) << said(result);
-  expect_exact(mesh, result.annotation);
-}
-
 struct Car {
   Mesh mesh;
   SymmetryAnnotation annotation;
