@@ -71,8 +71,7 @@ class BorderCheck {
     for (const int other : domains_.set_places(set_of(vertex))) {
       const std::vector<int> images = domains_.images_of(other, place, element);
       if (std::ranges::all_of(images, [&](int image) { return domains_.holds(only, image); })) continue;
-      const bool smaller = domains_.face_count(place) < domains_.face_count(other);
-      result_[static_cast<std::size_t>(smaller ? place : other)].insert(vertex);
+      for (const int either : {place, other}) result_[static_cast<std::size_t>(either)].insert(vertex);
     }
   }
 

@@ -209,9 +209,19 @@ ConsistencyOutcome ConsistencySearch::run() {
       items, [](const Item& a, const Item& b) { return a.area != b.area ? a.area > b.area : a.order > b.order; });
   for (std::size_t i = 0; i < items.size(); ++i) {
     context_.progress("consistency", static_cast<double>(i) / static_cast<double>(items.size()));
-    const Item& item = items[i];
+    const Item item = items[i];
     if (item.pattern) {
-      if (patterns_[item.number].state == State::waiting) place_pattern(item.number);
+      if (patterns_[item.number].state != State::waiting) continue;
+      const double left = trimmed_area(item.number) / (1 - RegionShapes::kSliver);
+      if (left > 0 && left < (1 - RegionShapes::kSliver) * item.area) {  // others hold an instance now
+        const auto later = std::find_if(items.begin() + static_cast<std::ptrdiff_t>(i) + 1, items.end(),
+                                        [&](const Item& other) { return other.area < left; });
+        if (later != items.begin() + static_cast<std::ptrdiff_t>(i) + 1) {
+          items.insert(later, {true, item.number, left, 0});
+          continue;
+        }
+      }
+      place_pattern(item.number);
     } else if (regions_[item.number].state == State::waiting) {
       place_family(item.number);
       if (regions_[item.number].state == State::placed) yield_to_preferred(item.number);

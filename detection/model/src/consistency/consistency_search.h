@@ -194,6 +194,7 @@ class ConsistencySearch {
   void yield_to_preferred(std::size_t region);
   bool keeps_group(const KnownPattern& known, std::size_t region) const;
   std::vector<int> given_up(const KnownPattern& known, std::size_t instance) const;
+  double trimmed_area(std::size_t number);
   bool trim_pattern(KnownPattern& known);
   std::variant<KnownPattern, Refusal> fitted(const KnownPattern& known);
   Verdict fit_pattern(KnownPattern& known) const;

@@ -191,6 +191,18 @@ bool ConsistencySearch::trim_pattern(KnownPattern& known) {
   return true;
 }
 
+// Of the largest instance, beside what is placed; 0 where too little is left.
+double ConsistencySearch::trimmed_area(std::size_t number) {
+  const int before = shapes_.count();
+  KnownPattern known = patterns_[number];
+  double area = 0;
+  if (trim_pattern(known)) {
+    for (const int shape : known.shapes) area = std::max(area, shapes_.area(shape));
+  }
+  shapes_.keep(before);
+  return area;
+}
+
 // Trimmed and fitted to what is placed, or why it cannot be.
 std::variant<ConsistencySearch::KnownPattern, ConsistencySearch::Refusal> ConsistencySearch::fitted(
     const KnownPattern& known) {

@@ -282,9 +282,8 @@ std::optional<std::string> ConsistencySearch::fit_lattice(KnownPattern& known, c
     x = nearest_solution(
         given.unknowns(), hard, [](const VectorXd& y) { return y; }, extent.reach);
     if (hard(x).cwiseAbs().maxCoeff() > rounding_) return "its steps cannot agree with the groups around it";
-  } else if (std::ranges::equal(generators, pattern.generators, [&](const Motion& a, const Motion& b) {
-               return distance(a, b, extent) <= rounding_;
-             })) {
+  } else if (std::equal(generators.begin(), generators.end(), pattern.generators.begin(),
+                        [&](const Motion& a, const Motion& b) { return distance(a, b, extent) <= rounding_; })) {
     return std::nullopt;
   }
   const std::vector<Motion> steps = given.at(x);
