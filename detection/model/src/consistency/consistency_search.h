@@ -192,7 +192,7 @@ class ConsistencySearch {
 
   void place_pattern(std::size_t number);
   void yield_to_preferred(std::size_t region);
-  bool keeps_group(const KnownPattern& known, std::size_t region) const;
+  bool takes_along(const KnownPattern& known, std::size_t instance, std::size_t region) const;
   std::vector<int> given_up(const KnownPattern& known, std::size_t instance) const;
   double trimmed_area(std::size_t number);
   bool trim_pattern(KnownPattern& known);

@@ -115,17 +115,22 @@ ConsistencySearch::Verdict ConsistencySearch::fit_pattern(KnownPattern& known) c
   return std::nullopt;
 }
 
-// Whether the pattern's motions take a region's group to itself.
-bool ConsistencySearch::keeps_group(const KnownPattern& known, std::size_t region) const {
+// Whether the pattern's motions take the group of a region at an instance to groups that are placed.
+bool ConsistencySearch::takes_along(const KnownPattern& known, std::size_t instance, std::size_t region) const {
   const GroupPlace& place = *regions_[region].place;
-  return std::ranges::all_of(known.pattern.instances, [&](const PatternInstance& instance) {
-    return group_distance(place, instance.motion, place, extent(region)) <= 10 * rounding_;
+  const Motion back = inverse(known.pattern.instances[instance].motion);
+  return std::ranges::all_of(known.pattern.instances, [&](const PatternInstance& other) {
+    for (std::size_t k = 0; k < regions_.size(); ++k) {
+      if (regions_[k].state != State::placed) continue;
+      if (group_distance(place, other.motion * back, *regions_[k].place, extent(k)) <= 10 * rounding_) return true;
+    }
+    return false;
   });
 }
 
 // What an instance gives up: where it touches another, since a point on both has an image on every pair of neighbours
-// but the last; where it touches a region whose group its motions do not keep; and where it overlaps a region and
-// neither holds the other, what one of them has less of.
+// but the last; where it touches a region that its motions do not take along; and where it overlaps such a region, what
+// one of the two has less of.
 std::vector<int> ConsistencySearch::given_up(const KnownPattern& known, std::size_t instance) const {
   const int shape = known.shapes[instance];
   std::vector<int> result;
@@ -136,12 +141,10 @@ std::vector<int> ConsistencySearch::given_up(const KnownPattern& known, std::siz
   for (std::size_t r = 0; r < regions_.size(); ++r) {
     const KnownRegion& region = regions_[r];
     if (region.state != State::placed || !shapes_.touch(shape, region.shape)) continue;
-    if (!shapes_.meet(shape, region.shape)) {
-      if (!keeps_group(known, r)) add(shapes_.faces_at(shape, region.shape));
-      continue;
-    }
-    if (shapes_.within(shape, region.shape) || shapes_.within(region.shape, shape)) continue;
-    if (2 * shapes_.common_area(shape, region.shape) < shapes_.area(shape)) {
+    const bool meets = shapes_.meet(shape, region.shape);
+    if (meets && (shapes_.within(shape, region.shape) || shapes_.within(region.shape, shape))) continue;
+    if (takes_along(known, instance, r)) continue;
+    if (!meets || 2 * shapes_.common_area(shape, region.shape) < shapes_.area(shape)) {
       add(shapes_.faces_at(shape, region.shape));
       continue;
     }

@@ -46,7 +46,7 @@ struct ConsistentAnnotation {
 /// part, and where the one's group has no image of the other, the smaller gives up what the larger takes of it, with
 /// all images of that, as long as half of it stays. Patterns take part in the same way: their steps are fitted to the
 /// groups around them, and take regions within one instance to those of the others. Copies that touch one another, or a
-/// region whose group the pattern's motions do not keep, give up the faces there.
+/// region whose group the pattern's motions do not take along, give up the faces there.
 ///
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
 /// barred it where that saves more, and so is what was given up. A region of order |G| saves its area log2 |G| times,
