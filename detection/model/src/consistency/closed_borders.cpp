@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "consistency/consistency_search.h"
 #include "domains/closed_sets.h"
 #include "domains/domain_map.h"
 #include "domains/vertex_sets.h"
@@ -13,8 +14,6 @@
 namespace orbifit {
 
 namespace {
-
-constexpr double kMost = 0.5;  // of a region's faces: one that would lose more is left as it is
 
 // Of each place the vertices around which it cannot be kept.
 using Conflicts = std::vector<std::set<int>>;
@@ -103,7 +102,7 @@ bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunCo
   while (true) {
     const DomainMap domains(mesh, annotation, instance_motions(annotation));
     const Conflicts conflicts = BorderCheck(mesh, domains, context).run();
-    double least = kMost;
+    double least = 1 - ConsistencyPolicy{}.left;  // what would lose more is left as it is
     std::vector<int> taken;
     std::size_t loser = 0;
     for (std::size_t place = 0; place < faces.size(); ++place) {

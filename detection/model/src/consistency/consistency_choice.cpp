@@ -69,6 +69,7 @@ class Choice {
     std::ranges::stable_sort(refused, std::greater<>(), &Refused::saving);
     for (const Refused& each : refused) {
       const Claim& claim = each.claims.front();
+      if (shapes_.work() >= ConsistencyPolicy{}.work) return false;
       if (!claim.pattern || !tried_patterns_.insert(claim.number).second) continue;
       preferred_.insert(claim.number);
       if (take(excluded_, search(excluded_))) return true;
