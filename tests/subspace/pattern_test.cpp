@@ -10,6 +10,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "base/random.h"
+#include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
 #include "parts.h"
 #include "subspaces.h"
@@ -43,14 +44,13 @@ std::vector<Row> rows() {
 }
 
 // Wedges that stand apart on a plate: no motion maps a wedge or the plate with them onto itself.
-GeneratedModel model_of(const Row& row) {
+GeneratedModel model_of(const Row& row, const Mesh& part = wedge(0.3)) {
   GeneratedModel model;
   append(model.mesh, placed(box({1.6, 1.1, 0.05}, 6), {Eigen::Matrix3d::Identity(), {0.8, 0.4, -0.35}}));
   Pattern pattern;
   pattern.name = row.name;
   pattern.kind = row.kind;
   pattern.generators = row.generators;
-  const Mesh part = wedge(0.3);
   const auto add = [&](const Motion& motion) {
     pattern.instances.push_back({motion, append(model.mesh, placed(part, motion))});
   };
@@ -231,6 +231,54 @@ TEST(PatternInARegion, KeepsBoth) {
     const WorstResidual worst = worst_residual(model, subspace, random_state(subspace, 0.03));
     EXPECT_LT(worst.residual, 1e-12) << to_string(mode) << ": " << worst.name;
   }
+}
+
+// Turned in all ways at once in which its groups may turn, each by another angle, the model is as free as at rest.
+void expect_agreeing_turns(const Subspace& subspace, const ConjugatedRegions& regions) {
+  const Eigen::VectorXd angles =
+      Eigen::VectorXd::NullaryExpr(regions.freedom(), [](Eigen::Index k) { return 0.2 + 0.1 * double(k); });
+  EXPECT_TRUE(
+      keeps_freedom(subspace, regions.rotations(regions.turned(regions.rest(), angles)), 1e-12 * subspace->diagonal));
+}
+
+// Blocks with a mirror each, in a row, grid, arc, stair or anyhow: what the pattern takes to one another turns alike.
+TEST(PatternOfRegions, TurnAlike) {
+  for (const Row& row : rows()) {
+    SCOPED_TRACE(row.name);
+    GeneratedModel model = model_of(row, box({0.15, 0.1, 0.12}, 3));
+    for (const PatternInstance& instance : model.truth.patterns[0].instances) {
+      const Motion& motion = instance.motion;
+      model.truth.regions.push_back(make_region(PointGroup::parse("Cs").value(), motion.translation,
+                                                frame_about(motion.linear.col(0)), instance.faces, "block"));
+    }
+    const Subspace subspace = subspace_of(model, GroupMode::moving, 0.05);
+    const ConjugatedRegions regions(subspace);
+    EXPECT_EQ(regions.freedom(), 3);
+    expect_agreeing_turns(subspace, regions);
+    const WorstResidual worst = worst_residual(model, subspace, random_state(subspace, 0.03));
+    EXPECT_LT(worst.residual, 1e-12) << worst.name;
+  }
+}
+
+// The steps of an arc stay as they are, so that the mirror of all of it cannot turn, however the handles ask for it.
+TEST(PatternInARegion, AMirrorOfAnArcDoesNotTurn) {
+  GeneratedModel model;
+  const auto turn = [](int steps) { return Motion::rotation(Eigen::Vector3d::UnitX(), 0.35 * steps, {0, 1.3, 0}); };
+  Pattern pattern;
+  pattern.name = "arc";
+  pattern.kind = Kind::rotation;
+  pattern.generators = {turn(1)};
+  for (int a = 0; a < 5; ++a) {
+    pattern.instances.push_back({turn(a), append(model.mesh, placed(box({0.1, 0.08, 0.15}, 3), turn(a - 2)))});
+  }
+  model.truth = whole(model.mesh, PointGroup::parse("Cs").value(), Eigen::Vector3d::Zero()).truth;
+  model.truth.patterns.push_back(pattern);
+  const Subspace subspace = subspace_of(model, GroupMode::moving, 0.06);
+  const ConjugatedRegions regions(subspace);
+  EXPECT_LT(regions.freedom(), 3);  // about the mirror's normal it may
+  expect_agreeing_turns(subspace, regions);
+  const WorstResidual worst = worst_residual(model, subspace, random_state(subspace, 0.03));
+  EXPECT_LT(worst.residual, 1e-12) << worst.name;
 }
 
 }  // namespace

@@ -50,7 +50,8 @@ MatrixXd applied(const LiftWeights& scalar, const MatrixXd& stacked) {
 bool ConjugatedRegions::nested(int inner, int outer) const {
   const auto& small = samples_[static_cast<std::size_t>(inner)];
   const auto& large = samples_[static_cast<std::size_t>(outer)];
-  return small.size() < large.size() && std::ranges::includes(large, small);
+  const bool instance = outer >= subspace_->regions->count();  // may be no more than the region
+  return small.size() < large.size() + (instance ? 1 : 0) && std::ranges::includes(large, small);
 }
 
 bool ConjugatedRegions::overlap(int a, int b) const {
@@ -63,10 +64,10 @@ bool ConjugatedRegions::overlap(int a, int b) const {
 ConjugatedRegions::ConjugatedRegions(const Subspace& subspace, const RunContext& context) : subspace_(subspace) {
   const RegionMap& regions = *subspace->regions;
   const auto count = static_cast<std::size_t>(regions.count());
-  samples_.resize(count);
+  samples_.resize(static_cast<std::size_t>(regions.places()));
   for (int k = 0; k < static_cast<int>(subspace->sampling.sets.size()); ++k) {
     for (const int place : regions.set_places(subspace->sampling.sets[static_cast<std::size_t>(k)])) {
-      if (place < regions.count()) samples_[static_cast<std::size_t>(place)].push_back(k);
+      samples_[static_cast<std::size_t>(place)].push_back(k);
     }
   }
   Points centroids = Points::Zero(static_cast<Eigen::Index>(count), 3);
@@ -142,7 +143,7 @@ void ConjugatedRegions::keep_agreeing(const RunContext& context) {
   take(0);
 }
 
-// The family of a region: all that the elements of regions around take it to.
+// The family of a region: all that the elements of regions around it, and the motions of patterns, take it to.
 void ConjugatedRegions::gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
                                std::vector<char>& taken) {
   const RegionMap& regions = *subspace_->regions;
@@ -152,9 +153,9 @@ void ConjugatedRegions::gather(std::size_t first, const std::vector<int>& order,
   Matrix3d bound = Matrix3d::Zero();
   for (std::size_t m = 0; m < family.members.size(); ++m) {
     const Member member = family.members[m];
-    for (const int outer : order) {
+    for (int outer = 0; outer < regions.places(); ++outer) {
       if (!nested(member.region, outer)) continue;
-      for (const Motion& element : regions.test_elements(outer)) {
+      for (const Motion& element : outer < regions.count() ? regions.test_elements(outer) : regions.elements(outer)) {
         const Vector3d centroid = element(Vector3d(centroids.row(member.region).transpose()));
         const Vector3d centre = element(regions.centre(member.region));
         const Matrix3d linear = element.linear.determinant() * element.linear * member.from_first;
@@ -199,7 +200,7 @@ void ConjugatedRegions::gather(std::size_t first, const std::vector<int>& order,
 }
 
 std::vector<Matrix3d> ConjugatedRegions::rotations(const Turns& turns) const {
-  std::vector<Matrix3d> result(samples_.size(), Matrix3d::Identity());
+  std::vector<Matrix3d> result(around_.size(), Matrix3d::Identity());
   for (std::size_t f = 0; f < families_.size(); ++f) {
     for (const Member& member : families_[f].members) {
       const Matrix3d& to = member.from_first;  // det(O) O: conjugation does not mind the sign
@@ -248,7 +249,7 @@ MatrixXd ConjugatedRegions::columns(const Turns& turns, const Points& samples, c
 
 MatrixXd ConjugatedRegions::vertex_columns(const Turns& turns, const std::vector<int>& vertices, const Points& points,
                                            const Points& centres) const {
-  Held held(samples_.size());
+  Held held(around_.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     for (const int place : subspace_->regions->set_places(set_of_vertex(subspace_->orbits, vertices[i]))) {
       if (place < subspace_->regions->count()) held[static_cast<std::size_t>(place)].push_back(static_cast<int>(i));
@@ -279,7 +280,7 @@ MatrixXd ConjugatedRegions::columns_of(const Turns& turns, const Held& held, con
 }
 
 MatrixXd ConjugatedRegions::arms(const Turns& turns, const LiftWeights& spread, const Points& missing) const {
-  const Points none = Points::Zero(static_cast<Eigen::Index>(samples_.size()), 3);
+  const Points none = Points::Zero(static_cast<Eigen::Index>(around_.size()), 3);
   MatrixXd result = MatrixXd::Zero(3 * missing.rows(), freedom_);
   for (int c = 0; c < 3; ++c) {
     Points arm = Points::Zero(spread.cols(), 3);

@@ -21,10 +21,10 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector);
 Eigen::MatrixXd applied(const LiftWeights& scalar, const Eigen::MatrixXd& stacked);
 
 /// How the regions' groups may turn in mode `moving` (docs/method.md 2.2) without contradicting one another. Regions
-/// that elements of larger ones take to one another form a family: when g takes region i to j, their rotations relative
-/// to the regions around them obey Q_j = g Q_i g^-1. What takes a region to itself leaves it only the rotations that
-/// commute with it. Regions that overlap without nesting turn together. Ways of turning that contradict one another all
-/// the same are found by trying them and given up, those of smaller regions first.
+/// that elements of larger ones, or motions of patterns, take to one another form a family: when g takes region i to j,
+/// their rotations relative to the regions around them obey Q_j = g Q_i g^-1. What takes a region to itself leaves it
+/// only the rotations that commute with it. Regions that overlap without nesting turn together. Ways of turning that
+/// contradict one another all the same are found by trying them and given up, those of smaller regions first.
 class ConjugatedRegions {
  public:
   explicit ConjugatedRegions(const Subspace& subspace, const RunContext& context = RunContext{});
@@ -72,7 +72,7 @@ class ConjugatedRegions {
     std::vector<Member> members;
     Eigen::MatrixXd free;  ///< 3 by 0..3, orthonormal: the first member's rotation vectors
   };
-  using Held = std::vector<std::vector<int>>;  ///< of each region, ascending
+  using Held = std::vector<std::vector<int>>;  ///< by place, ascending
   Eigen::MatrixXd columns_of(const Turns& turns, const Held& held, const Points& points, const Points& centres) const;
   void keep_agreeing(const RunContext& context);
   void gather(std::size_t first, const std::vector<int>& order, const Points& centroids, double near,
@@ -81,7 +81,7 @@ class ConjugatedRegions {
   bool overlap(int a, int b) const;
 
   const Subspace& subspace_;
-  Held samples_;
+  Held samples_;                  ///< of each place: regions, then patterns' instances
   std::vector<int> around_;       ///< smallest region around each; -1: none
   std::vector<Family> families_;  ///< those of larger regions first
   int freedom_ = 0;
