@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,27 +21,44 @@ class Closure {
   Closure(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept, const RunContext& context)
       : mesh_(mesh), given_(given), kept_(kept), context_(context), areas_(face_areas(mesh)) {}
 
+  // What motions take to one another goes together: without one, the others would lose their image.
   // \return whether anything had to go
   bool leave_out_disagreement() {
-    SymmetryAnnotation& kept = kept_.annotation;
-    const Disagreements pairs = disagreements(mesh_, kept, context_);
-    std::map<Claim, double> barred;
-    for (const auto& [pair, count] : pairs) {
-      barred[pair.first] += kept_saving(pair.second);
-      barred[pair.second] += kept_saving(pair.first);
+    std::vector<ClaimFamily> families;
+    const Disagreements pairs = disagreements(mesh_, kept_.annotation, context_, &families);
+    std::map<Claim, std::size_t> family_of;
+    std::vector<double> savings(families.size(), 0);
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      for (const Claim& claim : families[f]) {
+        family_of[claim] = f;
+        savings[f] += kept_saving(claim);
+      }
     }
-    const Claim* worst = nullptr;
+    std::map<std::size_t, std::set<std::size_t>> against;
+    for (const auto& [pair, count] : pairs) {
+      const std::size_t a = family_of.at(pair.first);
+      const std::size_t b = family_of.at(pair.second);
+      against[a].insert(b);
+      against[b].insert(a);
+    }
+    const ClaimFamily* worst = nullptr;
     double most = 0;
-    for (const auto& [claim, sum] : barred) {
-      const double ratio = sum / kept_saving(claim);
-      if (holds_everything(claim) || ratio <= most) continue;
+    for (const auto& [family, others] : against) {
+      double barred = 0;
+      for (const std::size_t other : others) barred += savings[other];
+      const double ratio = barred / savings[family];
+      if (ratio <= most ||
+          std::ranges::any_of(families[family], [&](const Claim& claim) { return holds_everything(claim); })) {
+        continue;
+      }
       most = ratio;
-      worst = &claim;
+      worst = &families[family];
     }
     if (worst == nullptr) return false;
+    const auto among = [&](const Claim& claim) { return std::ranges::binary_search(*worst, claim); };
     const auto partner = std::ranges::find_if(
-        pairs, [&](const auto& entry) { return entry.first.first == *worst || entry.first.second == *worst; });
-    leave_out(*worst, partner->first.first == *worst ? partner->first.second : partner->first.first);
+        pairs, [&](const auto& entry) { return among(entry.first.first) || among(entry.first.second); });
+    leave_out(*worst, among(partner->first.first) ? partner->first.second : partner->first.first);
     return true;
   }
 
@@ -66,12 +84,18 @@ class Closure {
     return sum * halvings(pattern.instances.size());
   }
 
-  void leave_out(const Claim& claim, const Claim& other) {
+  void leave_out(const ClaimFamily& family, const Claim& other) {
+    const std::string reason =
+        family == ClaimFamily{other}
+            ? "its copies disagree about what lies on them"
+            : "where it meets " + kept_label(other) + ", the motions of the one do not take the other along";
+    for (auto claim = family.rbegin(); claim != family.rend(); ++claim) leave_out(*claim, reason);  // numbers stay
+    set_parents(kept_.annotation.regions);
+  }
+
+  void leave_out(const Claim& claim, const std::string& reason) {
     SymmetryAnnotation& kept = kept_.annotation;
     const auto number = static_cast<std::ptrdiff_t>(claim.number);
-    const std::string reason =
-        other == claim ? "its copies disagree about what lies on them"
-                       : "where it meets " + kept_label(other) + ", the motions of the one do not take the other along";
     if (claim.pattern) {
       const Pattern& pattern = kept.patterns[claim.number];
       kept_.left_out.push_back({true, pattern.id, pattern.name, to_string(pattern.kind), reason});
@@ -86,7 +110,6 @@ class Closure {
       --kept_.added;
     }
     kept.regions.erase(kept.regions.begin() + number);
-    set_parents(kept.regions);
   }
 
   std::string kept_label(const Claim& claim) const {

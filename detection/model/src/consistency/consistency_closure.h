@@ -7,9 +7,9 @@
 
 namespace orbifit {
 
-/// Leaves out of `kept` what disagreements() names, until it names nothing: of all claims that disagree, again and
-/// again the one that saves least for what it bars. The whole shape's regions are never given up. \param given  where
-/// `kept` was chosen from
+/// Leaves out of `kept` what disagreements() names, until it names nothing: of all families of claims that disagree,
+/// again and again the one that saves least for what it bars. The whole shape's regions are never given up. \param
+/// given  where `kept` was chosen from
 void leave_out_disagreements(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
                              const RunContext& context);
 

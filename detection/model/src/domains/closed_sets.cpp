@@ -1,6 +1,7 @@
 #include "domains/closed_sets.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "domains/domain_map.h"
@@ -30,6 +31,13 @@ class Check {
     for (std::size_t p = 0; p < annotation.patterns.size(); ++p) {
       claims_.insert(claims_.end(), annotation.patterns[p].instances.size(), {true, p});
     }
+    family_.resize(claims_.size());
+    for (std::size_t place = 0; place < claims_.size(); ++place) {  // a pattern's instances are one claim
+      family_[place] = static_cast<int>(place);
+      if (domains_.first_of_same_pattern(static_cast<int>(place)) >= 0) {
+        family_[place] = domains_.first_of_same_pattern(static_cast<int>(place));
+      }
+    }
     products_.resize(static_cast<std::size_t>(domains_.count()));
     for (const int set : sets_of_vertices(mesh, domains_)) reach(set);
     for (int face = 0; face < mesh.faces.rows(); ++face) reach(domains_.set_of_face(face));
@@ -49,6 +57,17 @@ class Check {
     return std::move(result_);
   }
 
+  std::vector<ClaimFamily> families() {
+    std::map<int, std::set<Claim>> members;
+    for (std::size_t place = 0; place < claims_.size(); ++place) {
+      members[root(static_cast<int>(place))].insert(claims_[place]);
+    }
+    std::vector<ClaimFamily> result;
+    for (const auto& [first, claims] : members) result.emplace_back(claims.begin(), claims.end());
+    std::ranges::sort(result);
+    return result;
+  }
+
  private:
   struct Product {
     int first, second, both;  // elements: second after first
@@ -64,7 +83,10 @@ class Check {
     for (const int other : places) {
       // What holds all of it need not come along: of finite groups all elements are tried from wherever they act.
       if (domains_.around(other, place) && domains_.continuum(other) == nullptr) continue;
-      if (domains_.images_of(other, place, element).empty()) blame(other, place);
+      const std::vector<int> images = domains_.images_of(other, place, element);
+      if (images.empty()) blame(other, place);
+      if (!domains_.around(place, other)) continue;
+      for (const int image : images) family_[static_cast<std::size_t>(root(image))] = root(other);
     }
     const int arrival = domains_.arrival(place, element);
     expect(domains_.carried_set(there, arrival, domains_.inverse_element(place, element)), set, place);
@@ -97,6 +119,11 @@ class Check {
     return known;
   }
 
+  int root(int place) {
+    int& above = family_[static_cast<std::size_t>(place)];
+    return above == place ? place : above = root(above);
+  }
+
   void expect(int set, int due, int place) {
     if (set == due) return;
     for (const int other : domains_.set_places(set)) {
@@ -116,6 +143,7 @@ class Check {
   const RunContext& context_;
   DomainMap domains_;
   std::vector<Claim> claims_;  // by place
+  std::vector<int> family_;    // by place, another one of its family, nearer to the family's first
   std::vector<std::vector<Product>> products_;
   std::set<int> reached_;
   std::vector<int> queue_;
@@ -133,8 +161,12 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
   return result;
 }
 
-Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
-  return Check(mesh, annotation, context).run();
+Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+                            std::vector<ClaimFamily>* families) {
+  Check check(mesh, annotation, context);
+  Disagreements result = check.run();
+  if (families != nullptr) *families = check.families();
+  return result;
 }
 
 }  // namespace orbifit

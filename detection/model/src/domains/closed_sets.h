@@ -22,6 +22,9 @@ struct Claim {
 /// Two claims, the lesser first, and how often the one's motions lose the other, or find it where it was not.
 using Disagreements = std::map<std::pair<Claim, Claim>, int>;
 
+/// Claims of which motions of others, that hold them, take one to the next: without one the others would have no image.
+using ClaimFamily = std::vector<Claim>;
+
 /// Of each pattern, the motions of its instances, as a DomainMap wants them.
 std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& annotation);
 
@@ -31,6 +34,8 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
 /// under the motions is the same wherever it begins, and a field made of such closures is exact by construction. Where
 /// it does not hold, two claims are named each time. Empty: it holds. Cost O(F), and for each set the orders of the
 /// groups that hold it.
-Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+/// \param families  if given, all claims, each in one family, ascending
+Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+                            std::vector<ClaimFamily>* families = nullptr);
 
 }  // namespace orbifit

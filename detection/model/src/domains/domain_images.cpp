@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kSamePiece = 0.0125;  // of the diagonal: 2.5 usual tolerances, as consistency's `reach`
-constexpr std::size_t kMarks = 32;     // of a place's corners, spread over it, tell it from its twins
+constexpr Eigen::Index kMarks = 32;    // of a place's corners, spread over it, tell it from its twins
 constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
 
 // Places that have no image yet, and those that are no image.
@@ -51,22 +51,19 @@ bool is_identity(const Motion& motion) {
 
 }  // namespace
 
-PieceMoments DomainMap::common_faces(int a, int b) const {
-  PieceMoments result;
+const PieceMoments& DomainMap::common_faces(int a, int b) const {
+  const auto [entry, added] = common_.try_emplace(std::minmax(a, b));
+  if (!added) return entry->second;
   for (std::size_t set = 0; set < moments_.size(); ++set) {
-    if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) result += moments_[set];
+    if (holds(static_cast<int>(set), a) && holds(static_cast<int>(set), b)) entry->second += moments_[set];
   }
-  return result;
+  return entry->second;
 }
 
 // Of the faces that both places hold; of all of the second where they merely touch.
-PieceMoments DomainMap::common_moments(int a, int b) const {
-  PieceMoments result = common_faces(a, b);
-  if (result.area > 0) return result;
-  for (std::size_t set = 0; set < moments_.size(); ++set) {
-    if (holds(static_cast<int>(set), b)) result += moments_[set];
-  }
-  return result;
+const PieceMoments& DomainMap::common_moments(int a, int b) const {
+  const PieceMoments& common = common_faces(a, b);
+  return common.area > 0 ? common : common_faces(b, b);
 }
 
 // Of the faces that both places hold; where they merely touch, of the vertices that both have.
@@ -89,10 +86,10 @@ void DomainMap::find_twins(const Mesh& mesh) {
                kSamePiece;
   };
   const auto mark = [&](int place) {
-    std::vector<Eigen::Vector3d>& marks = twins_[place];
-    if (!marks.empty()) return;
+    if (twins_.contains(place)) return;
     // Not the faces' centroids: flat sides may be cut into triangles either way.
-    for (const int vertex : vertices_of_faces(mesh, at(place).faces)) marks.emplace_back(mesh.vertices.row(vertex));
+    Points marks = mesh.vertices(vertices_of_faces(mesh, at(place).faces), Eigen::all);
+    twins_.emplace(place, Marks{marks, PointIndex(marks)});
   };
   for (int p = 0; p < places(); ++p) {
     for (int q = 0; q < p; ++q) {
@@ -109,14 +106,11 @@ double DomainMap::piece_distance(int from, const Motion& motion, int to) const {
   const auto a = twins_.find(from);
   const auto b = twins_.find(to);
   if (a == twins_.end() || b == twins_.end()) return 0;
-  const std::size_t step = 1 + (a->second.size() - 1) / kMarks;
+  const Eigen::Index step = 1 + (a->second.points.rows() - 1) / kMarks;
   double sum = 0;
   double marks = 0;
-  for (std::size_t i = 0; i < a->second.size(); i += step, ++marks) {
-    const Eigen::Vector3d image = motion(a->second[i]);
-    double nearest = kFar;
-    for (const Eigen::Vector3d& mark : b->second) nearest = std::min(nearest, (mark - image).squaredNorm());
-    sum += std::sqrt(nearest);
+  for (Eigen::Index i = 0; i < a->second.points.rows(); i += step, ++marks) {
+    sum += b->second.index.nearest(motion(a->second.points.row(i).transpose()), 1).front().distance;
   }
   return sum / marks / size_;
 }
@@ -211,9 +205,11 @@ std::vector<int> DomainMap::exact_images(int place, int element) const {
 }
 
 std::vector<int> DomainMap::images_of(int other, int place, int element) const {
+  const std::vector<std::pair<int, int>>& pairs = images(place, element).pairs;
   std::vector<int> result;
-  for (const auto& [from, to] : images(place, element).pairs) {
-    if (from == other) result.push_back(to);
+  for (auto pair = std::ranges::lower_bound(pairs, std::pair(other, 0)); pair != pairs.end() && pair->first == other;
+       ++pair) {
+    result.push_back(pair->second);
   }
   return result;
 }
@@ -223,8 +219,11 @@ int DomainMap::carried_set(int set, int place, int element) const {
   const auto [entry, added] = known.sets.try_emplace(set, -1);
   if (added) {
     std::vector<int> members = around_[static_cast<std::size_t>(arrival(place, element))];
-    for (const auto& [from, to] : known.pairs) {
-      if (holds(set, from)) members.push_back(to);
+    const std::vector<int>& places = set_places(set);
+    auto next = places.begin();
+    for (const auto& [from, to] : known.pairs) {  // both ascend
+      next = std::lower_bound(next, places.end(), from);
+      if (next != places.end() && *next == from) members.push_back(to);
     }
     std::ranges::sort(members);
     members.erase(std::unique(members.begin(), members.end()), members.end());

@@ -16,6 +16,7 @@
 #include "orbifit/model/motion.h"
 
 #include "domains/piece_moments.h"
+#include "geometry/point_index.h"
 
 namespace orbifit {
 
@@ -135,9 +136,9 @@ class DomainMap {
   };
   bool group_goes_to(int from, const Motion& motion, int to) const;
   int intern(const std::vector<int>& places) const;
-  PieceMoments common_moments(int a, int b) const;
+  const PieceMoments& common_moments(int a, int b) const;
   PieceMoments common_piece(int a, int b) const;
-  PieceMoments common_faces(int a, int b) const;
+  const PieceMoments& common_faces(int a, int b) const;
   Motion told_from_origin(const Motion& motion) const;
   Images find_images(int place, int element) const;
   Images& images(int place, int element) const;
@@ -161,8 +162,13 @@ class DomainMap {
   std::vector<std::vector<int>> around_;                     // of each place, the places that hold all faces of it
   std::vector<PieceMoments> moments_;                        // of the faces of each set
   std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
-  std::map<int, std::vector<Eigen::Vector3d>> twins_;        // places that moments do not tell apart: corners
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();         // of the moments
+  struct Marks {
+    Points points;
+    PointIndex index;
+  };
+  std::map<int, Marks> twins_;                                  // places that moments do not tell apart: corners
+  mutable std::map<std::pair<int, int>, PieceMoments> common_;  // of the faces that two places hold, as known so far
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();            // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
 };
 
