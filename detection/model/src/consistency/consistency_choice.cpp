@@ -23,7 +23,7 @@ class Choice {
       : mesh_(mesh),
         annotation_(annotation),
         context_(context),
-        shapes_(ConsistencySearch::shapes_of(mesh, annotation)) {}
+        shapes_(ConsistencySearch::shapes_of(mesh, annotation, context)) {}
 
   ConsistentAnnotation run() {
     {

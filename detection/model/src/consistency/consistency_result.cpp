@@ -30,10 +30,8 @@ bool ConsistencySearch::drop_contradictions() {
         const KnownRegion& other = regions_[k];
         if (other.state != State::placed || !shapes_.touch(other.shape, move.arrival)) continue;
         if (group_distance(*known.place, move.motion, *other.place, extent(k)) > 10 * rounding_) continue;
-        const RegionShapes::Match match =
-            meets ? shapes_.match(known.shape, move.domain, move.motion, other.shape, move.arrival)
-                  : shapes_.match(known.shape, known.shape, move.motion, other.shape, other.shape);
-        has_image = match.share >= 0.5;
+        has_image = (meets ? shapes_.arrived(known.shape, move.domain, move.motion, other.shape, move.arrival)
+                           : shapes_.arrived(known.shape, known.shape, move.motion, other.shape, other.shape)) >= 0.5;
       }
       if (has_image) continue;
       const Claim mover = mover_of(move);

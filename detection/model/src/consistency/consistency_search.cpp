@@ -19,8 +19,9 @@ bool stands_at(const Region& region, const GroupPlace& place, const Extent& exte
   });
 }
 
-RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation) {
-  RegionShapes result(mesh, ConsistencyPolicy{}.reach * annotation.tolerance * diagonal(mesh.vertices));
+RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation,
+                                          const RunContext& context) {
+  RegionShapes result(mesh, ConsistencyPolicy{}.reach * annotation.tolerance * diagonal(mesh.vertices), context);
   for (const Region& region : annotation.regions) result.add(region.faces);
   for (const Pattern& pattern : annotation.patterns) {
     for (const PatternInstance& instance : pattern.instances) result.add(instance.faces);

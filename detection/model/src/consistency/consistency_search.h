@@ -83,7 +83,7 @@ class ConsistencySearch {
   ConsistencySearch(const ConsistencySearch&) = delete;
   ConsistencySearch& operator=(const ConsistencySearch&) = delete;
 
-  static RegionShapes shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation);
+  static RegionShapes shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
 
   /// Whether all regions and patterns agree as they are, to rounding: nothing is to be done then.
   bool agrees();

@@ -38,11 +38,13 @@ std::optional<std::size_t> ConsistencySearch::nearest_image(std::size_t region, 
     if (group_distance(*from.place, motion, *known.place, extent(other)) > length(policy_.same_group)) continue;
     // Of what merely touches, all.
     const bool meets = shapes_.meet(from.shape, domain) && shapes_.meet(known.shape, arrival);
-    const RegionShapes::Match match = meets ? shapes_.match(from.shape, domain, motion, known.shape, arrival)
-                                            : shapes_.match(from.shape, from.shape, motion, known.shape, known.shape);
-    if (match.share < policy_.arrived || match.distance >= best_distance) continue;
+    const int left = meets ? domain : from.shape;
+    const int reached = meets ? arrival : known.shape;
+    if (shapes_.arrived(from.shape, left, motion, known.shape, reached) < policy_.arrived) continue;
+    const double distance = shapes_.distance(from.shape, left, motion, known.shape, reached);
+    if (distance >= best_distance) continue;
     best = other;
-    best_distance = match.distance;
+    best_distance = distance;
   }
   return best;
 }
@@ -114,7 +116,7 @@ ConsistencySearch::Verdict ConsistencySearch::turn_with(const Move& move, std::s
     }
   }
   const Motion some = turning.group.has_axis() ? Motion::rotation(turning.frame.col(2), 1, turning.centre) : Motion{};
-  if (meets && shapes_.match(shape, move.domain, some, shape, move.arrival).share < policy_.arrived) {
+  if (meets && shapes_.arrived(shape, move.domain, some, shape, move.arrival) < policy_.arrived) {
     return refusal("it lies on " + name_of(move) + " and does not turn with it");
   }
   family.asking.push_back(mover_of(move));

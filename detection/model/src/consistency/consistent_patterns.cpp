@@ -20,9 +20,10 @@ std::optional<std::size_t> ConsistencySearch::arrival_of(const KnownPattern& kno
       continue;
     const int domain = meets ? move.domain : known.shapes[from];
     const int arrival = meets ? move.arrival : known.shapes[to];
-    const auto match = shapes_.match(known.shapes[from], domain, move.motion, known.shapes[to], arrival);
-    if (match.share < policy_.arrived || match.distance >= best) continue;
-    best = match.distance;
+    if (shapes_.arrived(known.shapes[from], domain, move.motion, known.shapes[to], arrival) < policy_.arrived) continue;
+    const double distance = shapes_.distance(known.shapes[from], domain, move.motion, known.shapes[to], arrival);
+    if (distance >= best) continue;
+    best = distance;
     result = to;
   }
   return result;

@@ -84,8 +84,9 @@ double spread(int number, int base) {
 
 }  // namespace
 
-RegionShapes::RegionShapes(const Mesh& mesh, double near)
+RegionShapes::RegionShapes(const Mesh& mesh, double near, const RunContext& context)
     : mesh_(mesh),
+      context_(context),
       near_(near),
       diagonal_(diagonal(mesh.vertices)),
       origin_(bounding_box_centre(mesh.vertices)),
@@ -230,7 +231,7 @@ bool RegionShapes::ends_at(int inner, int outer) const {
   return result;
 }
 
-RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& motion, int to, int arrival) const {
+double RegionShapes::arrived(int from, int domain, const Motion& motion, int to, int arrival) const {
   const auto arriving = [&](int shape, int within, const Motion& way, int target) {
     const Shape& source = at(shape);
     const std::vector<char>& holds = at(within).holds;
@@ -247,25 +248,36 @@ RegionShapes::Match RegionShapes::match(int from, int domain, const Motion& moti
     }
     return 1 - static_cast<double>(missed) / static_cast<double>(taken);  // or hopeless
   };
-  Match result;
-  result.share = arriving(from, domain, motion, to);
-  if (result.share < 0.5) return result;
-  result.share = std::min(result.share, arriving(to, arrival, inverse(motion), from));
+  const double there = arriving(from, domain, motion, to);
+  return there < 0.5 ? there : std::min(there, arriving(to, arrival, inverse(motion), from));
+}
+
+double RegionShapes::distance(int from, int domain, const Motion& motion, int to, int arrival) const {
   const Motion told{Eigen::Matrix3d::Identity(), -origin_};
-  result.distance =
-      separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival), diagonal_);
-  return result;
+  return separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival),
+                    diagonal_);
 }
 
 std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
+  constexpr std::size_t kWorthAThread = 512;  // faces, of which each takes up to a microsecond
   const Motion back = inverse(motion);
+  const Shape& source = at(from);
+  const SurfaceIndex& surface = index(domain);
+  const std::vector<int>& faces = at(arrival).faces;
+  work_ += faces.size();
+  std::vector<char> brought(faces.size(), 0);
+  const auto look = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d origin = back(centroids_.row(faces[i]).transpose());
+      if (source.box.exteriorDistance(origin) > near_) continue;
+      const int nearest = surface.nearest(origin, near_).face;
+      brought[i] = nearest >= 0 && source.holds[static_cast<std::size_t>(nearest)] != 0 ? 1 : 0;
+    }
+  };
+  parallel_for(context_, faces.size(), look, kWorthAThread);
   std::vector<int> result;
-  work_ += at(arrival).faces.size();
-  for (const int face : at(arrival).faces) {
-    const Vector3d origin = back(centroids_.row(face).transpose());
-    if (at(from).box.exteriorDistance(origin) > near_) continue;
-    const auto nearest = index(domain).nearest(origin, near_);
-    if (nearest.face >= 0 && at(from).holds[static_cast<std::size_t>(nearest.face)] != 0) result.push_back(face);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (brought[i] != 0) result.push_back(faces[i]);
   }
   return result;
 }

@@ -12,6 +12,7 @@
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
 
 #include "consistency/group_place.h"
 #include "domains/piece_moments.h"
@@ -25,7 +26,8 @@ namespace orbifit {
 class RegionShapes {
  public:
   /// \param near how far an image may lie from the surface, mesh units
-  RegionShapes(const Mesh& mesh, double near);
+  /// \param context  its threads are used; kept by reference
+  RegionShapes(const Mesh& mesh, double near, const RunContext& context);
 
   /// \return the number of the new shape
   int add(const std::vector<int>& faces);
@@ -60,13 +62,12 @@ class RegionShapes {
   bool within(int inner, int outer) const;
   bool same(int a, int b) const { return within(a, b) && within(b, a); }
 
-  struct Match {
-    double share = 0;     ///< of the samples that arrive, there or back, whichever are fewer
-    double distance = 0;  ///< separation() of the two pieces: of several that match, the least is the image
-  };
+  /// How well `motion` takes the part of `from` within `domain` to the part of `to` within `arrival`: the share of the
+  /// samples that arrive, there or back, whichever are fewer. Where less than a half does, it is not counted on.
+  double arrived(int from, int domain, const Motion& motion, int to, int arrival) const;
 
-  /// How well `motion` takes the part of `from` within `domain` to the part of `to` within `arrival`.
-  Match match(int from, int domain, const Motion& motion, int to, int arrival) const;
+  /// separation() of these two parts: of several to which a motion leads, the least is the image.
+  double distance(int from, int domain, const Motion& motion, int to, int arrival) const;
 
   /// The faces of `arrival` that `motion` brings from faces of `from`: each whose centroid, taken back, has a face of
   /// `from` as its nearest of `domain`.
@@ -103,6 +104,7 @@ class RegionShapes {
   void sample(Shape& shape) const;
 
   const Mesh& mesh_;
+  const RunContext& context_;
   double near_;
   double diagonal_;
   Eigen::Vector3d origin_;  // of the moments
