@@ -6,6 +6,8 @@
 
 #include "orbifit/model/point_group.h"
 
+#include "consistency/consistency_closure.h"
+
 namespace orbifit {
 namespace {
 
@@ -137,6 +139,34 @@ TEST(Disagreements, AreNoneOfAPatternThatARegionHoldsInPart) {
   // Nor where the region ends within an instance.
   annotation.regions = {patch(0, 4, 0, 8, 8)};
   EXPECT_FALSE(disagreements(plate(), annotation, RunContext{}).empty());
+}
+
+// What the mirror around takes to one another is one family, and so is what lies on the instances of a pattern.
+TEST(Disagreements, TellWhatStandsOrFallsTogether) {
+  SymmetryAnnotation annotation;
+  annotation.regions = {patch(0, 0, 0, 8, 8), patch(1, 2, 1, 4, 3), patch(2, 2, 5, 4, 7)};
+  std::vector<ClaimFamily> families;
+  EXPECT_TRUE(disagreements(plate(), annotation, RunContext{}, &families).empty());
+  EXPECT_EQ(families, (std::vector<ClaimFamily>{{{false, 0}}, {{false, 1}, {false, 2}}}));
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::congruent;
+  pattern.instances = {{Motion{}, patch(0, 1, 0, 5, 3).faces},
+                       {Motion{Eigen::Matrix3d::Identity(), Vector3d(0, 1, 0)}, patch(0, 1, 4, 5, 7).faces}};
+  annotation.regions.erase(annotation.regions.begin());
+  annotation.patterns = {pattern};
+  disagreements(plate(), annotation, RunContext{}, &families);
+  EXPECT_EQ(families, (std::vector<ClaimFamily>{{{false, 0}, {false, 1}}, {{true, 0}}}));
+}
+
+// Two patches that are images of one another save more than what overlaps both of them, one alone would not.
+TEST(Disagreements, AreSettledForAWholeFamily) {
+  SymmetryAnnotation annotation;
+  annotation.regions = {patch(0, 0, 0, 8, 8), patch(1, 0, 1, 4, 3), patch(2, 0, 5, 4, 7), patch(3, 0, 2, 3, 6)};
+  ConsistentAnnotation kept{annotation, {}, 0, 0};
+  leave_out_disagreements(plate(), annotation, kept, RunContext{});
+  ASSERT_EQ(kept.left_out.size(), 1U);
+  EXPECT_EQ(kept.left_out[0].id, 3);
+  EXPECT_EQ(kept.annotation.regions.size(), 3U);
 }
 
 }  // namespace
