@@ -27,6 +27,19 @@ void number(SymmetryAnnotation& annotation) {
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
 }
 
+void take_out(SymmetryAnnotation& annotation, const std::vector<LeftOut>& left_out) {
+  const auto gone = [&](bool pattern, int id) {
+    return std::ranges::any_of(left_out, [&](const LeftOut& each) { return each.pattern == pattern && each.id == id; });
+  };
+  std::erase_if(annotation.regions, [&](const Region& region) { return gone(false, region.id); });
+  std::erase_if(annotation.patterns, [&](const Pattern& pattern) { return gone(true, pattern.id); });
+}
+
+bool same_claims(const SymmetryAnnotation& a, const SymmetryAnnotation& b) {
+  return std::ranges::equal(a.regions, b.regions, {}, &Region::id, &Region::id) &&
+         std::ranges::equal(a.patterns, b.patterns, {}, &Pattern::id, &Pattern::id);
+}
+
 // Largest regions first. \param left_out  how many were, told in a message
 SymmetryAnnotation sorted(const Mesh& mesh, SymmetryAnnotation annotation, std::size_t left_out,
                           const RunContext& context) {
@@ -59,17 +72,15 @@ SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& f
 SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
                                              Explanation* explanation, const RunContext& context) {
   number(found);
+  SymmetryAnnotation listed = without_what_follows(prepared, found, context);
   for (std::size_t gone = 0;;) {
-    ConsistentAnnotation kept = consistent_annotation(mesh, without_what_follows(prepared, found, context), context);
+    ConsistentAnnotation kept = consistent_annotation(mesh, listed, context);
     note_left_out(kept.left_out, explanation);
-    if (kept.left_out.empty()) return sorted(mesh, std::move(kept.annotation), gone, context);
     gone += kept.left_out.size();
-    const auto left_out = [&](bool pattern, int id) {
-      return std::ranges::any_of(kept.left_out,
-                                 [&](const LeftOut& each) { return each.pattern == pattern && each.id == id; });
-    };
-    std::erase_if(found.regions, [&](const Region& region) { return left_out(false, region.id); });
-    std::erase_if(found.patterns, [&](const Pattern& pattern) { return left_out(true, pattern.id); });
+    for (SymmetryAnnotation* annotation : {&found, &listed}) take_out(*annotation, kept.left_out);
+    SymmetryAnnotation again = kept.left_out.empty() ? listed : without_what_follows(prepared, found, context);
+    if (same_claims(again, listed)) return sorted(mesh, std::move(kept.annotation), gone, context);
+    listed = std::move(again);  // what was left out had implied something
   }
 }
 
