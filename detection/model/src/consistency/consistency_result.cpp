@@ -82,11 +82,13 @@ bool ConsistencySearch::agrees() {
 }
 
 // Of two that overlap by a sliver the smaller loses it, and what it has outside of one that holds all but a sliver of
-// it: then each pair is disjoint, nested, or overlaps as the search has seen it.
+// it: then each pair is disjoint, nested, or overlaps as the search has seen it. A region and an instance that are the
+// same but for a sliver become the same, as they may be at the other instances.
 void ConsistencySearch::trim_slivers() {
   struct Part {
     std::vector<int>* faces;
     double area;
+    bool instance;
   };
   const Eigen::VectorXd areas = face_areas(mesh_);
   const auto area_of = [&](const std::vector<int>& faces) {
@@ -96,12 +98,12 @@ void ConsistencySearch::trim_slivers() {
   };
   std::vector<Part> parts;
   for (KnownRegion& known : regions_) {
-    if (known.state == State::placed) parts.push_back({&known.region.faces, area_of(known.region.faces)});
+    if (known.state == State::placed) parts.push_back({&known.region.faces, area_of(known.region.faces), false});
   }
   for (KnownPattern& known : patterns_) {
     if (known.state != State::placed) continue;
     for (PatternInstance& instance : known.pattern.instances) {
-      parts.push_back({&instance.faces, area_of(instance.faces)});
+      parts.push_back({&instance.faces, area_of(instance.faces), true});
     }
   }
   std::ranges::stable_sort(parts, std::greater<>(), &Part::area);
@@ -110,8 +112,13 @@ void ConsistencySearch::trim_slivers() {
     for (std::size_t j = i + 1; j < parts.size(); ++j) {
       std::vector<int> common;
       std::ranges::set_intersection(*parts[i].faces, *parts[j].faces, std::back_inserter(common));
-      if (common.empty() || common.size() == parts[j].faces->size()) continue;
+      if (common.empty()) continue;
       const double shared = area_of(common);
+      if (parts[i].instance != parts[j].instance && shared >= (1 - RegionShapes::kSliver) * parts[i].area) {
+        *parts[i].faces = *parts[j].faces = std::move(common);
+        continue;
+      }
+      if (common.size() == parts[j].faces->size()) continue;
       if (shared <= RegionShapes::kSliver * parts[j].area) {
         std::vector<int> rest;
         std::ranges::set_difference(*parts[j].faces, common, std::back_inserter(rest));

@@ -159,16 +159,19 @@ DomainMap::Images DomainMap::find_images(int place, int element) const {
   Unpaired open{{}, meeting_[static_cast<std::size_t>(arrival)]};
   for (const int p : here) {
     // A place all around, or the place itself, stays.
-    if (p == place || (std::ranges::binary_search(open.to, p) && around(p, place) && around(p, arrival))) {
-      result.pairs.emplace_back(p, p == place ? arrival : p);
+    const int to = p == place ? arrival : p;
+    if (p == place || (around(p, place) && around(p, arrival))) {
+      result.pairs.emplace_back(p, to);
+      std::erase(open.to, to);
     } else {
       open.from.push_back(p);
     }
   }
   const auto same_kind = [&](int p, int q) { return (p < count()) == (q < count()); };
-  pair_nearest(open, result.pairs, [&](int p, int q) {  // instances of patterns have no group
+  pair_nearest(open, result.pairs, [&](int p, int q) {  // instances of patterns have no group that would tell
     if (!same_kind(p, q) || (p < count() && !group_goes_to(p, motion, q))) return kFar;
-    return separation(common_moments(place, p), told, common_moments(arrival, q), size_) + piece_distance(p, motion, q);
+    const double off = separation(common_moments(place, p), told, common_moments(arrival, q), size_);
+    return p < count() || off <= kSamePiece ? off + piece_distance(p, motion, q) : kFar;
   });
   pair_nearest(open, result.pairs, [&](int p, int q) {
     if (!same_kind(p, q)) return kFar;
