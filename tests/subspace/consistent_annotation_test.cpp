@@ -507,5 +507,34 @@ TEST(ConsistentAnnotation, WheelsOfADetectedCarAgreeAllTheSame) {
   expect_exact(car.mesh, result.annotation);
 }
 
+// A detector draws the border of a region and of a pattern's instance one by one: one face of 432 is no difference.
+TEST(ConsistentAnnotation, ARegionAndAnInstanceThatAreTheSameButForASliverBecomeTheSame) {
+  GeneratedModel model;
+  Pattern pattern;
+  pattern.name = "row";
+  pattern.kind = Pattern::Kind::translation_1d;
+  pattern.generators = {{Eigen::Matrix3d::Identity(), Vector3d(0.5, 0, 0)}};
+  for (int a = 0; a < 3; ++a) {
+    const Motion step{Eigen::Matrix3d::Identity(), Vector3d(0.5 * a, 0.0, 0.0)};
+    pattern.instances.push_back({step, append(model.mesh, placed(box({0.15, 0.1, 0.12}, 6), step))});
+  }
+  model.truth = empty_annotation(model.mesh, 0.005);
+  for (int a = 0; a < 3; ++a) {
+    const PatternInstance& instance = pattern.instances[static_cast<std::size_t>(a)];
+    std::vector<int> faces = instance.faces;
+    if (a == 1) faces.erase(faces.begin());
+    model.truth.regions.push_back(make_region(PointGroup::parse("Cs").value(), instance.motion.translation,
+                                              frame_about(Vector3d::UnitZ()), faces, "box " + std::to_string(a)));
+    model.truth.regions.back().id = a;
+  }
+  model.truth.patterns = {pattern};
+  const ConsistentAnnotation result = consistent_annotation(model.mesh, model.truth, RunContext{});
+  EXPECT_TRUE(result.left_out.empty());
+  EXPECT_EQ(result.annotation.regions.size(), 3U);
+  ASSERT_EQ(result.annotation.patterns.size(), 1U);
+  EXPECT_EQ(result.annotation.patterns[0].instances[1].faces, result.annotation.regions[1].faces);
+  expect_exact(model.mesh, result.annotation);
+}
+
 }  // namespace
 }  // namespace orbifit

@@ -7,6 +7,7 @@
 #include "orbifit/model/point_group.h"
 
 #include "consistency/consistency_closure.h"
+#include "domains/domain_map.h"
 
 namespace orbifit {
 namespace {
@@ -167,6 +168,23 @@ TEST(Disagreements, AreSettledForAWholeFamily) {
   ASSERT_EQ(kept.left_out.size(), 1U);
   EXPECT_EQ(kept.left_out[0].id, 3);
   EXPECT_EQ(kept.annotation.regions.size(), 3U);
+}
+
+// What holds everything stays where it is: it is not the image of what holds but one of the copies as well.
+TEST(DomainMap, GivesEachPlaceOneImage) {
+  SymmetryAnnotation annotation;
+  annotation.regions = {patch(0, 0, 0, 8, 8), patch(1, 3, 3, 5, 5)};
+  Pattern pattern;
+  pattern.kind = Pattern::Kind::congruent;
+  for (const int i : {0, 3}) {
+    pattern.instances.push_back(
+        {Motion{Eigen::Matrix3d::Identity(), Vector3d(2.0 * i / kCells, 0, 0)}, patch(0, i, 3, i + 2, 5).faces});
+  }
+  annotation.patterns = {pattern};
+  const DomainMap domains(plate(), annotation, instance_motions(annotation));
+  const int second = domains.first_place_of_pattern(0) + 1;
+  EXPECT_EQ(domains.images_of(0, second, 0), std::vector<int>{0});
+  EXPECT_TRUE(domains.images_of(1, second, 0).empty());
 }
 
 }  // namespace
