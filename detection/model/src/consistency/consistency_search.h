@@ -42,7 +42,7 @@ struct ConsistencyPolicy {
   /// Places on a circle that count as different, of continuous groups: about as many as facets show.
   int circle = 36;
   /// Faces and samples looked at (RegionShapes::work()) until no further change of what is kept is tried, of claims
-  /// that contradict one another: what takes about two seconds.
+  /// that contradict one another: what takes about ten seconds.
   std::size_t work = 20000000;
 };
 
