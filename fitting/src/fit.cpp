@@ -10,6 +10,7 @@
 #include "orbifit/model/errors.h"
 #include "orbifit/subspace/displacement_field.h"
 
+#include "assessment/fit_assessment.h"
 #include "assessment/open_stretches.h"
 #include "fit_loop.h"
 #include "fit_systems.h"
@@ -28,9 +29,6 @@ namespace orbifit {
 
 namespace {
 
-// Share of explained points of a scan from which what is not the template's has been taken: a scan of something else,
-// onto which the template was put as well as can be, leaves more.
-constexpr double kMinOfPlaced = 0.8;
 constexpr double kMinSeen = 0.04;      // of the fitted surface: an edge lies along any line
 constexpr double kSofter = 0.75;       // of the levels: where fits of a shape that is known begin
 constexpr double kWell = 0.995;        // confidence from which another scale is not tried
@@ -47,6 +45,7 @@ void FitOptions::validate() const {
           "at least levels * iterations = " + std::to_string(levels * iterations));
   require(last_stiffness > 0, "last_stiffness", last_stiffness, "positive");
   require(first_stiffness > last_stiffness, "first_stiffness", first_stiffness, "more than last_stiffness");
+  require(least_stiffness >= 0, "least_stiffness", least_stiffness, "0 or more");
   require(stretch >= 0, "stretch", stretch, "0 or more");
   require(tie > 0 && tie <= 1, "tie", tie, "in (0, 1]");
   require(max_tied >= 1, "max_tied", max_tied, "at least 1");
@@ -149,21 +148,15 @@ Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspa
   return std::move(*best);
 }
 
-double explained_share(const FitResult& result) {
-  return result.inlier_ratio * result.overlap;
-}
-
 // Whether the fit is one, and why not.
 void conclude(const FitOptions& options, FitResult& result) {
-  const double explained = explained_share(result);
   const double seen = 1 - result.hidden_fraction;
-  const bool explains =
-      explained >= options.min_inlier_ratio && (result.placements.empty() || result.inlier_ratio >= kMinOfPlaced);
+  const bool explains = explains_scan(result, !result.placements.empty(), options);
   result.converged = !result.iterations.empty() && explains && seen >= kMinSeen;
   if (result.iterations.empty() || result.converged) return;
   const auto percent = [](double fraction) { return std::to_string(static_cast<int>(100 * fraction)) + " % of the "; };
-  result.stopped_because +=
-      explains ? "; only " + percent(seen) + "surface is seen" : "; only " + percent(explained) + "scan is explained";
+  result.stopped_because += explains ? "; only " + percent(seen) + "surface is seen"
+                                     : "; only " + percent(explained_share(result)) + "scan is explained";
 }
 
 }  // namespace
@@ -230,7 +223,7 @@ Trial better_in_doubt(const FitInput& input, const FitOptions& options, const Ru
   const FitResult& told = trial.best.result;
   const bool found = !told.placements.empty();
   if (!options.place || found || input.landmarks.empty() || !input.handles.empty()) return trial;
-  if (told.inlier_ratio >= kMinOfPlaced && explained_share(told) >= options.min_inlier_ratio) return trial;
+  if (explains_scan(told, true, options)) return trial;
   FitInput again = input;
   again.subspace = trial.input.subspace;
   Trial other = trial_of(again, options, true, context, clock);
@@ -277,7 +270,7 @@ FitResult fit(const FitInput& input, const FitOptions& options, const RunContext
   }
   conclude(options, result);
   // A subspace that is fine enough explains any scan: whether this one is the template's, a coarse one tells.
-  if (options.subspace.radius == 0 && options.subspace.samples == 0 && result.converged) {
+  if (result.converged) {
     const SymmetryAnnotation annotation = result.rest_annotation;
     refine(trial.input.with(annotation), trial.best.start, options, context, result);
     conclude(options, result);

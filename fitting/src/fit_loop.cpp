@@ -62,7 +62,8 @@ FitLoop::Stage FitLoop::stage(int iteration) const {
 double FitLoop::stiffness_for(double noise) const {
   const double most = std::max(options_.last_stiffness, kStiffest * options_.first_stiffness);
   const double ratio = noise / kLittleNoise;
-  return std::clamp(options_.last_stiffness * ratio * ratio, options_.last_stiffness, most);
+  const double warranted = std::clamp(options_.last_stiffness * ratio * ratio, options_.last_stiffness, most);
+  return std::max(warranted, options_.least_stiffness);
 }
 
 FitLoop::Matches FitLoop::match(const FitState& state, const Stage& now) {

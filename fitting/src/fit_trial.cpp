@@ -71,4 +71,14 @@ FitResult fit_from(const FitInput& input, const PlacedScan& start, FitSystem& sy
   return fit_from(rest, 0, input, start, system, options, context);
 }
 
+void take_over(FitResult found, FitResult& result) {
+  found.iterations_in_all += result.iterations_in_all;
+  found.placements = std::move(result.placements);
+  found.groups = std::move(result.groups);
+  found.dropped = std::move(result.dropped);
+  found.other_used = std::move(result.other_used);
+  found.levels = std::move(result.levels);
+  result = std::move(found);
+}
+
 }  // namespace orbifit

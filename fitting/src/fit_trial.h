@@ -25,4 +25,8 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
 FitResult fit_from(const FitInput& input, const PlacedScan& start, FitSystem& system, const FitOptions& options,
                    const RunContext& context);
 
+/// Puts a fit, from a start of the same, in a result's place; what that knows of the whole stays: placements, groups,
+/// regions that were left out, which scans take part, levels and all iterations, to which the new ones are added.
+void take_over(FitResult found, FitResult& result);
+
 }  // namespace orbifit

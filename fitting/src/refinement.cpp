@@ -5,13 +5,17 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
+
+#include "orbifit/model/errors.h"
 
 #include "base/random.h"
 #include "basis/subspace_parts.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
 #include "resolution/fit_residuals.h"
+#include "resolution/simplest_fit.h"
 #include "resolution/transfer.h"
 #include "solver/fit_system.h"
 
@@ -54,13 +58,19 @@ double finer_radius(const FitResult& coarse) {
   return coarse.subspace.radius() / std::sqrt(kFiner);
 }
 
-// From where a coarser fit ended.
-FitResult finer_fit(const FitInput& input, const PlacedScan& start, const FitOptions& options,
-                    const RunContext& context, const FitResult& coarse) {
+// From where a coarser fit ended; none where no subspace is so fine.
+std::optional<FitResult> finer_fit(const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                                   const RunContext& context, const FitResult& coarse) {
   SubspaceOptions finer = options.subspace;
   finer.samples = 0;
   finer.radius = finer_radius(coarse);
-  const Subspace subspace = build_subspace(input.mesh, input.annotation, finer, context);
+  std::optional<Subspace> built;
+  try {
+    built = build_subspace(input.mesh, input.annotation, finer, context);
+  } catch (const InputError&) {
+    return std::nullopt;  // more samples than it may have: how many, its groups say
+  }
+  const Subspace& subspace = *built;
   Eigen::VectorXd q = transferred(coarse.subspace, {coarse.q, coarse.basis}, subspace, context);
   FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context),
                    sample_displacements(subspace, q));
@@ -85,7 +95,6 @@ std::vector<char> some_patches(const Points& points, double width, std::uint64_t
 void refine_from_start(const FitInput& input, const PlacedScan& start, const FitOptions& options,
                        const RunContext& context, FitResult& result) {
   FitResiduals now = fit_residuals(input, start, result, context);
-  result.levels = {{result.samples, result.degrees_of_freedom, 0, 0, true}};
   // Groups that turn are left as coarse as they are.
   if (result.subspace.mode() == GroupMode::moving) return;
   PlacedScan most = start;
@@ -95,20 +104,18 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
     most.held_out = some_patches(start.scan.points, width, context.seed);
     const std::vector<double> before = held_out(now.squared, most.held_out);
     if (before.empty()) return;
-    FitResult found = finer_fit(input, most, options, context, result);
+    std::optional<FitResult> finer = finer_fit(input, most, options, context, result);
+    if (!finer) return;
+    FitResult found = std::move(*finer);
     now = fit_residuals(input, start, found, context);
     const std::vector<double> after = held_out(now.squared, most.held_out);
     const bool better = smaller(before, after);
     result.levels.push_back({found.samples, found.degrees_of_freedom, root_mean(before), root_mean(after), better});
-    result.iterations_in_all += found.iterations_in_all;
-    if (!better) return;
-    found.levels = std::move(result.levels);
-    found.iterations_in_all = result.iterations_in_all;
-    found.placements = std::move(result.placements);
-    found.groups = std::move(result.groups);
-    found.dropped = std::move(result.dropped);
-    found.other_used = std::move(result.other_used);
-    result = std::move(found);
+    if (!better) {
+      result.iterations_in_all += found.iterations_in_all;
+      return;
+    }
+    take_over(std::move(found), result);
   }
 }
 
@@ -118,7 +125,12 @@ void refine(const FitInput& input, const PlacedScan& start, const FitOptions& op
             FitResult& result) {
   // The other scans' motions are told from their own frames; while fitting, from where the start has put them.
   for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * inverse(start.others[k]);
-  refine_from_start(input, start, options, context, result);
+  keep_own_size(input, start, options, context, result);
+  const bool stiffer = keep_stiffest(input, start, options, context, result);
+  if (options.subspace.radius == 0 && options.subspace.samples == 0) {
+    result.levels = {{result.samples, result.degrees_of_freedom, 0, 0, true}};
+    if (!stiffer) refine_from_start(input, start, options, context, result);
+  }
   for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * start.others[k];
 }
 

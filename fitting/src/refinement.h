@@ -7,7 +7,9 @@
 
 namespace orbifit {
 
-/// Fits again with finer and finer subspaces, as long as the scan asks for it (docs/method.md 7.1): patches that
+/// Makes a fit as simple as the scan allows (keep_simplest()); where that is not simpler, and FitOptions::subspace does
+/// not say how fine the subspace is, as fine as the scan asks for:
+/// fits again with finer and finer subspaces, as long as the scan asks for it (docs/method.md 7.1): patches that
 /// are held out must lie nearer to the finer fit, by more than chance. Each fit begins where the coarser one ended,
 /// which a finer subspace contains, and is held there: what is not seen stays. The rest shape stays the template's.
 /// \param start  as of `result`, of FitResult::subspace; replaced by the finest fit that was kept, with its levels

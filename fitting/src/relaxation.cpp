@@ -42,13 +42,8 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
   FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);
-  found.iterations_in_all += result.iterations_in_all;
-  found.placements = std::move(result.placements);
-  found.groups = std::move(result.groups);
   for (std::size_t k = 0; k < found.others.size(); ++k) found.others[k] = found.others[k] * start.others[k];
-  found.other_used = start.other_used;
-  found.dropped = std::move(result.dropped);
-  result = std::move(found);
+  take_over(std::move(found), result);
 }
 
 }  // namespace

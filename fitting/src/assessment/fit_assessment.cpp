@@ -102,4 +102,14 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
   result.landmark_rms = pulls_rms(input, result);
 }
 
+double explained_share(const FitResult& result) {
+  return result.inlier_ratio * result.overlap;
+}
+
+bool explains_scan(const FitResult& result, bool placed, const FitOptions& options) {
+  // Of the points used: a scan of something else, onto which the template was put as well as can be, leaves more.
+  constexpr double kMinOfPlaced = 0.8;
+  return explained_share(result) >= options.min_inlier_ratio && (!placed || result.inlier_ratio >= kMinOfPlaced);
+}
+
 }  // namespace orbifit

@@ -18,4 +18,10 @@ double pulls_rms(const FitInput& input, const FitResult& result);
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result);
 
+/// Of the whole scan, with what was left out.
+double explained_share(const FitResult& result);
+
+/// Whether that is enough for a fit. \param placed  what is not the template's has been taken from the scan
+bool explains_scan(const FitResult& result, bool placed, const FitOptions& options);
+
 }  // namespace orbifit

@@ -18,7 +18,9 @@ double offset_of(const Correspondence& pair, const Mesh& fitted, const MatchSurf
   return side * std::sqrt(pair.weight) * pair.normal.dot(point - foot);
 }
 
-double shared_part(const std::vector<Correspondence>& pairs, const std::vector<double>& offsets, const Points& points) {
+// Fills in what neighbours share.
+void find_shared(const std::vector<Correspondence>& pairs, const std::vector<double>& offsets, const Points& points,
+                 FitResiduals& residuals) {
   constexpr int kNearest = 2;  // a point itself and the next one
   const PointIndex index(points);
   double shared = 0, all = 0;
@@ -29,7 +31,8 @@ double shared_part(const std::vector<Correspondence>& pairs, const std::vector<d
       if (each.index != pair.scan_point) shared += own * offsets[static_cast<std::size_t>(each.index)] / (kNearest - 1);
     }
   }
-  return all > 0 ? shared / all : 0;
+  residuals.shared = all > 0 ? shared / all : 0;
+  residuals.shared_squared = shared / static_cast<double>(points.rows());
 }
 
 }  // namespace
@@ -57,7 +60,7 @@ FitResiduals fit_residuals(const FitInput& input, const PlacedScan& start, const
     residuals.squared[point] = robust_error(pair.distance / size, kLastRobust);
     offsets[point] = offset_of(pair, fitted, surface, points.row(pair.scan_point)) / size;
   }
-  residuals.shared = shared_part(pairs, offsets, points);
+  find_shared(pairs, offsets, points, residuals);
   return residuals;
 }
 

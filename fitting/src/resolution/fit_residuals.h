@@ -15,6 +15,7 @@ struct FitResiduals {
   /// Of the squared residuals, the share that a point and the one nearest to it have in common: shape that is not
   /// fitted yet, and not noise, which differs from one to the next. In [-1, 1].
   double shared = 0;
+  double shared_squared = 0;  ///< so much of the mean of all points, squared diagonals; what is far counts as nothing
 };
 
 /// \param start  as of `result`

@@ -11,9 +11,13 @@
 
 namespace orbifit {
 
+bool of_one_kind(double scale, double other) {
+  constexpr double kOneKind = 0.4;  // of the quotient's logarithm
+  return std::abs(std::log(scale / other)) <= kOneKind;
+}
+
 std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan& start) {
   constexpr double kMuchTheSame = 0.02;  // logarithms of the scales' quotient
-  constexpr double kOneKind = 0.4;
   constexpr int kEnough = 1500;
   const auto count = static_cast<int>(start.scan.points.rows());
   std::vector<int> some;
@@ -21,7 +25,7 @@ std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan
   PlacedScan result = start;
   result.pose = align_with_scale(MatchSurface(input.mesh), start.scan, some, start.pose, {});
   const double growth = std::abs(std::log(result.pose.scale / start.pose.scale));
-  if (growth < kMuchTheSame || growth > kOneKind) return std::nullopt;
+  if (growth < kMuchTheSame || !of_one_kind(result.pose.scale, start.pose.scale)) return std::nullopt;
   return result;
 }
 

@@ -11,6 +11,9 @@
 
 namespace orbifit {
 
+/// Whether shapes of one kind may differ in size by so much.
+bool of_one_kind(double scale, double other);
+
 /// The start with the scale that brings the template, as it is, nearest to the scan. Lengths of which the shape has
 /// more, such as a taller back, take a fit at the template's scale to the wrong slat; from there it may find the right
 /// one. \return none where the scale is much the same, or other than shapes of one kind have
