@@ -33,12 +33,17 @@ double mean_squared(const FitResiduals& residuals) {
          static_cast<double>(residuals.squared.size());
 }
 
-// What a fit may leave of the scan, mean squared, to explain it like this one.
-double most_alike(const FitInput& input, const PlacedScan& start, const FitResult& result, const RunContext& context) {
+// What a fit leaves of the scan, mean squared, and how much more one may leave that explains it alike.
+struct Left {
+  double squared = 0, allowance = 0;
+  double most() const { return squared + allowance; }
+};
+
+Left left_by(const FitInput& input, const PlacedScan& start, const FitResult& result, const RunContext& context) {
   const FitResiduals left = fit_residuals(input, start, result, context);
-  if (left.shared < kMostlyShared) return mean_squared(left);
+  if (left.shared < kMostlyShared) return {mean_squared(left)};
   const double noise = kMostShared * start.scan.noise / (result.pose.scale * diagonal(input.mesh.vertices));
-  return mean_squared(left) + kAlike * std::clamp(left.shared_squared, 0.0, noise * noise);
+  return {mean_squared(left), kAlike * std::clamp(left.shared_squared, 0.0, noise * noise)};
 }
 
 bool may_be_simpler(const FitInput& input, const FitResult& result) {
@@ -48,7 +53,7 @@ bool may_be_simpler(const FitInput& input, const FitResult& result) {
 // Fits of one subspace, each from another.
 class Trials {
  public:
-  /// References are kept. \param most  that a fit may leave, as most_alike() says
+  /// References are kept. \param most  that a fit may leave, as Left says
   Trials(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
          const FitResult& first, double most)
       : input_(input),
@@ -96,14 +101,16 @@ void keep_own_size(const FitInput& input, const PlacedScan& start, const FitOpti
   if (!may_be_simpler(input, result)) return;
   FitState state = with_scale(scale, result.pose, {result.q, result.basis}, result.subspace, input.mesh);
   state.others = result.others;
-  Trials trials(input, start, options, context, result, most_alike(input, start, result, context));
+  Trials trials(input, start, options, context, result, left_by(input, start, result, context).most());
   trials.replace(std::move(state), result.iterations.back().stiffness, false, result);
 }
 
 bool keep_stiffest(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
                    FitResult& result) {
   if (!may_be_simpler(input, result)) return false;
-  Trials trials(input, start, options, context, result, most_alike(input, start, result, context));
+  const Left left = left_by(input, start, result, context);
+  if (left.allowance == 0) return false;
+  Trials trials(input, start, options, context, result, left.most());
   const bool scale_open = start.scale_open && result.pose.scale != input.pose.scale;
   const double stiffness = result.iterations.back().stiffness;
   int steps = 0;

@@ -112,7 +112,7 @@ struct FitResult {
   /// is, or the coarsest fit failed.
   std::vector<ResolutionLevel> levels;
   std::vector<FitIteration> iterations;
-  int iterations_in_all = 0;  ///< with those from other placements, which were not kept
+  int iterations_in_all = 0;  ///< with those of fits that were not kept
   bool converged = false;
   std::string stopped_because;
   double overlap = 1;           ///< share of the scan taken for the template's; the rest was left out as other things
