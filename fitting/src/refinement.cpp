@@ -126,8 +126,8 @@ void refine(const FitInput& input, const PlacedScan& start, const FitOptions& op
   // The other scans' motions are told from their own frames; while fitting, from where the start has put them.
   for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * inverse(start.others[k]);
   keep_own_size(input, start, options, context, result);
-  const bool stiffer = keep_stiffest(input, start, options, context, result);
   if (options.subspace.radius == 0 && options.subspace.samples == 0) {
+    const bool stiffer = keep_stiffest(input, start, options, context, result);
     result.levels = {{result.samples, result.degrees_of_freedom, 0, 0, true}};
     if (!stiffer) refine_from_start(input, start, options, context, result);
   }
