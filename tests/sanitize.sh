@@ -45,6 +45,10 @@ in_shards() {
   for process in $processes; do
     wait "$process" || status=1
   done
+  # A library that stops a program early may do so with exit code 0.
+  for shard in $(seq 0 $((jobs - 1))); do
+    grep -q '^\[  PASSED  \]' "$1.$shard.log" || status=1
+  done
   cat "$1".[0-9]*.log
   return $status
 }
