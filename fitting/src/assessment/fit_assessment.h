@@ -18,10 +18,11 @@ double pulls_rms(const FitInput& input, const FitResult& result);
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result);
 
-/// Of the whole scan, with what was left out.
+/// Share of the whole scan that a fit explains: what was left out as other things counts as unexplained. In [0, 1].
 double explained_share(const FitResult& result);
 
-/// Whether that is enough for a fit. \param placed  what is not the template's has been taken from the scan
+/// Whether that is enough for a fit. \param placed  the pose was found, and what is not the template's there has been
+/// taken from the scan: of what is left a fit explains more
 bool explains_scan(const FitResult& result, bool placed, const FitOptions& options);
 
 }  // namespace orbifit

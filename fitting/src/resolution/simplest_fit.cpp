@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "assessment/fit_assessment.h"
 #include "fit_systems.h"

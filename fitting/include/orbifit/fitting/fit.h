@@ -25,7 +25,7 @@ struct FitOptions {
   int max_iterations = 80;        ///< in all, >= levels * iterations
   double first_stiffness = 10;    ///< Laplace energy against data, > last_stiffness
   double last_stiffness = 0.01;   ///< of a scan without noise; noisier ones are followed less closely, > 0
-  double least_stiffness = 0;     ///< whatever the noise, >= 0
+  double least_stiffness = 0;     ///< in the last iterations, however little noise there is, >= 0
   double stretch = 0.3;           ///< weight of the stretching energy within the Laplace energy, >= 0
   double trim = 0.9;              ///< share of the nearest correspondences kept, in (0, 1]
   int scan_points = 4000;         ///< points of the scan used, >= 10
