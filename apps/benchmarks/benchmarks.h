@@ -13,6 +13,7 @@ CommandBody fitting(CLI::App& app);
 CommandBody moving(CLI::App& app);
 CommandBody proxies(CLI::App& app);
 CommandBody real(CLI::App& app);
+CommandBody scans(CLI::App& app);
 CommandBody batch(CLI::App& app);
 
 }  // namespace orbifit::benchmarks

@@ -49,6 +49,11 @@ constexpr std::array kBenchmarks{
             "orbifit-benchmark real meshes --annotations detected --csv real.csv\n"
             "orbifit-benchmark real chair.obj --modes moving --stage-limit 60",
             benchmarks::real},
+    Command{"scans",
+            "Fits to real scans, of the template's own object or another of its kind: size, bending, confidence.",
+            "orbifit-benchmark scans pairs.tsv --annotations detected\n"
+            "orbifit-benchmark scans pairs.tsv --match mug --csv scans.csv",
+            benchmarks::scans},
     Command{"batch",
             "How many items a second a batch does on one and on two processors, and what it costs beside them.",
             "orbifit-benchmark batch\n"
