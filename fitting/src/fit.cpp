@@ -18,12 +18,14 @@
 #include "refinement.h"
 #include "registration/correspondences.h"
 #include "relaxation.h"
+#include "scan/thinned_scan.h"
 #include "solver/fit_system.h"
 #include "stage_clock.h"
 #include "start/fit_starts.h"
 #include "start/joined_scans.h"
 #include "start/other_scale.h"
 #include "start/placed_scan.h"
+#include "start/thinned_input.h"
 
 namespace orbifit {
 
@@ -257,10 +259,12 @@ void tell_landmarks(const FitInput& input, const RunContext& context, FitResult&
 
 }  // namespace
 
-FitResult fit(const FitInput& input, const FitOptions& options, const RunContext& context) {
+FitResult fit(const FitInput& given, const FitOptions& options, const RunContext& context) {
   options.validate();
   std::vector<StageTime> times;
   StageClock clock(times);
+  const ThinnedInput read(given, std::max(kScanPointsRead, options.scan_points), context.seed);
+  const FitInput& input = read.input();
   Trial first = trial_of(input, options, false, context, clock);
   Trial trial = better_in_doubt(input, options, context, clock, std::move(first));
   FitResult result = std::move(trial.best.result);

@@ -1,6 +1,8 @@
 #include "scan/scan_preparation.h"
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@
 
 #include "base/random.h"
 #include "geometry/surface_index.h"
+#include "scan/thinned_scan.h"
 
 namespace orbifit {
 namespace {
@@ -65,6 +68,50 @@ TEST(ScanPreparation, KeepsNearlyAsManyPointsAsAllowedAndSpreadsThem) {
   EXPECT_LE(prepared.points.rows(), 500);
   EXPECT_GT(prepared.points.rows(), 400);
   EXPECT_GT(prepared.spacing, 0.03);
+}
+
+// A point's number stands in all its places.
+PointCloud numbered_scan(int count) {
+  PointCloud scan = sphere_scan(count, {0, 0, 0});
+  scan.points.col(0) = Eigen::VectorXd::LinSpaced(count, 0, count - 1);
+  scan.normals = scan.points;
+  scan.viewpoints = scan.points;
+  scan.dropped = 7;
+  return scan;
+}
+
+TEST(ThinnedScan, DrawsPointsFromEverywhereInTheirOrderWithAllThatTheyHave) {
+  constexpr int kCount = 50000, kMost = 2000, kParts = 20;
+  const PointCloud scan = numbered_scan(kCount);
+  const PointCloud few = thinned(scan, kMost, 5);
+  ASSERT_EQ(few.points.rows(), kMost);
+  EXPECT_EQ(few.normals, few.points);
+  EXPECT_EQ(few.viewpoints, few.points);
+  EXPECT_EQ(few.dropped, 7);
+  std::vector<int> drawn(kParts, 0);
+  for (Eigen::Index i = 0; i < few.points.rows(); ++i) {
+    EXPECT_TRUE(i == 0 || few.points(i - 1, 0) < few.points(i, 0));
+    const auto number = static_cast<Eigen::Index>(few.points(i, 0));
+    EXPECT_EQ(few.points.row(i), scan.points.row(number));
+    ++drawn[static_cast<std::size_t>(number * kParts / kCount)];
+  }
+  for (const int part : drawn) EXPECT_NEAR(part, kMost / kParts, 5 * std::sqrt(kMost / kParts));
+  EXPECT_EQ(thinned(scan, kMost, 5).points, few.points);
+  EXPECT_NE(thinned(scan, kMost, 6).points, few.points);
+}
+
+TEST(ThinnedScan, KeepsAllPointsThatAreNotTooManyAndAViewpointForAll) {
+  PointCloud scan = numbered_scan(300);
+  EXPECT_EQ(thinned(scan, 300, 1).points, scan.points);
+  scan.viewpoints = Points::Ones(1, 3);
+  EXPECT_EQ(thinned(scan, 299, 1).viewpoints, scan.viewpoints);
+}
+
+TEST(ScanPreparation, SeesTheSameSurfaceHoweverManyPointsAScanHas) {
+  const PreparedScan prepared = prepare_scan(sphere_scan(3 * kScanPointsRead, {0, 0, 0}), {}, RunContext{});
+  for (Eigen::Index i = 0; i < prepared.points.rows(); ++i) {
+    EXPECT_GT(std::abs(prepared.points.row(i).dot(prepared.normals.row(i))), 0.999);
+  }
 }
 
 // Points of a virtual scan that are farther than `far` from its mesh, a fraction of the diagonal.

@@ -50,18 +50,29 @@ struct Difference {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
 };
 
-Difference difference(const MovingSurface& surface, const Mesh& mesh, const Similarity& pose, const Similarity& best) {
-  constexpr Eigen::Index kVertices = 3000;
-  const Similarity back = inverse(best);
-  Difference result;
-  const Eigen::Index step = std::max<Eigen::Index>(1, mesh.vertices.rows() / kVertices);
-  for (Eigen::Index v = 0; v < mesh.vertices.rows(); v += step) {
-    const Eigen::Vector3d there = pose(mesh.vertices.row(v).transpose());
-    const double distance = surface.nearest(back(there)).distance / diagonal(mesh.vertices);
-    if (distance > result.distance) result = {distance, there};
+class Differences {
+ public:
+  // The mesh is kept by reference.
+  explicit Differences(const Mesh& mesh) : mesh_(mesh), surface_(mesh), size_(diagonal(mesh.vertices)) {}
+
+  Difference between(const Similarity& pose, const Similarity& best) const {
+    constexpr Eigen::Index kVertices = 3000;
+    const Similarity back = inverse(best);
+    Difference result;
+    const Eigen::Index step = std::max<Eigen::Index>(1, mesh_.vertices.rows() / kVertices);
+    for (Eigen::Index v = 0; v < mesh_.vertices.rows(); v += step) {
+      const Eigen::Vector3d there = pose(mesh_.vertices.row(v).transpose());
+      const double distance = surface_.nearest(back(there)).distance / size_;
+      if (distance > result.distance) result = {distance, there};
+    }
+    return result;
   }
-  return result;
-}
+
+ private:
+  const Mesh& mesh_;
+  MovingSurface surface_;
+  double size_;
+};
 
 // What people call a dimension of a shape: by its rank among those across it.
 std::string dimension(const Mesh& shape, const Eigen::Vector3d& axis) {
@@ -111,16 +122,18 @@ void add_open_size(const FitResult& result, std::vector<std::string>& told) {
 
 void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string>& told) {
   if (result.placements.size() < 2) return;
-  const MovingSurface surface(mesh);
-  const auto from_result = [&](const Placement& each) {
-    return difference(surface, mesh, each.pose, result.pose).distance;
-  };
-  const Placement& own = *std::ranges::min_element(result.placements, {}, from_result);
+  const Differences differences(mesh);
+  std::vector<double> from_result;
+  for (const Placement& each : result.placements) {
+    from_result.push_back(differences.between(each.pose, result.pose).distance);
+  }
+  const auto nearest = std::ranges::min_element(from_result) - from_result.begin();
+  const Placement& own = result.placements[static_cast<std::size_t>(nearest)];
   int others = 0;
   std::string places;
   for (const Placement& other : result.placements) {
     if (other.score() < kVerdictPolicy.tie * own.score()) continue;
-    const Difference apart = difference(surface, mesh, other.pose, own.pose);
+    const Difference apart = differences.between(other.pose, own.pose);
     if (apart.distance < kVerdictPolicy.apart) continue;
     if (++others <= kVerdictPolicy.places) places += (places.empty() ? "" : ", ") + place(apart.at);
   }

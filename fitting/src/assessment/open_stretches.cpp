@@ -82,9 +82,9 @@ class Probe {
     samples_ = sample_surface(fitted, kStretchPolicy.samples, random);
     centre_.setZero();
     for (Index f = 0; f < areas_.size(); ++f) {
-      centre_ +=
-          areas_[f] / areas_.sum() * fitted.vertices(fitted.faces.row(f), Eigen::all).colwise().mean().transpose();
+      centre_ += areas_[f] * fitted.vertices(fitted.faces.row(f), Eigen::all).colwise().mean().transpose();
     }
+    centre_ /= areas_.sum();
   }
 
   // Those of the surface's moments of inertia.

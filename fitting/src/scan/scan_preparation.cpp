@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "geometry/point_index.h"
 #include "scan/scan_normals.h"
 #include "scan/stray_points.h"
+#include "scan/thinned_scan.h"
 
 namespace orbifit {
 
@@ -110,26 +110,24 @@ PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& 
                          std::to_string(kMinPoints));
   }
   if (!(diagonal(scan.points) > 0)) throw InputError("", "scan", "all its points are at one place");
+  const int most = std::max(kScanPointsRead, options.most_points);
+  if (scan.points.rows() > most) return prepare_scan(thinned(scan, most, context.seed), options, context);
   context.progress("scan", 0);
-  constexpr int kMaxPoints = 200000;  // of which neighbours are sought
   constexpr int kPlanes = 400;
-  const Points some = scan.points(some_of(scan.points.rows(), kMaxPoints, context.seed), Eigen::all);
-  const PointIndex index(some);
-  const std::vector<int> typical = some_of(some.rows(), kPlanes, context.seed);
+  const PointIndex index(scan.points);
+  const std::vector<int> typical = some_of(scan.points.rows(), kPlanes, context.seed);
   std::vector<int> kept = options.evenly ? spread_evenly(scan.points, options.most_points)
                                          : some_of(scan.points.rows(), options.most_points, context.seed);
-  kept = without_strays(scan.points, kept, some, index, typical);
+  kept = without_strays(scan.points, kept, index, typical);
   PreparedScan result;
   result.points = scan.points(kept, Eigen::all);
   result.spacing = median_spacing(result.points);
-  result.noise = noise_of(some, index, typical, options.neighbours);
+  result.noise = noise_of(scan.points, index, typical, options.neighbours);
   if (scan.normals.rows() == scan.points.rows()) {
     result.normals = scan.normals(kept, Eigen::all);
     result.normals_oriented = true;
   } else {
-    std::optional<PointIndex> of_all;
-    if (some.rows() < scan.points.rows()) of_all.emplace(scan.points);
-    result.normals = plane_normals(scan.points, of_all ? *of_all : index, kept, options.neighbours, context);
+    result.normals = plane_normals(scan.points, index, kept, options.neighbours, context);
   }
   if (scan.viewpoints.rows() > 1) result.viewpoints = scan.viewpoints(kept, Eigen::all);
   if (scan.viewpoints.rows() == 1) result.viewpoints = scan.viewpoints;

@@ -35,19 +35,19 @@ bool lies_on_a_surface(const Points& all, const PointIndex& index, const Eigen::
 
 }  // namespace
 
-std::vector<int> without_strays(const Points& points, const std::vector<int>& kept, const Points& all,
-                                const PointIndex& index, const std::vector<int>& typical) {
-  if (all.rows() <= kNeighbours || typical.empty()) return kept;
+std::vector<int> without_strays(const Points& points, const std::vector<int>& kept, const PointIndex& index,
+                                const std::vector<int>& typical) {
+  if (points.rows() <= kNeighbours || typical.empty()) return kept;
   std::vector<double> reaches;
   reaches.reserve(typical.size());
-  for (const int i : typical) reaches.push_back(reach_of(index, all.row(i).transpose()));
+  for (const int i : typical) reaches.push_back(reach_of(index, points.row(i).transpose()));
   const auto middle = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
   std::nth_element(reaches.begin(), middle, reaches.end());
   const double sparse = kSparse * *middle;
   std::vector<int> result;
   for (const int i : kept) {
     const Eigen::Vector3d point = points.row(i);
-    if (reach_of(index, point) <= sparse || lies_on_a_surface(all, index, point)) result.push_back(i);
+    if (reach_of(index, point) <= sparse || lies_on_a_surface(points, index, point)) result.push_back(i);
   }
   return result;
 }

@@ -12,9 +12,8 @@ namespace orbifit {
 /// have, and is not one of a surface that is merely scanned more sparsely: its neighbours lie about no plane, or it is
 /// far off theirs. Where the scan sees little of a shape, strays would be all that pulls at the rest of it.
 /// \param points  of the scan #P by 3 \param kept  numbers of those to judge, ascending
-/// \param all, index  the scan's points, or as many of them as make out its surfaces
-/// \param typical  some of `all` from which to tell what most have
-std::vector<int> without_strays(const Points& points, const std::vector<int>& kept, const Points& all,
-                                const PointIndex& index, const std::vector<int>& typical);
+/// \param index  of them all \param typical  some numbers from which to tell what most have
+std::vector<int> without_strays(const Points& points, const std::vector<int>& kept, const PointIndex& index,
+                                const std::vector<int>& typical);
 
 }  // namespace orbifit
