@@ -164,7 +164,9 @@ class Step {
   Eigen::VectorXd damping_;
 };
 
-std::vector<StrainedEdge> strained_edges(const Step& step, const Places& places, const std::vector<char>& stiff,
+// \param averaged  by place: it is where the mean of its images is, and edges between such are not strained at `start`
+std::vector<StrainedEdge> strained_edges(const Step& step, const Places& places, const Points& start,
+                                         const std::vector<char>& averaged, const std::vector<char>& stiff,
                                          double stiffness, const Points& positions) {
   std::vector<StrainedEdge> edges;
   const double shortest = kShortest * diagonal(places.positions);
@@ -174,7 +176,9 @@ std::vector<StrainedEdge> strained_edges(const Step& step, const Places& places,
       if (b < a) continue;
       ++all;
       if (!step.moves(a) && !step.moves(b)) continue;
-      const Vector3d rest = places.positions.row(a) - places.positions.row(b);
+      const bool means = averaged[static_cast<std::size_t>(a)] != 0 && averaged[static_cast<std::size_t>(b)] != 0;
+      const Points& from = means ? start : places.positions;
+      const Vector3d rest = from.row(a) - from.row(b);
       const Vector3d now = positions.row(a) - positions.row(b);
       const double length = std::max(rest.norm(), shortest);
       const bool both = stiff[static_cast<std::size_t>(a)] != 0 && stiff[static_cast<std::size_t>(b)] != 0;
@@ -241,6 +245,12 @@ int close_gaps(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const G
   }
   const std::size_t most = std::max<std::size_t>(1, kMaxTerms / pairs.demands().size());
   Step step(orbits, weights, positions.rows());
+  const Points start = positions;
+  std::vector<char> averaged(static_cast<std::size_t>(positions.rows()), 0);
+  for (std::size_t o = 0; o < orbits.size(); ++o) {
+    if (!orbits[o].complete || weights.free[o] == 0) continue;
+    for (const int member : orbits[o].members) averaged[static_cast<std::size_t>(member)] = 1;
+  }
   const double scale = diagonal(positions);
   int iterations = 0;
   for (const double stiffness : kStiffness) {
@@ -249,7 +259,8 @@ int close_gaps(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const G
       context.progress("surface", 0.5);
       const std::vector<Term> terms =
           gap_terms(step, pairs, pairs.match(positions, &wanted, context, reach, most), weights, positions);
-      const std::vector<StrainedEdge> edges = strained_edges(step, places, weights.stiff, stiffness, positions);
+      const std::vector<StrainedEdge> edges =
+          strained_edges(step, places, start, averaged, weights.stiff, stiffness, positions);
       double sum = 0;
       for (const Term& term : terms) sum += term.weight * term.gap.squaredNorm();
       for (const StrainedEdge& edge : edges) sum += edge.weight * edge.strain.squaredNorm();

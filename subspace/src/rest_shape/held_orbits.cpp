@@ -1,6 +1,7 @@
 #include "rest_shape/held_orbits.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace orbifit {
@@ -26,6 +27,39 @@ std::vector<GapSummary> summarised(const ImagePairs& pairs, const std::vector<Su
   return result;
 }
 
+// Of the faces at a side of a face the one that goes on most smoothly; none where very many meet.
+std::vector<Eigen::RowVector3i> smoothest_partners(const ImagePairs& pairs, const Points& normals) {
+  constexpr std::size_t kMany = 16;
+  struct Side {
+    std::array<int, 2> ends;
+    int face, number;
+  };
+  std::vector<Side> sides;
+  for (int face = 0; face < pairs.faces(); ++face) {
+    const Eigen::RowVector3i corners = pairs.corners(face);
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(corners[k], corners[(k + 1) % 3]);
+      if (low != high) sides.push_back({{low, high}, face, k});
+    }
+  }
+  std::ranges::stable_sort(sides, {}, &Side::ends);
+  std::vector<Eigen::RowVector3i> result(static_cast<std::size_t>(pairs.faces()), Eigen::RowVector3i(-1, -1, -1));
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].ends == sides[begin].ends) ++end;
+    if (end - begin > kMany) continue;
+    for (std::size_t i = begin; i < end; ++i) {
+      double most = -2;
+      for (std::size_t k = begin; k < end; ++k) {
+        const double smooth = normals.row(sides[i].face).dot(normals.row(sides[k].face));
+        if (sides[k].face == sides[i].face || smooth <= most) continue;
+        most = smooth;
+        result[static_cast<std::size_t>(sides[i].face)][sides[i].number] = sides[k].face;
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 HeldOrbits::HeldOrbits(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits, const Points& rest,
@@ -36,6 +70,8 @@ HeldOrbits::HeldOrbits(ImagePairs& pairs, const std::vector<PlaceOrbit>& orbits,
       rest_(rest),
       rounding_(kHeldRounding * diagonal(rest)),
       at_rest_(at_rest),
+      normals_(normals(rest)),
+      partners_(smoothest_partners(pairs, normals_)),
       before_(summarised(pairs, at_rest_)),
       held_(orbits.size(), 0) {
   for (std::size_t o = 0; o < orbits.size(); ++o) {
@@ -69,25 +105,43 @@ void HeldOrbits::hold_far(const Points& positions, double most) {
   }
 }
 
-std::vector<int> HeldOrbits::folded(const Points& positions) const {
-  std::vector<int> result;
+Points HeldOrbits::normals(const Points& positions) const {
+  Points result = Points::Zero(pairs_.faces(), 3);
   for (int face = 0; face < pairs_.faces(); ++face) {
     const Eigen::RowVector3i corners = pairs_.corners(face);
-    const auto sides = [&](const Points& points) {
-      Eigen::Matrix3d edges;
-      for (int k = 0; k < 3; ++k) {
-        edges.col(k) = (points.row(corners[(k + 1) % 3]) - points.row(corners[k])).transpose();
-      }
-      return edges;
-    };
-    const Eigen::Matrix3d rest = sides(rest_);
-    const Eigen::Vector3d normal = rest.col(0).cross(rest.col(1));
-    if (!(normal.norm() > kThin * rounding_ / kHeldRounding * rest.colwise().norm().maxCoeff())) continue;
-    const Eigen::Matrix3d now = sides(positions);
-    const Eigen::Vector3d turned = now.col(0).cross(now.col(1));
-    if (!(turned.dot(normal) < kTurned * turned.norm() * normal.norm())) continue;
-    result.push_back(face);
+    Eigen::Matrix3d edges;
+    for (int k = 0; k < 3; ++k) {
+      edges.col(k) = (positions.row(corners[(k + 1) % 3]) - positions.row(corners[k])).transpose();
+    }
+    const Eigen::Vector3d normal = edges.col(0).cross(edges.col(1));
+    const double length = normal.norm();
+    if (!(length > kThin * rounding_ / kHeldRounding * edges.colwise().norm().maxCoeff())) continue;
+    result.row(face) = (normal / length).transpose();
   }
+  return result;
+}
+
+// The cosine against the partner that a face is turned to most; 1 without any.
+double HeldOrbits::sharpest(int face, const Points& normals) const {
+  double least = 1;
+  for (const int partner : partners_[static_cast<std::size_t>(face)]) {
+    if (partner >= 0) least = std::min(least, normals.row(face).dot(normals.row(partner)));
+  }
+  return least;
+}
+
+std::vector<int> HeldOrbits::folded(const Points& positions) const {
+  const Points now = normals(positions);
+  std::vector<int> result;
+  std::size_t smoothed = 0;
+  for (int face = 0; face < pairs_.faces(); ++face) {
+    if (normals_.row(face).isZero(0) || !(now.row(face).dot(normals_.row(face)) < kTurned)) continue;
+    const bool alone = partners_[static_cast<std::size_t>(face)] == Eigen::RowVector3i(-1, -1, -1);
+    const double gained = alone ? -1 : sharpest(face, now) - sharpest(face, normals_);
+    if (gained < -kTurned) result.push_back(face);
+    if (gained > kTurned) ++smoothed;
+  }
+  if (smoothed >= result.size()) result.clear();
   return result;
 }
 
@@ -129,18 +183,21 @@ bool HeldOrbits::hold_more(const Points& positions, bool whole_regions, const Ru
       continue;
     }
     // What maps onto vertices gives way only where what does not has done so already.
+    bool more = false;
     for (const bool complete_ones : {false, true}) {
-      bool more = false;
       for (std::size_t p = pair; p < end; ++p) {
         const double limit = larger_mean ? at_rest_[p].distance : before_[r].max;
         if (matches[p].distance > limit + rounding_ / 2) more = hold(p, matches[p], complete_ones) || more;
       }
-      held_any = held_any || more;
       if (more) break;
     }
+    // Where normals tell a thin part's sides apart otherwise than at rest, the nearest point may be another one.
+    if (!more) {
+      for (std::size_t p = pair; p < end; ++p) more = hold_place(pairs_[p].place, true) || more;
+    }
+    held_any = held_any || more;
     pair = end;
   }
-  // Where normals tell a thin part's sides apart otherwise than at rest, the nearest point may be another one.
   if (worse && !held_any) std::ranges::fill(held_, 1);
   return worse;
 }

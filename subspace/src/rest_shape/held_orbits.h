@@ -34,7 +34,8 @@ class HeldOrbits {
   /// Holds orbits with members farther than `most` from rest, mesh units.
   void hold_far(const Points& positions, double most);
 
-  /// Faces that turned over, or nearly.
+  /// Faces that turned over, or nearly, and lie much more sharply against a neighbour than at rest; none where as many
+  /// lie much less so: noise as large as the faces leaves them in disorder, and they turn as it goes.
   std::vector<int> folded(const Points& positions) const;
 
   /// Holds orbits of the corners of those; whether there are any.
@@ -51,6 +52,8 @@ class HeldOrbits {
 
  private:
   std::vector<std::vector<char>> open_places() const;
+  Points normals(const Points& positions) const;
+  double sharpest(int face, const Points& normals) const;
   bool hold(std::size_t pair, const SurfaceMatch& match, bool complete_ones);
   bool hold_corners(const SurfaceMatch& match, bool complete_ones);
   bool hold_place(int place, bool complete_ones);
@@ -61,6 +64,8 @@ class HeldOrbits {
   const Points& rest_;
   double rounding_;  // mesh units
   const std::vector<SurfaceMatch>& at_rest_;
+  Points normals_;                            // of the faces at rest, unit; 0 of those too thin to have one
+  std::vector<Eigen::RowVector3i> partners_;  // of each face's sides the face that goes on there at rest; -1: none
   std::vector<GapSummary> before_;
   std::vector<char> held_;
 };

@@ -208,7 +208,6 @@ Outcome make_symmetric(const Shape& shape, const RunContext& context) {
     std::vector<PlaceOrbit> orbits = find_orbits(shape, outcome.positions, context);
     if (complete_members(orbits) <= complete_members(outcome.orbits)) break;
     outcome.orbits = std::move(orbits);
-    start = outcome.positions;
   }
   HeldOrbits holding(pairs, outcome.orbits, shape.places.positions, at_rest);
   outcome.before = holding.before();

@@ -62,9 +62,10 @@ class Neighbourhoods {
     return best;
   }
 
- private:
+  int count(int place) const { return static_cast<int>(of(place).size()); }
   const std::vector<int>& of(int place) const { return lists_[static_cast<std::size_t>(place)]; }
 
+ private:
   std::vector<std::vector<int>> lists_;  // ascending, as numbers and places ascend together
 };
 
@@ -105,10 +106,16 @@ std::vector<int> places_of(const Places& places, const Mesh& mesh, const Region&
   return result;
 }
 
-std::vector<int> matched_places(const Places& places, const std::vector<int>& inside, const Motion& motion,
-                                double reach, const RunContext& context) {
-  const std::size_t count = inside.size();
-  const Points positions = places.positions(inside, Eigen::all);
+namespace {
+
+struct Matched {
+  std::vector<int> images;
+  bool all_sure = true;  // each much closer than the next place
+};
+
+Matched matched_at(const Points& positions, const Neighbourhoods& around, const Motion& motion, double reach,
+                   const RunContext& context) {
+  const auto count = static_cast<std::size_t>(positions.rows());
   const PointIndex index(positions);
   const Motion back = inverse(motion);
   std::vector<int> forward(count, -1);
@@ -126,16 +133,15 @@ std::vector<int> matched_places(const Places& places, const std::vector<int>& in
       spacing[i] = near.back().distance;
     }
   });
-  const Neighbourhoods around(places, inside);
   std::vector<int> result(count, -1);
+  bool all_sure = true;
   std::vector<char> taken(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const int image = forward[i];
-    if (backward[static_cast<std::size_t>(image)] != static_cast<int>(i) || distance[i] > reach) continue;
-    if (distance[i] > kSurelyClose * spacing[static_cast<std::size_t>(image)] &&
-        around.agreement(static_cast<int>(i), image, forward) < kBorneOut) {
-      continue;
-    }
+    const bool mutual = backward[static_cast<std::size_t>(image)] == static_cast<int>(i) && distance[i] <= reach;
+    const bool close = distance[i] <= kSurelyClose * spacing[static_cast<std::size_t>(image)];
+    all_sure = all_sure && mutual && close;
+    if (!mutual || (!close && around.agreement(static_cast<int>(i), image, forward) < kBorneOut)) continue;
     result[i] = image;
     taken[static_cast<std::size_t>(image)] = 1;
   }
@@ -154,7 +160,48 @@ std::vector<int> matched_places(const Places& places, const std::vector<int>& in
       grown = true;
     }
   }
+  return {result, all_sure};
+}
+
+// What is noise is gone from the mean of many neighbours; what edges join alike stays alike.
+Points smoothed(const Points& positions, const Neighbourhoods& around) {
+  Points result = positions;
+  for (Index place = 0; place < positions.rows(); ++place) {
+    for (const int neighbour : around.of(static_cast<int>(place))) result.row(place) += positions.row(neighbour);
+    result.row(place) /= 1 + around.count(static_cast<int>(place));
+  }
   return result;
+}
+
+// How many places have an image, and how far those are from it in the mean.
+std::pair<int, double> worth(const std::vector<int>& images, const Points& positions, const Motion& motion) {
+  int count = 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i] < 0) continue;
+    ++count;
+    sum += (positions.row(images[i]).transpose() - motion(positions.row(static_cast<Index>(i)).transpose())).norm();
+  }
+  return {count, count > 0 ? -sum / count : 0};
+}
+
+}  // namespace
+
+std::vector<int> matched_places(const Places& places, const std::vector<int>& inside, const Motion& motion,
+                                double reach, const RunContext& context) {
+  constexpr int kMostSmoothings = 16;  // which leave a tenth of the noise
+  const Neighbourhoods around(places, inside);
+  Points positions = places.positions(inside, Eigen::all);
+  Matched plain = matched_at(positions, around, motion, reach, context);
+  std::vector<int> best = std::move(plain.images);
+  if (plain.all_sure) return best;
+  int done = 0;
+  for (int smoothings = 2; smoothings <= kMostSmoothings; smoothings *= 2) {
+    for (; done < smoothings; ++done) positions = smoothed(positions, around);
+    std::vector<int> images = matched_at(positions, around, motion, reach, context).images;
+    if (worth(images, positions, motion) > worth(best, positions, motion)) best = std::move(images);
+  }
+  return best;
 }
 
 }  // namespace orbifit

@@ -23,7 +23,8 @@ std::vector<int> places_of(const Places& places, const Mesh& mesh, const Region&
 
 /// For each of the region's places the number, among them, of the one onto which `motion` maps it, or -1. Pairs are
 /// one to one, nearest to one another, within `reach`, and either much closer than the place's nearest neighbour is or
-/// borne out by their own neighbours: what maps by chance, between unrelated tessellations, does neither.
+/// borne out by their own neighbours: what maps by chance, between unrelated tessellations, does neither. Where noise
+/// is as large as the triangles, pairs are those of places that are smoothed: what edges join alike stays alike.
 /// \param inside places_of() the region
 /// \param reach  mesh units
 std::vector<int> matched_places(const Places& places, const std::vector<int>& inside, const Motion& motion,
