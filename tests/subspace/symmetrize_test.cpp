@@ -114,6 +114,29 @@ TEST_P(SymmetrizeModel, FollowsPoseAndScale) {
   }
 }
 
+class SymmetrizeNoise : public testing::TestWithParam<std::tuple<std::string, double>> {};
+
+// Every vertex is off by a large part of the distance to the next one: the mean of its images is nearer to the truth by
+// as much as means of so many are, or of more where regions within the whole add theirs.
+TEST_P(SymmetrizeNoise, GoesWhereItIsAsLargeAsTheTriangles) {
+  const auto& [name, noise] = GetParam();
+  const GeneratedModel model = generate(name);
+  const Mesh rough = perturbed(model.mesh, noise * diagonal(model.mesh.vertices));
+  SymmetrizeReport report;
+  const Mesh exact = symmetrized(rough, model.truth, RunContext{}, &report);
+  EXPECT_EQ(report.mapped, report.in_regions);
+  EXPECT_LT(residual(exact, model.truth), 1e-12);
+  const double left = (exact.vertices - model.mesh.vertices).norm() / (rough.vertices - model.mesh.vertices).norm();
+  EXPECT_LT(left, 1.05 / std::sqrt(static_cast<double>(model.truth.regions.front().elements.size())));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, SymmetrizeNoise,
+                         testing::Combine(testing::Values("table", "chair", "armchair", "plane"),
+                                          testing::Values(5e-4, 1e-3)),
+                         [](const auto& noise) {
+                           return std::get<0>(noise.param) + (std::get<1>(noise.param) < 7e-4 ? "_less" : "_more");
+                         });
+
 INSTANTIATE_TEST_SUITE_P(Models, SymmetrizeModel, testing::Values("bar", "table", "chair", "wheel"),
                          [](const auto& model) { return model.param; });
 

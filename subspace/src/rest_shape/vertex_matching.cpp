@@ -15,6 +15,7 @@ using Eigen::Index;
 constexpr double kOnePlace = 1e-7;    // of the diagonal
 constexpr double kSurelyClose = 0.1;  // of the distance to the next place
 constexpr double kBorneOut = 0.6;     // share of the neighbours that must map onto neighbours
+constexpr double kNearlyAll = 0.9;    // share of the places: so many images by edges are not chance
 
 // Which of a region's places are joined by edges, by their numbers within the region.
 class Neighbourhoods {
@@ -108,13 +109,8 @@ std::vector<int> places_of(const Places& places, const Mesh& mesh, const Region&
 
 namespace {
 
-struct Matched {
-  std::vector<int> images;
-  bool all_sure = true;  // each much closer than the next place
-};
-
-Matched matched_at(const Points& positions, const Neighbourhoods& around, const Motion& motion, double reach,
-                   const RunContext& context) {
+std::vector<int> matched_at(const Points& positions, const Neighbourhoods& around, const Motion& motion, double reach,
+                            const RunContext& context) {
   const auto count = static_cast<std::size_t>(positions.rows());
   const PointIndex index(positions);
   const Motion back = inverse(motion);
@@ -134,13 +130,11 @@ Matched matched_at(const Points& positions, const Neighbourhoods& around, const 
     }
   });
   std::vector<int> result(count, -1);
-  bool all_sure = true;
   std::vector<char> taken(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const int image = forward[i];
     const bool mutual = backward[static_cast<std::size_t>(image)] == static_cast<int>(i) && distance[i] <= reach;
     const bool close = distance[i] <= kSurelyClose * spacing[static_cast<std::size_t>(image)];
-    all_sure = all_sure && mutual && close;
     if (!mutual || (!close && around.agreement(static_cast<int>(i), image, forward) < kBorneOut)) continue;
     result[i] = image;
     taken[static_cast<std::size_t>(image)] = 1;
@@ -160,7 +154,7 @@ Matched matched_at(const Points& positions, const Neighbourhoods& around, const 
       grown = true;
     }
   }
-  return {result, all_sure};
+  return result;
 }
 
 // What is noise is gone from the mean of many neighbours; what edges join alike stays alike.
@@ -173,7 +167,7 @@ Points smoothed(const Points& positions, const Neighbourhoods& around) {
   return result;
 }
 
-// How many places have an image, and how far those are from it in the mean.
+// How many places have an image, and how near those are to it in the mean.
 std::pair<int, double> worth(const std::vector<int>& images, const Points& positions, const Motion& motion) {
   int count = 0;
   double sum = 0;
@@ -192,14 +186,15 @@ std::vector<int> matched_places(const Places& places, const std::vector<int>& in
   constexpr int kMostSmoothings = 16;  // which leave a tenth of the noise
   const Neighbourhoods around(places, inside);
   Points positions = places.positions(inside, Eigen::all);
-  Matched plain = matched_at(positions, around, motion, reach, context);
-  std::vector<int> best = std::move(plain.images);
-  if (plain.all_sure) return best;
+  std::vector<int> best = matched_at(positions, around, motion, reach, context);
   int done = 0;
-  for (int smoothings = 2; smoothings <= kMostSmoothings; smoothings *= 2) {
+  for (int smoothings = 2; smoothings <= kMostSmoothings && std::ranges::find(best, -1) != best.end();
+       smoothings *= 2) {
     for (; done < smoothings; ++done) positions = smoothed(positions, around);
-    std::vector<int> images = matched_at(positions, around, motion, reach, context).images;
-    if (worth(images, positions, motion) > worth(best, positions, motion)) best = std::move(images);
+    std::vector<int> images = matched_at(positions, around, motion, reach, context);
+    const auto found = worth(images, positions, motion);
+    if (found.first < kNearlyAll * static_cast<double>(inside.size())) continue;
+    if (found > worth(best, positions, motion)) best = std::move(images);
   }
   return best;
 }
