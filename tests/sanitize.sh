@@ -1,7 +1,8 @@
 #!/bin/sh
 # Builds with sanitizers and runs what they are to look at: `tests/sanitize.sh [asan-ubsan] [tsan] [valgrind]`, all by
-# default, from anywhere. On two cores the first takes some two hours, the second some twenty minutes, the third, which
-# runs the demo's commands, some ten; not part of CI. Ends with 1 when something was reported.
+# default, from anywhere. The first needs clang 14 with its runtime, which leaves out the inner loops of Eigen's products.
+# On two cores it takes some three hours, the second some twenty minutes, the third, which runs the demo's commands, some
+# ten; not part of CI. Ends with 1 when something was reported.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 jobs=$(nproc)
