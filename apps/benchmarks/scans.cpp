@@ -52,7 +52,6 @@ struct PairRow {
   double bent = 0;  // root mean square over vertices, after the similarity that suits them best
   double size = 1;  // of that similarity
   double rms = 0;
-  int degrees_of_freedom = 0;
   double seconds = 0;
 };
 
@@ -103,7 +102,7 @@ void measure_shape(const Mesh& mesh, const Mesh& fitted, PairRow& row) {
 
 PairRow measure(const Pair& pair, const ScansOptions& options, RunContext context) {
   PairRow row;
-  row.name = pair.scan.stem().string() + " / " + pair.mesh.stem().string();
+  row.name = pair.scan.stem().string();
   row.same = pair.same;
   try {
     const Mesh mesh = read_mesh(pair.mesh);
@@ -127,7 +126,6 @@ PairRow measure(const Pair& pair, const ScansOptions& options, RunContext contex
     row.part = result.unexplained_part;
     row.open = result.open_stretch();
     row.rms = result.rms;
-    row.degrees_of_freedom = result.degrees_of_freedom;
     measure_shape(mesh, result.fitted, row);
   } catch (const InterruptedError&) {
     throw;
@@ -151,13 +149,13 @@ std::vector<std::string> cells(const PairRow& row) {
           part(100 * row.rms),
           part(100 * row.bent),
           part(row.size),
-          std::to_string(row.degrees_of_freedom),
           part(row.seconds)};
 }
 
-const std::vector<std::string> kColumns{
-    "scan / template", "fitted",  "confidence", "explained", "used",   "seen", "part", "open",
-    "rms, %",          "bent, %", "size",       "DoF",       "seconds"};
+std::vector<std::string> columns() {
+  return {"scan", "fitted", "confidence", "explained", "used", "seen",
+          "part", "open",   "rms, %",     "bent, %",   "size", "seconds"};
+}
 
 std::string summary(const std::vector<PairRow>& rows) {
   int fitted = 0, same = 0, sure = 0;
@@ -200,8 +198,8 @@ int run(const ScansOptions& options, const CommandContext& context) {
   if (pairs.empty()) throw NoResultError("there is no pair to measure");
   const RunContext stages = stage_context(context, options.stages);
   std::vector<PairRow> rows;
-  TextTable table(kColumns);
-  std::string csv = csv_line(kColumns);
+  TextTable table(columns());
+  std::string csv = csv_line(columns());
   for (const Pair& pair : pairs) {
     context.run.check();
     rows.push_back(measure(pair, options, stages));

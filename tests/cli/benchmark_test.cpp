@@ -198,6 +198,51 @@ TEST_F(BenchmarkProgram, RealMeshesAreFoundInFoldersDetectedAndDragged) {
   EXPECT_NE(again.output.find("  read"), std::string::npos) << again.output;
 }
 
+TEST_F(BenchmarkProgram, ScansAreFittedAndComparedWithTheirTemplates) {
+  const TemporaryFolder& folder = program_.folder();
+  const auto made = [&](const std::string& line) {
+    const ProgramResult result = Program{ORBIFIT_PROGRAM}.run(line);
+    ASSERT_EQ(result.code, 0) << result.errors;
+  };
+  const std::string here = folder.path().string() + "/";
+  made("generate chair -o " + here);
+  Mesh longer = read_mesh(folder.file("chair.ply"));
+  longer.vertices.col(2) *= 1.2;
+  write_mesh(folder.file("longer.ply"), longer);
+  made("scan " + here + "chair.ply --views 3 -o " + here + "of_same.ply");
+  made("scan " + here + "longer.ply --views 3 -o " + here + "of_longer.ply");
+  std::filesystem::create_directory(folder.file("known"));
+  std::filesystem::copy(folder.file("chair.annotation.json"), folder.file("known/chair.json"));
+  folder.write("pairs.tsv",
+               "# template, scan\nchair.ply\tof_same.ply\tsame\nchair.ply\tof_longer.ply\tkind\n"
+               "chair.ply\tmissing.ply\tkind\t0 0 5\n");
+  const ProgramResult result = program_.run("scans pairs.tsv --annotations known --csv scans.csv");
+  EXPECT_EQ(result.code, 0) << result.errors;
+  EXPECT_NE(result.output.find("3 pairs, 2 taken for fitted\n1 scan of the very thing: 1 with"), std::string::npos)
+      << result.output;
+  EXPECT_NE(result.output.find("failed: "), std::string::npos) << result.output;
+  std::istringstream rows(read_file(folder.file("scans.csv")));
+  std::string row;
+  std::getline(rows, row);
+  const auto bent = [&] {
+    std::getline(rows, row);
+    std::vector<std::string> cells;
+    std::istringstream columns(row);
+    for (std::string one; std::getline(columns, one, ',');) cells.push_back(one.substr(1, one.size() - 2));
+    return cells.size() < 10 ? -1 : std::stod(cells[9]);
+  };
+  const double of_same = bent();
+  EXPECT_GE(of_same, 0) << row;
+  EXPECT_LT(of_same, 0.1) << row;
+  EXPECT_GT(bent(), 1) << row;
+  for (const char* line : {"chair.ply", "chair.ply\tof_same.ply\tother", "chair.ply\tof_same.ply\tsame\t0 0"}) {
+    folder.write("pairs.tsv", std::string("\n") + line + "\n");
+    const ProgramResult bad = program_.run("scans pairs.tsv");
+    EXPECT_EQ(bad.code, 3) << line;
+    EXPECT_NE(bad.errors.find("line 2"), std::string::npos) << bad.errors;
+  }
+}
+
 TEST_F(BenchmarkProgram, RefusesWhatItCannotMeasure) {
   for (const char* line :
        {"", "table2", "table1 --models teapot", "table1 --repeat 0", "table1 --threads 0", "scaling --most 3",
@@ -211,6 +256,7 @@ TEST_F(BenchmarkProgram, RefusesWhatItCannotMeasure) {
   EXPECT_EQ(program_.run("table1 --models bar --json missing/table.json").code, 3);
   EXPECT_EQ(program_.run("detection --models boulder --write missing/cases").code, 3);
   EXPECT_EQ(program_.run("real missing").code, 3);
+  EXPECT_EQ(program_.run("scans missing").code, 3);
 }
 
 }  // namespace
