@@ -235,6 +235,28 @@ TEST(SymmetrizeTurned, MakesCirclesWhereTheFacetsDiffer) {
   for (int ring = 0; ring < 3; ++ring) EXPECT_LT(ring_scatter(exact, 99 + 35 * ring, 35), 1e-12);
 }
 
+// An egg with a dent, whose vertices lie on no circles: the surface between them becomes round.
+TEST(SymmetrizeTurned, MakesASurfaceRoundWhoseVerticesFormNoCircles) {
+  OrbitOptions round;
+  round.subdivisions = 4;
+  round.frame = Random(5, "egg").rotation();
+  Mesh egg = generate_orbit(PointGroup::parse("I").value(), round).mesh;
+  for (Eigen::Index v = 0; v < egg.vertices.rows(); ++v) {
+    Eigen::Vector3d direction = egg.vertices.row(v).normalized();
+    direction *= 1 - 0.01 * std::exp(-20 * (direction - Eigen::Vector3d(0.8, 0, 0.6)).squaredNorm());
+    egg.vertices.row(v) = direction.cwiseProduct(Eigen::Vector3d(1, 1, 1.5)).transpose();
+  }
+  const SymmetryAnnotation annotation = whole(egg, "Cinfv");
+  const double before = residual(egg, annotation);
+  SymmetrizeReport report;
+  const Mesh rounded = symmetrized(egg, annotation, RunContext{}, &report);
+  EXPECT_EQ(report.regions[0].group, "C24v");
+  EXPECT_GT(before, 2e-3);
+  EXPECT_LT(residual(rounded, annotation), 0.3 * before);
+  EXPECT_LT(report.regions[0].after.rms, 0.3 * report.regions[0].before.rms);
+  EXPECT_LT(report.largest_movement, 2 * before);
+}
+
 // Images that lie between vertices: more facets on one side of the mirror than on the other.
 TEST(SymmetrizeSurface, BringsUnrelatedTessellationsTogether) {
   std::vector<double> angles;

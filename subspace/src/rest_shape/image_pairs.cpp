@@ -45,19 +45,19 @@ std::vector<Probe> probes_of(const Mesh& mesh, const Places& places, const std::
 }  // namespace
 
 RegionDemand region_demand(const Mesh& mesh, const Places& places, const Region& region,
-                           const std::optional<Region>& finite) {
+                           const std::optional<Region>& finite, bool any_turn) {
   RegionDemand demand;
   if (region.faces.empty()) return demand;
   demand.probes = probes_of(mesh, places, region.faces);
   demand.faces = region.faces;
   demand.of_finite_group = finite.has_value();
-  if (!finite) {
+  if (!finite || any_turn) {
     for (const double angle : {0.3, 1.7, 4.4}) {  // as few finite groups have them
       const Vector3d axis = region.group.has_axis() ? region.axis : Vector3d(1, angle, -2);
       demand.motions.push_back(Motion::rotation(axis.normalized(), angle, region.centre));
     }
-    return demand;
   }
+  if (!finite) return demand;
   const std::size_t elements = finite->elements.size();
   const std::size_t most = std::max<std::size_t>(1, kMaxPairs / demand.probes.size());
   const std::size_t stride = (elements + most - 1) / most;

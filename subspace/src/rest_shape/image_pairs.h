@@ -32,8 +32,9 @@ struct RegionDemand {
 /// All elements of a finite group, or as many of them, spread evenly, as make some 200 000 pairs. Of a continuous group
 /// for which no finite one stands, some rotations.
 /// \param finite the region with its finite group, or with the one that stands for its continuous one
+/// \param any_turn  the surface is to lie on itself after other rotations as well, though vertices do not
 RegionDemand region_demand(const Mesh& mesh, const Places& places, const Region& region,
-                           const std::optional<Region>& finite);
+                           const std::optional<Region>& finite, bool any_turn);
 
 /// The point of a region's surface that is nearest to the image of a probe.
 struct SurfaceMatch {

@@ -44,6 +44,7 @@ struct Shape {
   Places places;
   std::vector<std::vector<int>> inside;       // places of each region
   std::vector<std::optional<Region>> finite;  // each region with a finite group; nothing where it has none
+  std::vector<char> round;  // of each region: its surface is round, and no vertices tell a finite group
 };
 
 // A finite group for the continuous one of a region: that of a related region, carried here, or of its own places.
@@ -60,8 +61,13 @@ std::optional<Region> finite_subgroup_of(const Shape& shape, const std::vector<M
   return turning_region(region, shape.places.positions(shape.inside[number], Eigen::all), shape.reach, known);
 }
 
+bool forms_circles(const Shape& shape, std::size_t number) {
+  Points places = shape.places.positions(shape.inside[number], Eigen::all);
+  return 2 * ring_average(shape.annotation.regions[number], shape.reach / 4, places).places >= places.rows();
+}
+
 Shape prepare(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
-  Shape shape{mesh, annotation, diagonal(mesh.vertices), 0, vertex_places(mesh), {}, {}};
+  Shape shape{mesh, annotation, diagonal(mesh.vertices), 0, vertex_places(mesh), {}, {}, {}};
   shape.reach = kReach * annotation.tolerance * shape.scale;
   std::vector<Motion> known;
   for (const Region& region : annotation.regions) {
@@ -69,11 +75,17 @@ Shape prepare(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunC
   }
   for (const Region& region : annotation.regions) {
     shape.inside.push_back(places_of(shape.places, mesh, region));
+    shape.round.push_back(0);
     if (!region.group.continuous()) {
       shape.finite.emplace_back(region);
       continue;
     }
-    shape.finite.push_back(finite_subgroup_of(shape, known, shape.inside.size() - 1));
+    const std::size_t number = shape.inside.size() - 1;
+    shape.finite.push_back(finite_subgroup_of(shape, known, number));
+    if (!shape.finite.back() && !forms_circles(shape, number)) {
+      shape.finite.back() = even_region(region, shape.scale, known);
+      shape.round.back() = shape.finite.back() ? 1 : 0;
+    }
     if (shape.finite.back()) {
       known.insert(known.end(), shape.finite.back()->elements.begin(), shape.finite.back()->elements.end());
     }
@@ -152,7 +164,8 @@ void put_back(const Shape& shape, const std::vector<PlaceOrbit>& orbits, const s
 std::vector<RegionDemand> region_demands(const Shape& shape) {
   std::vector<RegionDemand> demands;
   for (std::size_t r = 0; r < shape.finite.size(); ++r) {
-    demands.push_back(region_demand(shape.mesh, shape.places, shape.annotation.regions[r], shape.finite[r]));
+    demands.push_back(
+        region_demand(shape.mesh, shape.places, shape.annotation.regions[r], shape.finite[r], shape.round[r] != 0));
   }
   return demands;
 }

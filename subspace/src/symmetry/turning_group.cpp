@@ -124,6 +124,26 @@ std::optional<Vector3d> known_direction(const Region& region, const std::vector<
   return std::nullopt;
 }
 
+// The region with the finite counterpart of an order of its group. \param other_direction  of its flips, given whether
+// they are half turns, where none is known
+template <typename Direction>
+Region turned_region(const Region& region, int order, const std::vector<Motion>& known, double scale,
+                     const Direction& other_direction) {
+  const Vector3d axis = region.axis.normalized();
+  const PointGroup group = finite_counterpart(region.group, order);
+  GroupFrame frame = frame_about(axis);
+  if (group.family != Family::Cn && group.family != Family::Cnh) {
+    const bool half_turn = group.family == Family::Dn;
+    const std::optional<Vector3d> told = known_direction(region, known, half_turn, scale);
+    const Vector3d along = told ? *told : other_direction(half_turn);
+    frame = frame_about(axis, group.family == Family::Cnv ? Vector3d(axis.cross(along)) : along);
+  }
+  Region result = make_region(group, region.centre, frame, region.faces, region.name);
+  result.id = region.id;
+  result.parent = region.parent;
+  return result;
+}
+
 }  // namespace
 
 std::optional<Region> conjugated_region(const Region& from, const Region& to, const std::vector<Motion>& known,
@@ -157,18 +177,15 @@ std::optional<Region> turning_region(const Region& region, const Points& places,
     --order;
   }
   if (order < 3) return std::nullopt;
-  const PointGroup group = finite_counterpart(region.group, order);
-  GroupFrame frame = frame_about(axis);
-  if (group.family != Family::Cn && group.family != Family::Cnh) {
-    const bool half_turn = group.family == Family::Dn;
-    const Vector3d along = known_direction(region, known, half_turn, diagonal(turned.points()))
-                               .value_or(flip_direction(axis, turned, half_turn));
-    frame = frame_about(axis, group.family == Family::Cnv ? Vector3d(axis.cross(along)) : along);
-  }
-  Region result = make_region(group, region.centre, frame, region.faces, region.name);
-  result.id = region.id;
-  result.parent = region.parent;
-  return result;
+  return turned_region(region, order, known, diagonal(turned.points()),
+                       [&](bool half_turn) { return flip_direction(axis, turned, half_turn); });
+}
+
+std::optional<Region> even_region(const Region& region, double scale, const std::vector<Motion>& known) {
+  constexpr int kOrder = 24;
+  if (!region.group.has_axis()) return std::nullopt;
+  return turned_region(region, kOrder, known, scale,
+                       [&](bool /*half_turn*/) -> Vector3d { return region.axis.unitOrthogonal(); });
 }
 
 }  // namespace orbifit

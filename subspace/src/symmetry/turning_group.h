@@ -17,6 +17,10 @@ namespace orbifit {
 std::optional<Region> turning_region(const Region& region, const Points& places, double reach,
                                      const std::vector<Motion>& known);
 
+/// The same with a rotation of order 24, whatever the tessellation: a round surface lies on its images under any.
+/// Nothing for K and Kh. \param scale  the mesh's diagonal
+std::optional<Region> even_region(const Region& region, double scale, const std::vector<Motion>& known);
+
 /// The same group about another region's axis, where one of `known` takes axis and centre there: related parts get
 /// related groups.
 std::optional<Region> conjugated_region(const Region& from, const Region& to, const std::vector<Motion>& known,
