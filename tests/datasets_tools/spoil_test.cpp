@@ -147,7 +147,7 @@ TEST(Noisy, DependsOnTheSeedAlone) {
 TEST(Cut, RemovesTheFacesInsideAndNoOthers) {
   const Mesh mesh = test::solid_torus(2, 0.7, 40, 16);
   const HalfSpace half{{0.3, 0, 0}, {2, 1, 0}};
-  const Ball ball{{2, 0, 0}, 1.1};
+  const CutBall ball{{2, 0, 0}, 1.1};
   const auto in_half = [&](const Vector3d& p) { return (p - half.point).dot(half.normal) > 0; };
   const auto in_ball = [&](const Vector3d& p) { return (p - ball.centre).norm() < ball.radius; };
   const auto check = [&](const Derived& rest, const auto& inside) {
@@ -169,9 +169,9 @@ TEST(Cut, RemovesTheFacesInsideAndNoOthers) {
 TEST(Cut, RefusesWhatHasNoMeaningOrLeavesNothing) {
   const Mesh mesh = test::solid_box({0, 0, 0}, {1, 2, 3});
   EXPECT_THROW(cut(mesh, HalfSpace{{0, 0, 0}, {0, 0, 0}}), UsageError);
-  EXPECT_THROW(cut(mesh, Ball{{0, 0, 0}, 0}), UsageError);
-  EXPECT_THROW(cut(mesh, Ball{{0, 0, 0}, std::nan("")}), UsageError);
-  EXPECT_THROW(cut(mesh, Ball{{0, 0, 0}, 100}), NoResultError);
+  EXPECT_THROW(cut(mesh, CutBall{{0, 0, 0}, 0}), UsageError);
+  EXPECT_THROW(cut(mesh, CutBall{{0, 0, 0}, std::nan("")}), UsageError);
+  EXPECT_THROW(cut(mesh, CutBall{{0, 0, 0}, 100}), NoResultError);
   EXPECT_THROW(cut(mesh, HalfSpace{{0, 0, -1}, {0, 0, 1}}), NoResultError);
 }
 

@@ -206,7 +206,7 @@ TEST_F(RoundBar, BecomesOptionalWithoutItsEnds) {
 
 TEST_F(RoundBar, LosesEveryCircleThatANotchBreaks) {
   // A notch in the middle of the bar, a fifth of a turn wide: the bar is round only away from it.
-  const Derived rest = cut(fine_.mesh, Ball{{1, 0, 0}, 0.6});
+  const Derived rest = cut(fine_.mesh, CutBall{{1, 0, 0}, 0.6});
   const DetectionTruth truth = after(rest);
   const std::vector<Region>& regions = truth.expected.regions.empty() ? truth.optional_regions : truth.expected.regions;
   ASSERT_EQ(regions.size(), 1U);
@@ -272,7 +272,7 @@ TEST(CarriedTruth, DropsSmallRegionsAndSpoiltPatterns) {
       transferred_truth(model, fine.mesh, fine.source_face, {.least_expected = 0, .least_area = 0}, context);
   EXPECT_NE(find_region(large.expected.regions, "knob"), nullptr);
 
-  Derived rest = cut(fine.mesh, Ball{{4, 0, 1.2}, 1.0});
+  Derived rest = cut(fine.mesh, CutBall{{4, 0, 1.2}, 1.0});
   for (int& face : rest.source_face) face = fine.source_face[static_cast<std::size_t>(face)];
   const DetectionTruth spoilt = transferred_truth(model, rest.mesh, rest.source_face, {}, context);
   EXPECT_TRUE(spoilt.expected.patterns.empty());

@@ -238,7 +238,7 @@ TEST(SymmetrizeTurned, MakesCirclesWhereTheFacetsDiffer) {
 
 // An egg with a dent, whose vertices lie on no circles: the surface between them becomes round.
 TEST(SymmetrizeTurned, MakesASurfaceRoundWhoseVerticesFormNoCircles) {
-  Mesh egg = icosahedral_ball(1, 4);
+  Mesh egg = icosahedral_ball(1, 5);
   egg.vertices = egg.vertices * Random(5, "egg").rotation();
   for (Eigen::Index v = 0; v < egg.vertices.rows(); ++v) {
     Eigen::Vector3d direction = egg.vertices.row(v).normalized();
@@ -251,7 +251,7 @@ TEST(SymmetrizeTurned, MakesASurfaceRoundWhoseVerticesFormNoCircles) {
   const Mesh rounded = symmetrized(egg, annotation, RunContext{}, &report);
   EXPECT_EQ(report.regions[0].group, "C24v");
   EXPECT_GT(before, 2e-3);
-  EXPECT_LT(residual(rounded, annotation), 0.3 * before);
+  EXPECT_LT(residual(rounded, annotation), 0.5 * before);
   EXPECT_LT(report.regions[0].after.rms, 0.3 * report.regions[0].before.rms);
   EXPECT_LT(report.largest_movement, 4 * annotation.tolerance);
 }

@@ -100,7 +100,7 @@ Derived cut(const Mesh& mesh, const HalfSpace& removed) {
   return without(mesh, [&](const Vector3d& p) { return (p - removed.point).dot(removed.normal) > 0; });
 }
 
-Derived cut(const Mesh& mesh, const Ball& removed) {
+Derived cut(const Mesh& mesh, const CutBall& removed) {
   if (!(removed.radius > 0)) refuse("cut: the radius of the ball", removed.radius, "positive");
   return without(mesh, [&](const Vector3d& p) { return (p - removed.centre).norm() < removed.radius; });
 }

@@ -34,7 +34,7 @@ struct HalfSpace {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< not zero
 };
 
-struct Ball {
+struct CutBall {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< mesh units
   double radius = 0;                                 ///< mesh units, > 0
 };
@@ -44,7 +44,7 @@ struct Ball {
 /// \throw UsageError for a zero normal or a radius that is not positive
 /// \throw NoResultError when no face is left
 Derived cut(const Mesh& mesh, const HalfSpace& removed);
-Derived cut(const Mesh& mesh, const Ball& removed);
+Derived cut(const Mesh& mesh, const CutBall& removed);
 
 /// How far a mesh may be put.
 struct PoseRange {

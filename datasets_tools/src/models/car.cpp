@@ -148,7 +148,7 @@ Matrix3d axes_with_longest_last(const Vector3d& half) {
 struct Fitted {
   std::string name;
   PartFaces faces;
-  Placement place;
+  LocalFrame place;
 };
 
 std::vector<Fitted> add_fittings(ModelBuilder& builder, const Size& size, int detail) {
@@ -158,7 +158,7 @@ std::vector<Fitted> add_fittings(ModelBuilder& builder, const Size& size, int de
     const Vector3d half = axes.transpose() * fitting.half;
     const Matrix3d tilt = axis_rotation(Vector3d::UnitZ(), fitting.yaw * std::numbers::pi / 180) *
                           axis_rotation(Vector3d::UnitY(), fitting.pitch * std::numbers::pi / 180);
-    const Placement left{tilt * axes, fitting.place};
+    const LocalFrame left{tilt * axes, fitting.place};
     const Mesh part = moved(pebble(half, fitting.exponent, fitting.counts), left);
     for (const double hand : {1.0, -1.0}) {
       const Motion motion{Vector3d(1, hand, 1).asDiagonal(), Vector3d::Zero()};
@@ -180,7 +180,7 @@ GeneratedModel build_car(const ModelValues& values) {
   std::vector<PartFaces> parts = shell;
   const std::vector<Fitted> fitted = add_fittings(builder, size, detail);
   for (const Fitted& each : fitted) parts.push_back(each.faces);
-  const Placement roof{Matrix3d::Identity(), Vector3d(-0.05 * size.half_length, 0, 1.56)};
+  const LocalFrame roof{Matrix3d::Identity(), Vector3d(-0.05 * size.half_length, 0, 1.56)};
   const PartFaces roof_box =
       builder.add(box({0.5, 0.36, 0.1}, {6 * detail, 4 * detail, 2 * detail}, 0.08, detail), roof);
   parts.push_back(roof_box);

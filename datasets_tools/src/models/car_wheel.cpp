@@ -93,7 +93,7 @@ Mesh nut(double radius, double height, int detail) {
 }
 
 // Places in the wheel's frame.
-Placement spoke_place(int i, double radius, const std::vector<Matrix3d>& turns) {
+LocalFrame spoke_place(int i, double radius, const std::vector<Matrix3d>& turns) {
   // Column 2 along the spoke, which leans outwards from the hub's front; column 1 across it in the wheel's plane.
   const Vector3d along = Vector3d(1, 0, -0.22).normalized();
   Matrix3d frame;
@@ -133,8 +133,8 @@ CarWheel add_car_wheel(ModelBuilder& builder, const Motion& place, double radius
 void declare_car_wheel(ModelBuilder& builder, const std::string& name, const CarWheel& wheel) {
   const std::vector<Matrix3d> turns = elements({Family::Cn, kSpokes});
   // Columns of a placement are right-handed: a mirrored one's second column turns over, and no group minds.
-  const auto placed = [&](const Placement& local) { return image(wheel.place, local); };
-  const Placement axle{frame_about(Vector3d::UnitZ(), Vector3d::UnitY()), Vector3d::Zero()};
+  const auto placed = [&](const LocalFrame& local) { return image(wheel.place, local); };
+  const LocalFrame axle{frame_about(Vector3d::UnitZ(), Vector3d::UnitY()), Vector3d::Zero()};
   builder.declare(name, {Family::Cnv, kSpokes}, placed(axle), wheel.all);
   builder.declare(name + " tyre", {Family::Dnh, kTread}, placed({}), wheel.tyre);
   for (int i = 0; i < kSpokes; ++i) {

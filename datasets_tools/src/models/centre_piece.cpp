@@ -20,7 +20,7 @@ constexpr int kLobes = 8;
 constexpr double kFoot = 0.024;   // half the height of a foot, m
 constexpr double kPlinth = 0.02;  // half that of the plinth, m
 
-Placement at(double x, double y, double z) {
+LocalFrame at(double x, double y, double z) {
   return {Matrix3d::Identity(), Vector3d(x, y, z)};
 }
 
@@ -149,16 +149,16 @@ GeneratedModel build_centre_piece(const ModelValues& values) {
   const double height = values["height"];
   const double base = values["base"] / 2;
   ModelBuilder builder(0);
-  const Placement plinth_place = at(0, 0, 1.7 * kFoot + kPlinth);
+  const LocalFrame plinth_place = at(0, 0, 1.7 * kFoot + kPlinth);
   const PartFaces plinth = builder.add(
       box({base, base, kPlinth}, {14 * detail, 14 * detail, 2 * detail}, 0.6 * kPlinth, detail), plinth_place);
   const PartFaces feet = add_feet(builder, base, detail);
   // What is eightfold: column with bowl, knob and beads.
   const double floor = plinth_place.origin.z() + kPlinth;
   const PartFaces bowl = builder.add(column(height, values["bowl"], detail), at(0, 0, floor - 0.004));
-  const Placement knob_place = at(0, 0, floor + 0.42 * height);
+  const LocalFrame knob_place = at(0, 0, floor + 0.42 * height);
   const PartFaces knob_faces = builder.add(knob(0.06, detail), knob_place);
-  const Placement beads_place = at(0, 0, floor + 0.62 * height);
+  const LocalFrame beads_place = at(0, 0, floor + 0.62 * height);
   const PartFaces beads_faces = builder.add(beads(0.036, 0.012, detail), beads_place);
   const PartFaces eightfold = joined({bowl, knob_faces, beads_faces});
   const Arms arms = add_arms(builder, values, knob_place.origin.z());

@@ -51,7 +51,7 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
   const Vector3d lower(upper.x() + spread, upper.y() + spread, 0);
   const Vector3d along = upper - lower;
   const Mesh leg = tapered_leg(thickness, along.norm(), 0.6, detail);
-  const Placement leg_place{leg_frame(along.normalized()), (upper + lower) / 2};
+  const LocalFrame leg_place{leg_frame(along.normalized()), (upper + lower) / 2};
   for (const Matrix3d& element : elements({Family::Cnv, 2})) {
     const Motion motion{element, Vector3d::Zero()};
     base.legs.faces.push_back(builder.add(moved(leg, leg_place), motion));
@@ -67,7 +67,7 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
     return box({half_length - 0.3 * half_thickness, half_thickness, 1.5 * half_thickness}, {6 * detail, 2, 2},
                0.4 * half_thickness, 2);
   };
-  const std::array<std::pair<double, Placement>, 2> bars{
+  const std::array<std::pair<double, LocalFrame>, 2> bars{
       {{corner.x(), {Matrix3d::Identity(), Vector3d(0, corner.y(), corner.z())}},
        {corner.y(), {elements({Family::Cn, 4})[1], Vector3d(corner.x(), 0, corner.z())}}}};
   for (const auto& [half_length, place] : bars) {
@@ -83,8 +83,8 @@ Base build_base(ModelBuilder& builder, const ModelValues& values) {
 struct Back {
   PartCopies posts, slats;
   PartFaces crest;
-  Placement crest_place;
-  Placement middle;  // of posts and slats
+  LocalFrame crest_place;
+  LocalFrame middle;  // of posts and slats
   Vector3d step;
 };
 
@@ -99,7 +99,7 @@ Back build_back(ModelBuilder& builder, const ModelValues& values) {
   // Local x to the side, y to the back, z up along the posts.
   const Matrix3d frame = axis_rotation(Vector3d::UnitX(), -tilt);
   const Vector3d foot(0, values["seat_depth"] / 2 - post, values["leg_height"] + 0.5 * values["seat_thickness"]);
-  const auto at = [&](double x, double z) { return Placement{frame, foot + frame * Vector3d(x, 0, z)}; };
+  const auto at = [&](double x, double z) { return LocalFrame{frame, foot + frame * Vector3d(x, 0, z)}; };
   back.middle = at(0, height / 2);
 
   const Mesh post_part = box({post / 2, post / 2, height / 2}, {2 * detail, 2 * detail, 8 * detail}, 0.14 * post, 2);

@@ -100,7 +100,7 @@ Mesh stand(int detail) {
   });
 }
 
-PartFaces add_guard(ModelBuilder& builder, const ModelValues& values, const Placement& head) {
+PartFaces add_guard(ModelBuilder& builder, const ModelValues& values, const LocalFrame& head) {
   const int detail = values.count("detail");
   const double radius = values["radius"];
   const double depth = values["depth"];
@@ -116,7 +116,7 @@ PartFaces add_guard(ModelBuilder& builder, const ModelValues& values, const Plac
   return joined(parts);
 }
 
-PartFaces add_rotor(ModelBuilder& builder, const ModelValues& values, const Placement& head) {
+PartFaces add_rotor(ModelBuilder& builder, const ModelValues& values, const LocalFrame& head) {
   const int detail = values.count("detail");
   std::vector<PartFaces> parts{builder.add(rotor_hub(detail), head)};
   const Mesh blade = fan_blade(0.03, 0.88 * values["radius"], detail);
@@ -127,7 +127,7 @@ PartFaces add_rotor(ModelBuilder& builder, const ModelValues& values, const Plac
 }
 
 // Motor, neck and stand, which have the mirror plane x = 0.
-PartFaces add_support(ModelBuilder& builder, const ModelValues& values, const Placement& head) {
+PartFaces add_support(ModelBuilder& builder, const ModelValues& values, const LocalFrame& head) {
   const int detail = values.count("detail");
   const double depth = values["depth"];
   std::vector<PartFaces> parts{builder.add(motor(depth, detail), head)};
@@ -141,7 +141,7 @@ GeneratedModel build_desk_fan(const ModelValues& values) {
   // The head is made about z, its front to +z, then looks to -y.
   Matrix3d frame;
   frame << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  const Placement head{frame, Vector3d(0, 0, values["height"])};
+  const LocalFrame head{frame, Vector3d(0, 0, values["height"])};
   const PartFaces guard = add_guard(builder, values, head);
   const PartFaces rotor = add_rotor(builder, values, head);
   const PartFaces support = add_support(builder, values, head);

@@ -109,7 +109,7 @@ std::vector<Vector3d> wire_path(double from, double to, double depth, int pieces
 
 struct Head {
   std::vector<PartFaces> turned, wires, blades, rings;
-  std::vector<Placement> ring_places;
+  std::vector<LocalFrame> ring_places;
   int facets = 0;
 };
 
@@ -161,7 +161,7 @@ Head build_head(ModelBuilder& builder, const ModelValues& values, const Vector3d
 struct Stand {
   std::vector<PartFaces> turned, others;
   PartFaces pole;
-  Placement pole_place;
+  LocalFrame pole_place;
   int facets = 0;
 };
 
@@ -205,7 +205,7 @@ GeneratedModel build_fan(const ModelValues& values) {
   const double back = 0.75 * values["guard_depth"] + 0.22 * radius;
   const Stand stand = build_stand(builder, values, middle.z() - 0.16 * radius, back);
 
-  const Placement about_head{head_frame(), middle};
+  const LocalFrame about_head{head_frame(), middle};
   const PartFaces turned = joined(head.turned);
   const PartFaces guard = joined({turned, joined(head.wires)});
   const PartFaces stand_turned = joined(stand.turned);
@@ -213,10 +213,10 @@ GeneratedModel build_fan(const ModelValues& values) {
                   joined({guard, stand_turned, joined(stand.others)}));
   builder.declare("rotor", {Family::Cn, values.count("blades")}, about_head, joined({turned, joined(head.blades)}));
   // The first wire lies in the plane of the head's x and z: its normal is column 0 of the group's frame.
-  const Placement about_wire{frame_about(about_head.frame.col(2), Vector3d(about_head.frame.col(1))), middle};
+  const LocalFrame about_wire{frame_about(about_head.frame.col(2), Vector3d(about_head.frame.col(1))), middle};
   builder.declare("guard", {Family::Cnv, values.count("wires")}, about_wire, guard);
   const bool continuous = values.count("continuous") != 0;
-  const auto round = [&](const std::string& name, bool alike, int facets, const Placement& about,
+  const auto round = [&](const std::string& name, bool alike, int facets, const LocalFrame& about,
                          const PartFaces& faces) {
     builder.declare_turned(name, alike, continuous, facets, about, faces);
   };

@@ -32,8 +32,8 @@ PartFaces joined(const std::vector<PartFaces>& parts) {
   return result;
 }
 
-Placement image(const Motion& motion, const Placement& placement) {
-  Placement result{motion.linear * placement.frame, motion(placement.origin)};
+LocalFrame image(const Motion& motion, const LocalFrame& placement) {
+  LocalFrame result{motion.linear * placement.frame, motion(placement.origin)};
   // A mirror's image of a frame is left-handed; the third axis of three gives way, the group's two stay.
   if (result.frame.determinant() < 0) result.frame.col(1) *= -1;
   return result;
@@ -47,12 +47,12 @@ PartFaces ModelBuilder::add(const Mesh& part, const Motion& motion) {
   return faces;
 }
 
-void ModelBuilder::add_copy(const Mesh& part, const Placement& place, PartCopies& copies) {
+void ModelBuilder::add_copy(const Mesh& part, const LocalFrame& place, PartCopies& copies) {
   copies.places.push_back(place);
   copies.faces.push_back(add(part, place));
 }
 
-void ModelBuilder::declare(const std::string& name, const PointGroup& group, const Placement& about,
+void ModelBuilder::declare(const std::string& name, const PointGroup& group, const LocalFrame& about,
                            const PartFaces& faces) {
   Region region = make_region(group, about.origin, about.frame, faces, name);
   std::vector<Motion> measured = region.generators;
@@ -65,7 +65,7 @@ void ModelBuilder::declare_each(const std::string& name, const PointGroup& group
   }
 }
 
-void ModelBuilder::declare_turned(const std::string& name, bool alike, bool round, int facets, const Placement& about,
+void ModelBuilder::declare_turned(const std::string& name, bool alike, bool round, int facets, const LocalFrame& about,
                                   const PartFaces& faces) {
   declare(name, {alike ? Family::Dnh : Family::Cnv, facets}, about, faces);
   if (!round) return;

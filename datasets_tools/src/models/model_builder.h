@@ -18,19 +18,19 @@ using PartFaces = std::vector<int>;
 PartFaces joined(const std::vector<PartFaces>& parts);
 
 /// A right-handed frame in space: where a part is put and about what it is symmetric.
-struct Placement {
+struct LocalFrame {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 
   operator Motion() const { return {frame, origin}; }  // NOLINT(google-explicit-constructor)
 };
 
-Placement image(const Motion& motion, const Placement& placement);
+LocalFrame image(const Motion& motion, const LocalFrame& placement);
 
 /// Copies of a part, and where each is placed.
 struct PartCopies {
   std::vector<PartFaces> faces;
-  std::vector<Placement> places;
+  std::vector<LocalFrame> places;
 };
 
 /// Puts a model together from parts and says what is symmetric.
@@ -43,19 +43,19 @@ class ModelBuilder {
   PartFaces add(const Mesh& part, const Motion& motion = {});
 
   /// Adds one more copy of the part.
-  void add_copy(const Mesh& part, const Placement& place, PartCopies& copies);
+  void add_copy(const Mesh& part, const LocalFrame& place, PartCopies& copies);
 
   /// Declares `faces` symmetric under the group about a place; column 2 of its frame is the axis. Regions of under
   /// 0.25 % of the model's area are left out where nothing else was asked for: no picture and no measure would show
   /// them.
-  void declare(const std::string& name, const PointGroup& group, const Placement& about, const PartFaces& faces);
+  void declare(const std::string& name, const PointGroup& group, const LocalFrame& about, const PartFaces& faces);
 
   /// Declares every copy symmetric under the group about its place; they are named `name` 1, `name` 2 ...
   void declare_each(const std::string& name, const PointGroup& group, const PartCopies& copies);
 
   /// Declares a turned part: Cinfv, or Dinfh if its two ends are `alike`; Cnv or Dnh of its facets where these count.
   /// \param round whether to take the part as round
-  void declare_turned(const std::string& name, bool alike, bool round, int facets, const Placement& about,
+  void declare_turned(const std::string& name, bool alike, bool round, int facets, const LocalFrame& about,
                       const PartFaces& faces);
 
   /// Declares copies one step apart each.

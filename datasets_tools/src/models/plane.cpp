@@ -166,7 +166,7 @@ GeneratedModel build_plane(const ModelValues& values) {
   propeller.push_back(builder.add(spinner(detail), {forward, Vector3d(kNose, 0, 0)}));
   Matrix3d turned_frame;
   turned_frame << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-  const Placement shaft{turned_frame, Vector3d(kNose, 0, 0)};  // columns: y (a mirror's normal), z, x
+  const LocalFrame shaft{turned_frame, Vector3d(kNose, 0, 0)};  // columns: y (a mirror's normal), z, x
   for (const Matrix3d& turn : elements({Family::Cn, 3}, turned_frame)) {
     propeller.push_back(
         builder.add(propeller_blade(values["propeller"], detail), {turn, Vector3d(kNose + 0.12, 0, 0)}));

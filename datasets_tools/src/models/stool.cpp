@@ -35,7 +35,7 @@ LegLine leg_line(const ModelValues& values) {
   return {Vector3d(upper.x() + values["leg_spread"], 0, 0), upper};
 }
 
-Placement place_of_leg(const LegLine& line) {
+LocalFrame place_of_leg(const LegLine& line) {
   const Vector3d axis = (line.upper - line.lower).normalized();
   Matrix3d frame;
   frame << Vector3d::UnitY().cross(axis), Vector3d::UnitY(), axis;
@@ -45,7 +45,7 @@ Placement place_of_leg(const LegLine& line) {
 // A bar along y from leg to leg, which ends within them, and its place beside the leg of +x.
 struct Stretcher {
   Mesh part;
-  Placement place;
+  LocalFrame place;
 };
 
 Stretcher stretcher_between_legs(const LegLine& line, const ModelValues& values) {
@@ -67,7 +67,7 @@ struct Underframe {
 // Leg and stretcher are made once and copied about the axis.
 Underframe add_underframe(ModelBuilder& builder, const ModelValues& values) {
   const LegLine line = leg_line(values);
-  const Placement leg_place = place_of_leg(line);
+  const LocalFrame leg_place = place_of_leg(line);
   const double length = (line.upper - line.lower).norm();
   const Mesh leg = moved(tapered_leg(values["leg_thickness"], length, 0.7, values.count("detail")), leg_place);
   const Stretcher stretcher = stretcher_between_legs(line, values);
@@ -89,12 +89,12 @@ GeneratedModel build_stool(const ModelValues& values) {
   const int facets = 8 * count * detail;
 
   ModelBuilder builder;
-  const Placement seat_place{Matrix3d::Identity(), {0, 0, underside + thickness / 2}};
+  const LocalFrame seat_place{Matrix3d::Identity(), {0, 0, underside + thickness / 2}};
   const PartFaces seat = builder.add(seat_part(values["seat_width"] / 2, thickness, detail, facets), seat_place);
   const Underframe under = add_underframe(builder, values);
 
   // Leg 1 lies in a mirror plane, which holds y of the group's frame.
-  const Placement about_legs{elements({Family::Cn, 4})[1], Vector3d::Zero()};
+  const LocalFrame about_legs{elements({Family::Cn, 4})[1], Vector3d::Zero()};
   builder.declare("stool", {Family::Cnv, count}, about_legs,
                   joined({seat, joined(under.legs.faces), joined(under.stretchers.faces)}));
   builder.declare_turned("seat", true, values.count("continuous") != 0, facets, seat_place, seat);

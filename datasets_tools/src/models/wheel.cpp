@@ -155,7 +155,7 @@ Mesh valve(double length, int detail) {
 }
 
 // About z; the wheel then stands on the floor with its outer side to -y.
-Placement standing(double radius) {
+LocalFrame standing(double radius) {
   Matrix3d frame;
   frame << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   return {frame, Vector3d(0, 0, radius)};
@@ -170,7 +170,7 @@ GeneratedModel build_wheel(const ModelValues& values) {
   const double rim = radius * values["rim"];
   const double hub = 0.44 * rim;
   const double front = 0.22 * width;
-  const Placement place = standing(radius);
+  const LocalFrame place = standing(radius);
 
   ModelBuilder builder;
   const PartFaces tyre_faces = builder.add(tyre(radius, rim, width, lugs, detail), place);
@@ -194,7 +194,7 @@ GeneratedModel build_wheel(const ModelValues& values) {
   builder.add(moved(valve(0.22 * rim, detail), aside * at_rim * inwards), place);
 
   // Column 0 is the normal of the mirror through the first spoke, bolt and lug; for Dnh it lies along a twofold axis.
-  const Placement mirrored{frame_about(place.frame.col(2), Vector3d(place.frame.col(1))), place.origin};
+  const LocalFrame mirrored{frame_about(place.frame.col(2), Vector3d(place.frame.col(1))), place.origin};
   const PartFaces turned = joined({rim_faces, hub_faces});
   builder.declare("wheel without valve", {Family::Cnv, 5}, mirrored, joined({tyre_faces, turned, spokes, bolts}));
   builder.declare("tyre, rim and hub", {Family::Cnv, lugs}, mirrored, joined({tyre_faces, turned}));

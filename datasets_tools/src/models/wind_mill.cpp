@@ -111,7 +111,7 @@ PartFaces add_house(ModelBuilder& builder, const ModelValues& values) {
 }
 
 // About z with the front to +z, then turned: the shaft rises a little to the front, -y.
-Placement hub_place(const ModelValues& values) {
+LocalFrame hub_place(const ModelValues& values) {
   const double rise = values["shaft_rise"] * std::numbers::pi / 180;
   const double top = top_radius(values["foot"]);
   Matrix3d frame;
@@ -121,7 +121,7 @@ Placement hub_place(const ModelValues& values) {
   return {frame, Vector3d(0, 0, values["height"] + 0.5 * top) + frame.col(2) * (1.12 * top + 0.7)};
 }
 
-PartFaces add_sails(ModelBuilder& builder, const ModelValues& values, const Placement& hub) {
+PartFaces add_sails(ModelBuilder& builder, const ModelValues& values, const LocalFrame& hub) {
   const int detail = values.count("detail");
   std::vector<PartFaces> parts{builder.add(sail_shaft(detail), hub)};
   const std::vector<Mesh> sail = sail_parts(values["sail"], values["sail_width"], detail);
@@ -134,7 +134,7 @@ PartFaces add_sails(ModelBuilder& builder, const ModelValues& values, const Plac
 
 GeneratedModel build_wind_mill(const ModelValues& values) {
   ModelBuilder builder(0);
-  const Placement hub = hub_place(values);
+  const LocalFrame hub = hub_place(values);
   const PartFaces house = add_house(builder, values);
   const PartFaces sails = add_sails(builder, values, hub);
   builder.declare("tower", {Family::Cnv, 8}, {}, house);

@@ -31,7 +31,7 @@ Mesh antiprism(int corners, double height) {
 TruthModel crossed_bars() {
   SuiteBuilder model;
   const int bar = model.kind({"bar", box({0.9, 0.16, 0.12}, {12, 2, 2}, 0.03, 2), group("D2h"), OwnRegion::optional});
-  Placement diagonal{frame_about(Vector3d::UnitZ(), Vector3d(1, 1, 0)), Vector3d::Zero()};
+  LocalFrame diagonal{frame_about(Vector3d::UnitZ(), Vector3d(1, 1, 0)), Vector3d::Zero()};
   model.orbit(bar, shift(0, 0, 0.3), group("D2d"), diagonal);
   model.add(model.kind({"post", box({0.1, 0.1, 0.27}, {2, 2, 4}, 0, 0), group("D4h"), OwnRegion::silent}));
   return model.finish();
@@ -43,8 +43,8 @@ TruthModel staggered_arms(int arms, const std::string& symbol) {
   model.add(model.kind({"post", cylinder(0.16, 0.7, 2 * arms * 6, 0.03), group("Dinfh"), OwnRegion::optional}));
   const int arm = model.kind({"arm", cone(0.12, 0.07, 0.9), group("Cinfv"), OwnRegion::optional});
   const double half_step = std::numbers::pi / (2 * arms);
-  const Placement about{frame_about(Vector3d::UnitZ(), Vector3d(std::cos(half_step), std::sin(half_step), 0)),
-                        Vector3d::Zero()};
+  const LocalFrame about{frame_about(Vector3d::UnitZ(), Vector3d(std::cos(half_step), std::sin(half_step), 0)),
+                         Vector3d::Zero()};
   model.orbit(arm, shift(0.02, 0, 0.45) * turn_y(90), group(symbol), about);
   return model.finish();
 }

@@ -69,7 +69,7 @@ TruthModel blower() {
                         group("Cinfv")}),
             facing({}));
   model.add(model.kind({"guard", torus(1.08, 0.07, 90, 16), group("Dinfh")}), facing({}));
-  const Placement axis = image(stand_up, level());
+  const LocalFrame axis = image(stand_up, level());
   model.orbit(model.kind({"blade", blade(0.18, 0.95, 0.55, 30, 0.09), {}}), facing(shift(0, 0, -0.02)), group("C5"),
               axis);
   model.add(

@@ -102,7 +102,7 @@ int SuiteBuilder::image_of(const Part& part, const Motion& motion) const {
   return -1;
 }
 
-std::vector<int> SuiteBuilder::orbit(int kind, const Motion& at, const PointGroup& group, const Placement& about) {
+std::vector<int> SuiteBuilder::orbit(int kind, const Motion& at, const PointGroup& group, const LocalFrame& about) {
   std::vector<int> copies;
   for (const Matrix3d& element : elements(group, about.frame)) {
     const Motion motion = Motion::about(element, about.origin);
@@ -113,7 +113,7 @@ std::vector<int> SuiteBuilder::orbit(int kind, const Motion& at, const PointGrou
   return copies;
 }
 
-void SuiteBuilder::expect(const PointGroup& group, const Placement& about, const std::string& name) {
+void SuiteBuilder::expect(const PointGroup& group, const LocalFrame& about, const std::string& name) {
   asked_.push_back({make_region(group, about.origin, about.frame, {}, name), true});
 }
 
@@ -189,7 +189,7 @@ std::vector<SuiteBuilder::Candidate> SuiteBuilder::candidates() const {
     const Part& part = parts_[p];
     const PartKind& kind = kind_of(part);
     if (kind.own.family == Family::C1 || kind.report == OwnRegion::silent) continue;
-    const Placement about = image(part.at, Placement{kind.frame, kind.centre});
+    const LocalFrame about = image(part.at, LocalFrame{kind.frame, kind.centre});
     result.push_back({make_region(kind.own, about.origin, about.frame, {}, {}), kind.report == OwnRegion::expected,
                       static_cast<int>(p)});
   }

@@ -50,10 +50,10 @@ class SuiteBuilder {
 
   /// Places the images of a copy under a group, each once, and expects the group's region.
   /// \return the parts' numbers, in the order of the group's elements
-  std::vector<int> orbit(int kind, const Motion& at, const PointGroup& group, const Placement& about = {});
+  std::vector<int> orbit(int kind, const Motion& at, const PointGroup& group, const LocalFrame& about = {});
 
   /// Expects the group's region; without a name it is named after its parts.
-  void expect(const PointGroup& group, const Placement& about = {}, const std::string& name = {});
+  void expect(const PointGroup& group, const LocalFrame& about = {}, const std::string& name = {});
 
   /// Expects a pattern. \param copies the parts of each instance, those of one kind at the same place of every list
   void expect_pattern(const std::string& name, Pattern::Kind kind, const std::vector<Motion>& generators,

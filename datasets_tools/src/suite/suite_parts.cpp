@@ -71,17 +71,17 @@ Motion turn_z(double degrees) {
   return {axis_rotation(Vector3d::UnitZ(), degrees * pi / 180), Vector3d::Zero()};
 }
 
-Placement upright(double x, double y, double z) {
+LocalFrame upright(double x, double y, double z) {
   Matrix3d frame;
   frame << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   return {frame, {x, y, z}};
 }
 
-Placement level(double x, double y, double z) {
+LocalFrame level(double x, double y, double z) {
   return {Matrix3d::Identity(), {x, y, z}};
 }
 
-Placement across(const Vector3d& axis, const Vector3d& point) {
+LocalFrame across(const Vector3d& axis, const Vector3d& point) {
   return {frame_about(axis.normalized()), point};
 }
 

@@ -27,11 +27,11 @@ Motion turn_y(double degrees);
 Motion turn_z(double degrees);
 
 /// About z, column 0 along y: the frame of a Cnv that has a mirror through angle 0.
-Placement upright(double x = 0, double y = 0, double z = 0);
+LocalFrame upright(double x = 0, double y = 0, double z = 0);
 /// About z, column 0 along x: the frame of a Dnh with something at angle 0.
-Placement level(double x = 0, double y = 0, double z = 0);
+LocalFrame level(double x = 0, double y = 0, double z = 0);
 /// The plane with this normal, for Cs; or any group about this axis.
-Placement across(const Eigen::Vector3d& axis, const Eigen::Vector3d& point = Eigen::Vector3d::Zero());
+LocalFrame across(const Eigen::Vector3d& axis, const Eigen::Vector3d& point = Eigen::Vector3d::Zero());
 
 /// A closed line around the origin, counter-clockwise, that every ray from the origin meets once.
 using Outline = std::vector<Eigen::Vector2d>;
