@@ -16,6 +16,15 @@
 #include "files/file.h"
 #include "temporary_folder.h"
 
+// GCC has a macro for it, Clang a question.
+#if defined(__SANITIZE_ADDRESS__)
+#define ORBIFIT_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ORBIFIT_ADDRESS_SANITIZER
+#endif
+#endif
+
 namespace orbifit::batch {
 namespace {
 
@@ -79,7 +88,7 @@ class Batch : public testing::Test {
 };
 
 TEST_F(Batch, AnItemCostsItselfAlone) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ORBIFIT_ADDRESS_SANITIZER
   GTEST_SKIP() << "AddressSanitizer catches a segmentation fault itself, and maps more memory than the item's limit";
 #endif
   for (const int jobs : {1, 3}) {
