@@ -92,7 +92,8 @@ SymmetryAnnotation annotation_of(const Mesh& mesh, const fs::path& file, RunCont
 }
 
 void measure_shape(const Mesh& mesh, const Mesh& fitted, PairRow& row) {
-  const Eigen::MatrixXd from = mesh.vertices.transpose(), to = fitted.vertices.transpose();
+  const Eigen::MatrixXd from = mesh.vertices.transpose();
+  const Eigen::MatrixXd to = fitted.vertices.transpose();
   const Eigen::Matrix4d best = Eigen::umeyama(from, to, true);
   const Eigen::MatrixXd apart = (best.topLeftCorner<3, 3>() * from).colwise() + best.topRightCorner<3, 1>().eval();
   row.size = std::cbrt(best.topLeftCorner<3, 3>().determinant());
@@ -136,7 +137,7 @@ PairRow measure(const Pair& pair, const ScansOptions& options, RunContext contex
 }
 
 std::vector<std::string> cells(const PairRow& row) {
-  if (!row.failure.empty()) return {row.name, "failed: " + row.failure};
+  if (!row.failure.empty()) return {row.name, "failed"};
   const auto part = [](double share) { return short_number(share, 3); };
   return {row.name,
           row.fitted ? "yes" : "no",
@@ -182,9 +183,20 @@ std::string summary(const std::vector<PairRow>& rows) {
          " at most\n";
 }
 
+std::string failures(const std::vector<PairRow>& rows) {
+  std::string text;
+  for (const PairRow& row : rows) {
+    if (!row.failure.empty()) text += "  " + row.name + " failed: " + row.failure + "\n";
+  }
+  return text;
+}
+
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string text;
-  for (const std::string& cell : cells) text += (text.empty() ? "\"" : ",\"") + cell + "\"";
+  for (std::string cell : cells) {
+    for (std::size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
+    text += (text.empty() ? "\"" : ",\"") + cell + "\"";
+  }
   return text + "\n";
 }
 
@@ -207,7 +219,7 @@ int run(const ScansOptions& options, const CommandContext& context) {
     table.add(cells(rows.back()));
     csv += csv_line(cells(rows.back()));
   }
-  print(table.text() + summary(rows));
+  print(table.text() + failures(rows) + summary(rows));
   if (!options.csv.empty()) write_file(options.csv, csv);
   return kDone;
 }
