@@ -66,6 +66,7 @@ Eigen::SparseMatrix<double> HandleRows::gram(Eigen::Index freedom) const {
   std::vector<Eigen::Triplet<double>> entries;
   for (const Part& part : parts_) {
     const auto size = static_cast<Eigen::Index>(part.columns.size());
+    if (size == 0) continue;  // nothing moves it, and a product of no rows refers to the first of them
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(size, size);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(part.rows.transpose(), part.weight);
     for (Eigen::Index j = 0; j < size; ++j) {
