@@ -345,6 +345,90 @@ TEST(ConsistentAnnotation, CopiesOnRoundPostsKeepTheirAxes) {
   expect_exact(mesh, result.annotation);
 }
 
+// Blades that turn about a hub, and arms that mirrors of the hub keep: neither takes the other along, and on the hub a
+// group that holds both says all.
+struct Overlap {
+  const char* turning;    // group of hub and blades, about z
+  const char* mirroring;  // of hub and arms
+  const char* hub;
+  int blades, arms;
+};
+
+class OverlappingGroups : public testing::TestWithParam<Overlap> {
+ protected:
+  OverlappingGroups() {
+    const Overlap& overlap = GetParam();
+    const std::string hub = overlap.hub;
+    const Mesh round = turned_part({{0, -0.1}, {0.3, -0.1}, {0.3, 0.1}, {0.2, 0.15}, {0, 0.15}}, irregular_angles(23));
+    common_ = append(mesh_, hub == "Cinfv" ? round : hub == "C5v" ? lobed(5, 0.3) : body({0.3, 0.3, 0.1}, 4), {});
+    turning_ = mirroring_ = common_;
+    const auto add = [&](std::vector<int>& faces, const Mesh& part, double angle, const Motion& way) {
+      const Motion turn = Motion::rotation(Vector3d::UnitZ(), angle, Vector3d::Zero());
+      const std::vector<int> added = append(mesh_, part, turn * way);
+      faces.insert(faces.end(), added.begin(), added.end());
+    };
+    const Motion inclined = Motion{Eigen::Matrix3d::Identity(), Vector3d(0.7, 0, 0)} *
+                            Motion::rotation(Vector3d(2, 1, 0).normalized(), 0.5, Vector3d::Zero());
+    for (int k = 0; k < overlap.blades; ++k) {
+      add(turning_, body({0.2, 0.08, 0.02}, 2), (k + 0.3) * 2 * std::numbers::pi / overlap.blades, inclined);
+    }
+    for (int k = 0; k < overlap.arms; ++k) {
+      const Motion out{Eigen::Matrix3d::Identity(), Vector3d(0.8, 0, 0)};
+      add(mirroring_, body({0.3, 0.05, 0.04}, 4), k * 2 * std::numbers::pi / overlap.arms, out);
+    }
+    annotation_ = empty_annotation(mesh_, 0.005);
+    const bool level = std::string(overlap.mirroring) == "Cs";
+    declare(overlap.turning, Vector3d::UnitZ(), turning_);
+    declare(overlap.mirroring, level ? Vector3d::UnitY() : Vector3d::UnitZ(), mirroring_);
+    declare(overlap.hub, Vector3d::UnitZ(), common_);
+    set_parents(annotation_.regions);
+  }
+
+  void declare(const char* group, const Vector3d& axis, const std::vector<int>& faces) {
+    Eigen::Matrix3d frame = axis_rotation(Vector3d::UnitZ(), std::numbers::pi / 2);  // a mirror of Cnv holds the x axis
+    if (axis != Vector3d::UnitZ()) frame = frame_about(axis);
+    annotation_.regions.push_back(make_region(*PointGroup::parse(group), Vector3d::Zero(), frame, faces, group));
+    annotation_.regions.back().id = static_cast<int>(annotation_.regions.size()) - 1;
+  }
+
+  Mesh mesh_;
+  std::vector<int> common_, turning_, mirroring_;
+  SymmetryAnnotation annotation_;
+};
+
+TEST_P(OverlappingGroups, KeepAllFacesAndAreExact) {
+  for (const double size : {0.0, 5e-4}) {
+    SCOPED_TRACE(size);
+    const ConsistentAnnotation result =
+        consistent_annotation(mesh_, perturbed({mesh_, annotation_}, size), RunContext{});
+    ASSERT_EQ(result.annotation.regions.size(), 3U) << said(result);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(result.annotation.regions[i].faces, annotation_.regions[i].faces) << i;
+    }
+    EXPECT_EQ(result.added, 0);
+    expect_exact(mesh_, result.annotation);
+    const ConsistentAnnotation again = consistent_annotation(mesh_, result.annotation, RunContext{});
+    EXPECT_EQ(again.largest_movement, 0);
+  }
+}
+
+TEST_P(OverlappingGroups, NeedTheLargerGroupWhereTheyMeet) {
+  annotation_.regions.pop_back();
+  const ConsistentAnnotation result = consistent_annotation(mesh_, annotation_, RunContext{});
+  std::size_t faces = 0;
+  for (const Region& region : result.annotation.regions) faces += region.faces.size();
+  EXPECT_LT(faces, turning_.size() + mirroring_.size());
+  expect_exact(mesh_, result.annotation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Groups, OverlappingGroups,
+                         testing::Values(Overlap{"C5", "Cs", "Cinfv", 5, 1}, Overlap{"C5", "Cs", "C5v", 5, 1},
+                                         Overlap{"C4", "Cs", "D4h", 4, 1}, Overlap{"C3", "C2v", "Cinfv", 3, 2}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.hub) + "Hub" + std::to_string(tested.param.blades) +
+                                  "Blades";
+                         });
+
 // Truths of the detection suite in which patterns and groups overlap: twenty windows of which a mirror of the wall
 // keeps sixteen, and a chain whose links turn by a quarter, where the whole's group takes steps to steps of the other
 // hand.

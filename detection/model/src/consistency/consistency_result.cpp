@@ -33,7 +33,7 @@ bool ConsistencySearch::drop_contradictions() {
         has_image = (meets ? shapes_.arrived(known.shape, move.domain, move.motion, other.shape, move.arrival)
                            : shapes_.arrived(known.shape, known.shape, move.motion, other.shape, other.shape)) >= 0.5;
       }
-      if (has_image) continue;
+      if (has_image || (meets && move.region >= 0 && follows(j, static_cast<std::size_t>(move.region), true))) continue;
       const Claim mover = mover_of(move);
       const bool mover_is_less = mover.pattern ? !preferred_.contains(mover.number) && saving(mover) < saving(j)
                                                : shapes_.area(move.domain) < shapes_.area(known.shape);
@@ -130,8 +130,51 @@ void ConsistencySearch::trim_slivers() {
   }
 }
 
+// Of two regions one of which follows from larger groups where they meet, the lesser keeps of what they have in common,
+// faces and vertices, only what lies in those groups' regions, and these nothing else.
+void ConsistencySearch::trim_to_common(std::size_t a, std::size_t b) {
+  const std::vector<std::size_t> holders = holding_both(a, b, true);
+  std::vector<char> held(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  const auto is_held = [&](int face) { return held[static_cast<std::size_t>(face)] != 0; };
+  std::vector<int>& more = regions_[a].region.faces;
+  std::vector<int>& less = regions_[b].region.faces;
+  std::vector<int> common;
+  std::ranges::set_intersection(more, less, std::back_inserter(common));
+  for (const std::size_t holder : holders) {
+    std::vector<int>& faces = regions_[holder].region.faces;
+    std::vector<int> within;
+    std::ranges::set_intersection(faces, common, std::back_inserter(within));
+    faces = std::move(within);
+    for (const int face : faces) held[static_cast<std::size_t>(face)] = 1;
+  }
+  constexpr char kOfMore = 1;
+  constexpr char kHeld = 2;
+  std::vector<char> vertices(static_cast<std::size_t>(mesh_.vertices.rows()), 0);
+  const auto mark = [&](int face, char what) {
+    for (const int vertex : mesh_.faces.row(face)) vertices[static_cast<std::size_t>(vertex)] |= what;
+  };
+  for (const int face : more) mark(face, is_held(face) ? kHeld : kOfMore);
+  std::erase_if(less, [&](int face) {
+    return !is_held(face) &&
+           (std::ranges::binary_search(common, face) || std::ranges::any_of(mesh_.faces.row(face), [&](int vertex) {
+              return vertices[static_cast<std::size_t>(vertex)] == kOfMore;
+            }));
+  });
+}
+
 ConsistentAnnotation ConsistencySearch::result() {
+  std::vector<std::pair<std::size_t, std::size_t>> following;
+  for (std::size_t a = 0; a < regions_.size(); ++a) {
+    for (std::size_t b = a + 1; b < regions_.size(); ++b) {
+      if (regions_[a].state != State::placed || regions_[b].state != State::placed) continue;
+      if (shapes_.meet(regions_[a].shape, regions_[b].shape) && follows(a, b, true)) following.emplace_back(a, b);
+    }
+  }
   trim_slivers();
+  for (const auto& [a, b] : following) {
+    const bool first = shapes_.area(regions_[a].shape) >= shapes_.area(regions_[b].shape);
+    trim_to_common(first ? a : b, first ? b : a);
+  }
   ConsistentAnnotation result;
   result.annotation = annotation_;
   result.annotation.regions.clear();

@@ -145,10 +145,31 @@ double ConsistencySearch::saving(const Claim& claim) const {
   return area * halvings(shapes.size());
 }
 
+// Of a region that is placed, without what those with larger groups that hold its own save.
+double ConsistencySearch::own_saving(std::size_t region) const {
+  const KnownRegion& known = regions_[region];
+  std::vector<int> shapes;  // of those
+  for (std::size_t other = 0; other < regions_.size(); ++other) {
+    const KnownRegion& holder = regions_[other];
+    if (other == region || holder.state != State::placed) continue;
+    if (!(halvings(holder.region.group) > halvings(known.region.group))) continue;
+    if (!shapes_.meet(known.shape, holder.shape)) continue;
+    if (distance_from_within(*known.place, *holder.place, extent(other)) <= 10 * rounding_) {
+      shapes.push_back(holder.shape);
+    }
+  }
+  if (shapes.empty()) return saving(region);
+  std::vector<int> own = shapes_.faces(known.shape);
+  std::erase_if(own, [&](int face) {
+    return std::ranges::any_of(shapes, [&](int shape) { return shapes_.holds(shape, face); });
+  });
+  return shapes_.area_of(own) * halvings(known.region.group);
+}
+
 double ConsistencySearch::total_saving() const {
   double sum = 0;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    if (regions_[i].state == State::placed) sum += saving(i);
+    if (regions_[i].state == State::placed) sum += own_saving(i);
   }
   for (std::size_t i = 0; i < patterns_.size(); ++i) {
     if (patterns_[i].state == State::placed) sum += saving(Claim{true, i});

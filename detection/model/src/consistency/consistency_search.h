@@ -43,7 +43,7 @@ struct ConsistencyPolicy {
   int circle = 36;
   /// Faces and samples looked at (RegionShapes::work()) until no further change of what is kept is tried, of claims
   /// that contradict one another: what takes about ten seconds.
-  std::size_t work = 20000000;
+  std::size_t work = 40000000;
 };
 
 /// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
@@ -159,6 +159,7 @@ class ConsistencySearch {
     std::vector<Claim> by;
     std::optional<std::size_t> across{};  // the region that overlaps `shape`, where neither holds the other
     int shape = -1;
+    std::vector<std::size_t> first{};  // regions to be placed before it can be
   };
   using Verdict = std::optional<Refusal>;  // nothing: it can
 
@@ -178,8 +179,11 @@ class ConsistencySearch {
   Verdict turn_with(const Move& move, std::size_t at, Family& family) const;
   Verdict add_image(const Move& move, std::size_t at, Family& family);
   Verdict ask_of_overlaps(Family& family);
+  Verdict ask_of_common(std::size_t other, Family& family);
   std::optional<std::size_t> image_region(std::size_t region, int domain, const Motion& motion, int arrival) const;
   std::optional<std::size_t> nearest_image(std::size_t region, int domain, const Motion& motion, int arrival) const;
+  std::vector<std::size_t> holding_both(std::size_t a, std::size_t b, bool placed) const;
+  bool follows(std::size_t a, std::size_t b, bool placed) const;
   std::vector<Eigen::Vector3d> exact_steps(std::size_t region) const;
   Verdict accept_family(const Family& family);
   void leave_out_region(std::size_t region, const std::string& reason);
@@ -188,6 +192,7 @@ class ConsistencySearch {
   std::vector<std::vector<Claim>> against(const std::vector<Claim>& claims) const;
   bool is_everything(const Claim& claim) const;
   double saving(std::size_t region) const;
+  double own_saving(std::size_t region) const;
   Claim mover_of(const Move& move) const;
 
   void place_pattern(std::size_t number);
@@ -215,6 +220,7 @@ class ConsistencySearch {
   void find_moves();
   bool drop_contradictions();
   void trim_slivers();
+  void trim_to_common(std::size_t a, std::size_t b);
   ConsistentAnnotation result();
   double total_saving() const;
 

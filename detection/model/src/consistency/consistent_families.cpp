@@ -1,6 +1,7 @@
 // Families: the regions that motions take to one another, and what the motions ask of the first of them.
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -47,6 +48,40 @@ std::optional<std::size_t> ConsistencySearch::nearest_image(std::size_t region, 
     best_distance = distance;
   }
   return best;
+}
+
+// The regions on what two have in common whose groups hold the groups of both. \param placed  of those that are placed,
+// exactly; else of all that may be, nearly
+std::vector<std::size_t> ConsistencySearch::holding_both(std::size_t a, std::size_t b, bool placed) const {
+  std::vector<std::size_t> result;
+  const double near = placed ? 10 * rounding_ : length(policy_.same_group);
+  for (std::size_t c = 0; c < regions_.size(); ++c) {
+    const KnownRegion& known = regions_[c];
+    if (c == a || c == b || !known.place || known.state == State::out) continue;
+    if (placed && known.state != State::placed) continue;
+    const auto within = [&](std::size_t other) {
+      return !shapes_.within(regions_[other].shape, known.shape) &&  // which would say all of it
+             shapes_.common_area(known.shape, regions_[other].shape) >= policy_.kept * shapes_.area(known.shape) &&
+             distance_from_within(*regions_[other].place, *known.place, extent(c)) <= near;
+    };
+    if (within(a) && within(b)) result.push_back(c);
+  }
+  return result;
+}
+
+// Whether the one asks nothing of the other, since of what they have in common larger groups say all.
+bool ConsistencySearch::follows(std::size_t a, std::size_t b, bool placed) const {
+  const int one = regions_[a].shape;
+  const int other = regions_[b].shape;
+  if (a == b || shapes_.within(one, other) || shapes_.within(other, one)) return false;
+  const std::vector<std::size_t> holders = holding_both(a, b, placed);
+  if (holders.empty()) return false;
+  std::vector<int> common = shapes_.common_faces(one, other);
+  const double all = shapes_.area_of(common);
+  std::erase_if(common, [&](int face) {
+    return std::ranges::none_of(holders, [&](std::size_t c) { return shapes_.holds(regions_[c].shape, face); });
+  });
+  return all > 0 && shapes_.area_of(common) >= policy_.kept * all;
 }
 
 // The image of the family's member `at` is missing: it is added where the surface has it.
@@ -99,6 +134,7 @@ ConsistencySearch::Verdict ConsistencySearch::turn_with(const Move& move, std::s
   const int shape = regions_[member.region].shape;
   const GroupPlace& turning = *regions_[static_cast<std::size_t>(move.region)].place;
   const bool meets = shapes_.meet(shape, move.domain);
+  if (meets && follows(member.region, static_cast<std::size_t>(move.region), false)) return std::nullopt;
   const auto refusal = [&](const std::string& reason) {
     Refusal result{reason, {mover_of(move)}};
     if (!shapes_.within(shape, move.domain)) {
@@ -142,7 +178,12 @@ ConsistencySearch::Verdict ConsistencySearch::follow(const Move& move, std::size
   if (move.turning) return turn_with(move, at, family);
   Tie tie;
   const std::optional<std::size_t> image = image_region(member.region, move.domain, move.motion, move.arrival);
-  if (!image) return add_image(move, at, family);
+  if (!image) {
+    if (meets && move.region >= 0 && follows(member.region, static_cast<std::size_t>(move.region), false)) {
+      return std::nullopt;
+    }
+    return add_image(move, at, family);
+  }
   if (regions_[*image].state == State::placed) {
     tie.before = move.motion * member.way;
     tie.to = regions_[*image].place;
@@ -178,6 +219,28 @@ ConsistencySearch::Verdict ConsistencySearch::gather(std::size_t first, Family& 
   return ask_of_overlaps(family);
 }
 
+// Where larger groups say all that a family's first and another region have in common, its motions are among theirs.
+ConsistencySearch::Verdict ConsistencySearch::ask_of_common(std::size_t other, Family& family) {
+  const std::size_t first = family.members.front().region;
+  const std::vector<std::size_t> holders = holding_both(first, other, false);
+  Refusal waiting{"larger groups that say where it is are not placed", {}};
+  std::ranges::copy_if(holders, std::back_inserter(waiting.first),
+                       [&](std::size_t holder) { return regions_[holder].state == State::waiting; });
+  if (!waiting.first.empty()) return waiting;
+  const std::size_t marks_of_first = marks(*regions_[first].place).size();
+  for (const std::size_t holder : holders) {
+    for (std::size_t k = 0; k < marks_of_first; ++k) {
+      Tie tie;
+      tie.own = static_cast<int>(k);
+      tie.from = tie.to = regions_[holder].place;
+      tie.extent = extent(holder);
+      family.ties.push_back(tie);
+    }
+    family.asking.push_back({false, holder});
+  }
+  return std::nullopt;
+}
+
 // Where regions overlap and neither holds the other, the new one's motions take the other to images as well.
 ConsistencySearch::Verdict ConsistencySearch::ask_of_overlaps(Family& family) {
   const std::size_t first = family.members.front().region;
@@ -192,6 +255,10 @@ ConsistencySearch::Verdict ConsistencySearch::ask_of_overlaps(Family& family) {
     const auto member = std::ranges::find(family.members, other, &Member::region);
     const bool in_family = member != family.members.end();
     if (other == first || !(known.state == State::placed || in_family) || !overlaps(known.shape)) continue;
+    if (follows(first, other, false)) {
+      if (auto refusal = ask_of_common(other, family)) return refusal;
+      continue;
+    }
     const Refusal missing{
         "it overlaps " + label(other) + ", of which its group has no image", {{false, other}}, first, known.shape};
     for (std::size_t k = 0; k < own.size(); ++k) {

@@ -212,7 +212,13 @@ void ConsistencySearch::place_family(std::size_t first) {
     if (!refusal) break;
     regions_.resize(regions_before);
     shapes_.keep(shapes_before);
-    again = false;
+    again = !refusal->first.empty();
+    for (const std::size_t before : refusal->first) {
+      if (regions_[before].state != State::waiting) continue;
+      if (!shapes_.within(regions_[before].shape, regions_[first].shape)) trim(before, regions_[first].shape);
+      place_family(before);
+    }
+    if (again) continue;
     if (refusal->across && *refusal->across < regions_before && refusal->shape < shapes_before) {
       given_up.remember(*refusal->across, regions_[*refusal->across]);
       again = trim(*refusal->across, refusal->shape);

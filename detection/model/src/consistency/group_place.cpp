@@ -1,6 +1,7 @@
 #include "consistency/group_place.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -63,6 +64,30 @@ int nearest(const Motion& motion, const std::vector<Motion>& among, const Extent
     }
   }
   return found;
+}
+
+// The element of a continuous group nearest to a matrix that turns or mirrors; nothing where none of its components
+// does alike.
+std::optional<Matrix3d> nearest_of_continuous(const GroupPlace& place, const Matrix3d& linear) {
+  const bool proper = linear.determinant() > 0;
+  const Family family = place.group.family;
+  if (family == Family::Kh || (family == Family::K && proper)) return linear;
+  if (family == Family::K) return std::nullopt;
+  const Matrix3d local = place.frame.transpose() * linear * place.frame;
+  const bool upright = local(2, 2) > 0;
+  const bool has = [&] {
+    if (upright && proper) return true;
+    if (upright) return family == Family::Cinfv || family == Family::Dinfh;
+    if (proper) return family == Family::Dinf || family == Family::Dinfh;
+    return family == Family::Cinfh || family == Family::Dinfh;
+  }();
+  if (!has) return std::nullopt;
+  const double side = proper == upright ? 1 : -1;  // of the plane across the axis: turned, or mirrored
+  const double angle = std::atan2(local(1, 0) - side * local(0, 1), local(0, 0) + side * local(1, 1));
+  Matrix3d result = Matrix3d::Zero();
+  result << std::cos(angle), -side * std::sin(angle), 0, std::sin(angle), side * std::cos(angle), 0, 0, 0,
+      upright ? 1 : -1;
+  return place.frame * result * place.frame.transpose();
 }
 
 struct Match {
@@ -216,6 +241,29 @@ double group_distance(const GroupPlace& from, const Motion& way, const GroupPlac
   for (const Motion& mark : marks(from)) {
     double best = 0;
     nearest(conjugate(way, mark), among, extent, best);
+    worst = std::max(worst, best);
+  }
+  return worst;
+}
+
+double distance_from_within(const GroupPlace& inner, const GroupPlace& outer, const Extent& extent) {
+  if (inner.group.continuous() && !outer.group.continuous()) return kFar;
+  if (spherical(inner.group) && !spherical(outer.group)) return kFar;
+  std::vector<Motion> asked = marks(inner);
+  const std::vector<Motion> moving = movers(inner);
+  asked.insert(asked.end(), moving.begin(), moving.end());
+  if (inner.group.family == Family::Cinfv || inner.group.family == Family::Dinfh) {
+    asked.push_back(Motion::reflection(inner.frame.col(0), inner.centre));
+  }
+  double worst = 0;
+  for (const Motion& motion : asked) {
+    double best = kFar;
+    if (outer.group.continuous()) {
+      const std::optional<Matrix3d> linear = nearest_of_continuous(outer, motion.linear);
+      if (linear) best = distance(motion, Motion::about(*linear, outer.centre), extent);
+    } else {
+      nearest(motion, members(outer), extent, best);
+    }
     worst = std::max(worst, best);
   }
   return worst;

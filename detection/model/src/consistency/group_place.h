@@ -50,6 +50,11 @@ GroupPlace image_of(const GroupPlace& place, const Motion& motion);
 /// the image of a mark of `from` and the member of `to` nearest to it.
 double group_distance(const GroupPlace& from, const Motion& way, const GroupPlace& to, const Extent& extent);
 
+/// How far the one group is from being within the other: the largest displacement within `extent` between an element
+/// and the nearest one of `outer`; of continuous groups one element of each component, and a turn. Infinity where it
+/// cannot be.
+double distance_from_within(const GroupPlace& inner, const GroupPlace& outer, const Extent& extent);
+
 /// What is asked of a place x: before * (own mark) * after takes `from` to `to`.
 struct Tie {
   Motion before, after;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -180,6 +181,12 @@ PieceMoments RegionShapes::common_moments(int a, int b) const {
   return common.size() == at(a).faces.size() ? at(a).moments : moments_of_faces(mesh_, common, origin_);
 }
 
+std::vector<int> RegionShapes::common_faces(int a, int b) const {
+  std::vector<int> result;
+  std::ranges::set_intersection(faces(a), faces(b), std::back_inserter(result));
+  return result;
+}
+
 bool RegionShapes::meet(int a, int b) const {
   return common_area(a, b) > kSliver * std::min(area(a), area(b));
 }
@@ -263,13 +270,14 @@ std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& m
   const Motion back = inverse(motion);
   const Shape& source = at(from);
   const SurfaceIndex& surface = index(domain);
+  const SurfaceIndex* part = from == domain ? nullptr : &index(from);  // smaller: most faces lie near none of it
   const std::vector<int>& faces = at(arrival).faces;
   work_ += faces.size();
   std::vector<char> brought(faces.size(), 0);
   const auto look = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d origin = back(centroids_.row(faces[i]).transpose());
-      if (source.box.exteriorDistance(origin) > near_) continue;
+      if (source.box.exteriorDistance(origin) > near_ || (part != nullptr && !part->within(origin, near_))) continue;
       const int nearest = surface.nearest(origin, near_).face;
       brought[i] = nearest >= 0 && source.holds[static_cast<std::size_t>(nearest)] != 0 ? 1 : 0;
     }

@@ -46,11 +46,20 @@ class RegionShapes {
 
   const std::vector<int>& faces(int shape) const { return at(shape).faces; }
   double area(int shape) const { return at(shape).area; }
+  double area_of(const std::vector<int>& faces) const {
+    double sum = 0;
+    for (const int face : faces) sum += areas_[face];
+    return sum;
+  }
+  bool holds(int shape, int face) const { return at(shape).holds[static_cast<std::size_t>(face)] != 0; }
   const Extent& extent(int shape) const { return at(shape).extent; }
   double near() const { return near_; }
 
   /// Area of the faces that both hold; kept, since it is asked for often.
   double common_area(int a, int b) const;
+
+  /// The faces that both hold, ascending.
+  std::vector<int> common_faces(int a, int b) const;
 
   /// Whether they share more than a sliver.
   bool meet(int a, int b) const;

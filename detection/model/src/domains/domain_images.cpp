@@ -144,6 +144,62 @@ bool DomainMap::group_goes_to(int from, const Motion& motion, int to) const {
   });
 }
 
+// Whether each motion of the one region is one of the other's.
+bool DomainMap::group_within(int inner, int outer) const {
+  const Place& a = at(inner);
+  const Place& b = at(outer);
+  if (!b.continuum) {
+    return !a.continuum && std::ranges::all_of(a.motions, [&](const Motion& element) {
+      return std::ranges::any_of(b.motions, [&](const Motion& other) {
+        return (other.linear - element.linear).cwiseAbs().maxCoeff() < kSameGroup &&
+               (other(b.centre) - element(b.centre)).norm() < kSameGroup * size_;
+      });
+    });
+  }
+  const Continuum& turning = *b.continuum;
+  if (a.continuum && !turning.spherical &&
+      (a.continuum->spherical || a.continuum->axis.cross(turning.axis).norm() > kSameGroup)) {
+    return false;
+  }
+  if (a.continuum && turning.distance(a.continuum->foot(a.centre)) > kSameGroup * size_) return false;
+  // Of a component: whether it turns space inside out, and the axis over.
+  const auto kind = [&](const Motion& motion) {
+    const double along = turning.spherical ? 1 : (motion.linear * turning.axis).dot(turning.axis);
+    return std::pair(motion.linear.determinant() > 0, along > 0);
+  };
+  return std::ranges::all_of(a.motions, [&](const Motion& element) {
+    const auto [proper, upright] = kind(element);
+    if (!turning.spherical && (element.linear * turning.axis).cross(turning.axis).norm() > kSameGroup) return false;
+    const Eigen::Vector3d moved = element(turning.centre) - turning.centre;
+    if (moved.norm() > kSameGroup * size_) return false;
+    return std::ranges::any_of(b.motions,
+                               [&, p = proper, u = upright](const Motion& m) { return kind(m) == std::pair(p, u); });
+  });
+}
+
+// \param sets  of all faces and vertices
+void DomainMap::find_followers(const std::vector<int>& sets) {
+  std::set<std::pair<int, int>> apart;
+  for (const int set : sets) {
+    const std::vector<int>& places = set_places(set);
+    for (const int a : places) {
+      for (const int b : places) {
+        if (a >= b || b >= count() || around(a, b) || around(b, a) || apart.contains({a, b})) continue;
+        const bool held = std::ranges::any_of(places, [&](int outer) {
+          return outer < count() && outer != a && outer != b && around(a, outer) && around(b, outer) &&
+                 group_within(a, outer) && group_within(b, outer);
+        });
+        if (held) {
+          following_.emplace(a, b);
+        } else {
+          apart.emplace(a, b);
+        }
+      }
+    }
+  }
+  std::erase_if(following_, [&](const auto& pair) { return apart.contains(pair); });
+}
+
 // Where a motion takes the places that meet its own: first to those of which it takes the group to the group, wherever
 // they are; then to those of which it takes the common piece to the common piece.
 DomainMap::Images DomainMap::find_images(int place, int element) const {
@@ -158,9 +214,9 @@ DomainMap::Images DomainMap::find_images(int place, int element) const {
   const Motion told = told_from_origin(motion);
   Unpaired open{{}, meeting_[static_cast<std::size_t>(arrival)]};
   for (const int p : here) {
-    // A place all around, or the place itself, stays.
+    // A place all around, or the place itself, stays; so does one of which nothing is asked.
     const int to = p == place ? arrival : p;
-    if (p == place || (around(p, place) && around(p, arrival))) {
+    if (p == place || (around(p, place) && around(p, arrival)) || follows(p, place)) {
       result.pairs.emplace_back(p, to);
       std::erase(open.to, to);
     } else {

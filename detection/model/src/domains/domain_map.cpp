@@ -144,6 +144,7 @@ void DomainMap::find_meeting(const Mesh& mesh) {
       return true;
     });
   }
+  find_followers(sets);
 }
 
 void DomainMap::add_region(const Region& region) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -109,6 +110,11 @@ class DomainMap {
   /// Whether `outer` holds all faces of `inner`.
   bool around(int outer, int inner) const;
 
+  /// Whether all that two regions have in common lies in regions whose groups hold the groups of both. What the one's
+  /// motions ask of the other follows from those, so the other stays where it is under them: a rotor's fivefold axis
+  /// and the mirror of the rest of a fan, which meet on the round hub.
+  bool follows(int a, int b) const { return following_.contains(std::minmax(a, b)); }
+
   std::size_t face_count(int place) const { return at(place).faces.size(); }
 
   /// Whether the place holds every face.
@@ -135,6 +141,8 @@ class DomainMap {
     std::unordered_map<int, int> sets;       // carried sets known so far
   };
   bool group_goes_to(int from, const Motion& motion, int to) const;
+  bool group_within(int inner, int outer) const;
+  void find_followers(const std::vector<int>& sets);
   int intern(const std::vector<int>& places) const;
   const PieceMoments& common_moments(int a, int b) const;
   PieceMoments common_piece(int a, int b) const;
@@ -160,6 +168,7 @@ class DomainMap {
   mutable std::unordered_map<std::uint64_t, int> with_;
   std::vector<std::vector<int>> meeting_;                    // of each place, the places that share faces with it
   std::vector<std::vector<int>> around_;                     // of each place, the places that hold all faces of it
+  std::set<std::pair<int, int>> following_;                  // see follows()
   std::vector<PieceMoments> moments_;                        // of the faces of each set
   std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
   struct Marks {
