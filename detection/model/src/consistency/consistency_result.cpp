@@ -130,16 +130,17 @@ void ConsistencySearch::trim_slivers() {
   }
 }
 
-// Of two regions one of which follows from larger groups where they meet, the lesser keeps of what they have in common,
-// faces and vertices, only what lies in those groups' regions, and these nothing else.
+// Of two regions that follow from larger groups where they meet, the one whose family is the lesser, or both of one
+// family, keep of what they have in common, faces and vertices, only what lies in those groups' regions, and these
+// nothing else.
 void ConsistencySearch::trim_to_common(std::size_t a, std::size_t b) {
   const std::vector<std::size_t> holders = holding_both(a, b, true);
   std::vector<char> held(static_cast<std::size_t>(mesh_.faces.rows()), 0);
   const auto is_held = [&](int face) { return held[static_cast<std::size_t>(face)] != 0; };
-  std::vector<int>& more = regions_[a].region.faces;
-  std::vector<int>& less = regions_[b].region.faces;
+  std::vector<int>& one = regions_[a].region.faces;
+  std::vector<int>& other = regions_[b].region.faces;
   std::vector<int> common;
-  std::ranges::set_intersection(more, less, std::back_inserter(common));
+  std::ranges::set_intersection(one, other, std::back_inserter(common));
   for (const std::size_t holder : holders) {
     std::vector<int>& faces = regions_[holder].region.faces;
     std::vector<int> within;
@@ -147,19 +148,32 @@ void ConsistencySearch::trim_to_common(std::size_t a, std::size_t b) {
     faces = std::move(within);
     for (const int face : faces) held[static_cast<std::size_t>(face)] = 1;
   }
-  constexpr char kOfMore = 1;
-  constexpr char kHeld = 2;
+  constexpr char kOfOne = 1;
+  constexpr char kOfOther = 2;
+  constexpr char kHeld = 4;
   std::vector<char> vertices(static_cast<std::size_t>(mesh_.vertices.rows()), 0);
-  const auto mark = [&](int face, char what) {
-    for (const int vertex : mesh_.faces.row(face)) vertices[static_cast<std::size_t>(vertex)] |= what;
+  const auto mark = [&](const std::vector<int>& faces, char whose) {
+    for (const int face : faces) {
+      for (const int vertex : mesh_.faces.row(face)) {
+        vertices[static_cast<std::size_t>(vertex)] |= is_held(face) ? kHeld : whose;
+      }
+    }
   };
-  for (const int face : more) mark(face, is_held(face) ? kHeld : kOfMore);
-  std::erase_if(less, [&](int face) {
-    return !is_held(face) &&
-           (std::ranges::binary_search(common, face) || std::ranges::any_of(mesh_.faces.row(face), [&](int vertex) {
-              return vertices[static_cast<std::size_t>(vertex)] == kOfMore;
-            }));
-  });
+  mark(one, kOfOne);
+  mark(other, kOfOther);
+  const auto trimmed = [&](std::vector<int>& faces) {
+    std::erase_if(faces, [&](int face) {
+      return !is_held(face) &&
+             (std::ranges::binary_search(common, face) || std::ranges::any_of(mesh_.faces.row(face), [&](int vertex) {
+                return vertices[static_cast<std::size_t>(vertex)] == (kOfOne | kOfOther);
+              }));
+    });
+  };
+  const std::size_t of_one = regions_[a].family;
+  const std::size_t of_other = regions_[b].family;
+  const auto size = [&](std::size_t family) { return shapes_.area(regions_[family].shape); };
+  if (of_one == of_other || size(of_one) < size(of_other)) trimmed(one);
+  if (of_one == of_other || size(of_one) >= size(of_other)) trimmed(other);
 }
 
 ConsistentAnnotation ConsistencySearch::result() {
@@ -171,10 +185,7 @@ ConsistentAnnotation ConsistencySearch::result() {
     }
   }
   trim_slivers();
-  for (const auto& [a, b] : following) {
-    const bool first = shapes_.area(regions_[a].shape) >= shapes_.area(regions_[b].shape);
-    trim_to_common(first ? a : b, first ? b : a);
-  }
+  for (const auto& [a, b] : following) trim_to_common(a, b);
   ConsistentAnnotation result;
   result.annotation = annotation_;
   result.annotation.regions.clear();

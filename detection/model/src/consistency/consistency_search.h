@@ -43,7 +43,7 @@ struct ConsistencyPolicy {
   int circle = 36;
   /// Faces and samples looked at (RegionShapes::work()) until no further change of what is kept is tried, of claims
   /// that contradict one another: what takes about ten seconds.
-  std::size_t work = 40000000;
+  std::size_t work = 20000000;
 };
 
 /// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
@@ -237,6 +237,7 @@ class ConsistencySearch {
   std::vector<KnownPattern> patterns_;
   std::vector<Move> moves_;
   std::set<std::size_t> preferred_;  // patterns
+  std::set<std::size_t> placing_;    // regions whose families are being placed, each for the one before
   std::vector<LeftOut> left_out_;
   std::vector<Refused> refused_;
   double largest_movement_ = 0;  // mesh units

@@ -1,7 +1,6 @@
 // Families: the regions that motions take to one another, and what the motions ask of the first of them.
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -224,11 +223,16 @@ ConsistencySearch::Verdict ConsistencySearch::ask_of_common(std::size_t other, F
   const std::size_t first = family.members.front().region;
   const std::vector<std::size_t> holders = holding_both(first, other, false);
   Refusal waiting{"larger groups that say where it is are not placed", {}};
-  std::ranges::copy_if(holders, std::back_inserter(waiting.first),
-                       [&](std::size_t holder) { return regions_[holder].state == State::waiting; });
+  for (const std::size_t holder : holders) {
+    const bool member = std::ranges::find(family.members, holder, &Member::region) != family.members.end();
+    if (regions_[holder].state == State::waiting && !member && !placing_.contains(holder)) {
+      waiting.first.push_back(holder);
+    }
+  }
   if (!waiting.first.empty()) return waiting;
   const std::size_t marks_of_first = marks(*regions_[first].place).size();
   for (const std::size_t holder : holders) {
+    if (regions_[holder].state != State::placed) continue;
     for (std::size_t k = 0; k < marks_of_first; ++k) {
       Tie tie;
       tie.own = static_cast<int>(k);

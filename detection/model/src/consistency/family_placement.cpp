@@ -194,6 +194,7 @@ void ConsistencySearch::place_family(std::size_t first) {
     refuse({{false, first}}, {"its elements form no group of that symbol", {}});
     return;
   }
+  placing_.insert(first);
   GivenUp given_up;
   Family family;
   Verdict refusal;
@@ -226,6 +227,7 @@ void ConsistencySearch::place_family(std::size_t first) {
       given_up.takers.insert(given_up.takers.end(), refusal->by.begin(), refusal->by.end());
     }
   }
+  placing_.erase(first);
   if (refusal) {
     refuse_family(family, regions_before, given_up, *refusal);
     return;
