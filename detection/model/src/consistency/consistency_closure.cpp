@@ -63,17 +63,17 @@ class Closure {
   }
 
  private:
+  double area(const std::vector<int>& faces) const {
+    return std::accumulate(faces.begin(), faces.end(), 0.0, [&](double sum, int face) { return sum + areas_[face]; });
+  }
+
   bool holds_everything(const Claim& claim) const {
-    return !claim.pattern &&
-           kept_.annotation.regions[claim.number].faces.size() == static_cast<std::size_t>(mesh_.faces.rows());
+    return !claim.pattern && area(kept_.annotation.regions[claim.number].faces) >= (1 - 1e-9) * areas_.sum();
   }
 
   // Of a claim on what is kept.
   double kept_saving(const Claim& claim) const {
     const SymmetryAnnotation& kept = kept_.annotation;
-    const auto area = [&](const std::vector<int>& faces) {
-      return std::accumulate(faces.begin(), faces.end(), 0.0, [&](double sum, int face) { return sum + areas_[face]; });
-    };
     if (!claim.pattern) {
       const Region& region = kept.regions[claim.number];
       return area(region.faces) * halvings(region.group);

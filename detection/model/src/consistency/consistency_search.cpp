@@ -129,7 +129,7 @@ std::vector<Claim> ConsistencySearch::family_of(const Claim& claim) const {
 }
 
 bool ConsistencySearch::is_everything(const Claim& claim) const {
-  return !claim.pattern && regions_[claim.number].region.faces.size() == static_cast<std::size_t>(mesh_.faces.rows());
+  return !claim.pattern && shapes_.holds_everything(regions_[claim.number].shape);
 }
 
 double ConsistencySearch::saving(std::size_t region) const {

@@ -230,6 +230,7 @@ void ConsistencySearch::place_pattern(std::size_t number) {
 
 // A family that was just placed goes again where a preferred pattern would not agree with it.
 void ConsistencySearch::yield_to_preferred(std::size_t region) {
+  if (is_everything({false, region})) return;
   for (const std::size_t number : preferred_) {
     if (patterns_[number].state != State::waiting) continue;
     const int before = shapes_.count();
