@@ -217,7 +217,19 @@ TEST(Detect, AnArmThatIsShorterDoesNotHideWhatItShares) {
     parts.push_back(test::moved(arm, Motion::rotation(Vector3d::UnitZ(), 2 * k * std::numbers::pi / 3, {0, 0, 0})));
   }
   const Mesh mesh = test::joined(parts);
-  const SymmetryAnnotation annotation = found_in(mesh);
+  // Of each arm the C2v that it has with the hub is listed, which overlap on the hub and generate the D3h there.
+  const SymmetryAnnotation listed = found_in(mesh);
+  EXPECT_EQ(std::ranges::count_if(listed.regions,
+                                  [&](const Region& r) {
+                                    return r.group.symbol() == "C2v" &&
+                                           r.faces.size() >= static_cast<std::size_t>(parts[0].faces.rows());
+                                  }),
+            3)
+      << ::testing::PrintToString(summary(listed));
+  DetectOptions options;
+  options.all = true;
+  RunContext context;
+  const SymmetryAnnotation annotation = detect(mesh, options, context);
   const auto whole =
       std::ranges::find_if(annotation.regions, [](const Region& r) { return r.group.symbol() == "C2v"; });
   ASSERT_NE(whole, annotation.regions.end());

@@ -1,6 +1,7 @@
 #include "consistency/consistency_search.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <utility>
@@ -145,25 +146,38 @@ double ConsistencySearch::saving(const Claim& claim) const {
   return area * halvings(shapes.size());
 }
 
-// Of a region that is placed, without what those with larger groups that hold its own save.
+// How often elements that two placed regions have in common halve a surface.
+double ConsistencySearch::common_halvings(std::size_t a, std::size_t b) const {
+  const GroupPlace& one = *regions_[a].place;
+  const GroupPlace& other = *regions_[b].place;
+  const double near = 10 * rounding_;
+  if (distance_from_within(one, other, extent(b)) <= near) return halvings(one.group);
+  if (distance_from_within(other, one, extent(b)) <= near) return halvings(other.group);
+  if (!one.group.continuous()) return halvings(common_members(one, other, extent(b), near));
+  return other.group.continuous() ? 0 : halvings(common_members(other, one, extent(b), near));
+}
+
+// Of a region that is placed, without what smaller ones on its faces save by elements that it has as well.
 double ConsistencySearch::own_saving(std::size_t region) const {
   const KnownRegion& known = regions_[region];
-  std::vector<int> shapes;  // of those
+  const double all = halvings(known.region.group);
+  std::vector<std::pair<double, int>> common;  // halvings, and the shape on which
   for (std::size_t other = 0; other < regions_.size(); ++other) {
     const KnownRegion& holder = regions_[other];
-    if (other == region || holder.state != State::placed) continue;
-    if (!(halvings(holder.region.group) > halvings(known.region.group))) continue;
+    const double smaller = shapes_.area(known.shape) - shapes_.area(holder.shape);
+    if (holder.state != State::placed || smaller < 0 || (smaller == 0 && other <= region)) continue;
     if (!shapes_.meet(known.shape, holder.shape)) continue;
-    if (distance_from_within(*known.place, *holder.place, extent(other)) <= 10 * rounding_) {
-      shapes.push_back(holder.shape);
-    }
+    const double shared = common_halvings(region, other);
+    if (shared > 0) common.emplace_back(shared, holder.shape);
   }
-  if (shapes.empty()) return saving(region);
-  std::vector<int> own = shapes_.faces(known.shape);
-  std::erase_if(own, [&](int face) {
-    return std::ranges::any_of(shapes, [&](int shape) { return shapes_.holds(shape, face); });
-  });
-  return shapes_.area_of(own) * halvings(known.region.group);
+  if (common.empty()) return saving(region);
+  std::ranges::sort(common, std::greater<>());
+  double sum = 0;
+  for (const int face : shapes_.faces(known.shape)) {
+    const auto most = std::ranges::find_if(common, [&](const auto& each) { return shapes_.holds(each.second, face); });
+    sum += shapes_.area_of(face) * (all - (most == common.end() ? 0 : most->first));
+  }
+  return sum;
 }
 
 double ConsistencySearch::total_saving() const {

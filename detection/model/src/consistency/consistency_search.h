@@ -193,6 +193,7 @@ class ConsistencySearch {
   bool is_everything(const Claim& claim) const;
   double saving(std::size_t region) const;
   double own_saving(std::size_t region) const;
+  double common_halvings(std::size_t a, std::size_t b) const;
   Claim mover_of(const Move& move) const;
 
   void place_pattern(std::size_t number);

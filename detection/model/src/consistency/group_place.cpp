@@ -90,6 +90,19 @@ std::optional<Matrix3d> nearest_of_continuous(const GroupPlace& place, const Mat
   return place.frame * result * place.frame.transpose();
 }
 
+// From a motion to the nearest element of a group. \param among  its elements, of a finite one
+double distance_from(const Motion& motion, const GroupPlace& place, const std::vector<Motion>& among,
+                     const Extent& extent) {
+  double best = kFar;
+  if (place.group.continuous()) {
+    const std::optional<Matrix3d> linear = nearest_of_continuous(place, motion.linear);
+    if (linear) best = distance(motion, Motion::about(*linear, place.centre), extent);
+  } else {
+    nearest(motion, among, extent, best);
+  }
+  return best;
+}
+
 struct Match {
   const Tie* tie;
   std::size_t mark;
@@ -255,18 +268,17 @@ double distance_from_within(const GroupPlace& inner, const GroupPlace& outer, co
   if (inner.group.family == Family::Cinfv || inner.group.family == Family::Dinfh) {
     asked.push_back(Motion::reflection(inner.frame.col(0), inner.centre));
   }
+  const std::vector<Motion> among = outer.group.continuous() ? std::vector<Motion>{} : members(outer);
   double worst = 0;
-  for (const Motion& motion : asked) {
-    double best = kFar;
-    if (outer.group.continuous()) {
-      const std::optional<Matrix3d> linear = nearest_of_continuous(outer, motion.linear);
-      if (linear) best = distance(motion, Motion::about(*linear, outer.centre), extent);
-    } else {
-      nearest(motion, members(outer), extent, best);
-    }
-    worst = std::max(worst, best);
-  }
+  for (const Motion& motion : asked) worst = std::max(worst, distance_from(motion, outer, among, extent));
   return worst;
+}
+
+std::size_t common_members(const GroupPlace& finite, const GroupPlace& other, const Extent& extent, double tolerance) {
+  const std::vector<Motion> among = other.group.continuous() ? std::vector<Motion>{} : members(other);
+  const std::vector<Motion> all = members(finite);
+  return static_cast<std::size_t>(std::ranges::count_if(
+      all, [&](const Motion& motion) { return distance_from(motion, other, among, extent) <= tolerance; }));
 }
 
 VectorXd nearest_solution(Index unknowns, const std::function<VectorXd(const VectorXd&)>& hard,

@@ -55,6 +55,9 @@ double group_distance(const GroupPlace& from, const Motion& way, const GroupPlac
 /// cannot be.
 double distance_from_within(const GroupPlace& inner, const GroupPlace& outer, const Extent& extent);
 
+/// How many elements of a finite group are, to `tolerance` within `extent`, elements of another one.
+std::size_t common_members(const GroupPlace& finite, const GroupPlace& other, const Extent& extent, double tolerance);
+
 /// What is asked of a place x: before * (own mark) * after takes `from` to `to`.
 struct Tie {
   Motion before, after;

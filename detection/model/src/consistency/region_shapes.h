@@ -51,6 +51,7 @@ class RegionShapes {
     for (const int face : faces) sum += areas_[face];
     return sum;
   }
+  double area_of(int face) const { return areas_[face]; }
   bool holds(int shape, int face) const { return at(shape).holds[static_cast<std::size_t>(face)] != 0; }
   const Extent& extent(int shape) const { return at(shape).extent; }
   double near() const { return near_; }
