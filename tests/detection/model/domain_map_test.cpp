@@ -105,5 +105,36 @@ TEST(DomainMap, TakesSheetsThatAllButCoincideToTheirOwnImagesHoweverTheyAreCut) 
   }
 }
 
+// Of faces that only one of two overlapping regions holds, both, or their larger group as well.
+struct Holder {
+  const char* group;
+  Vector3d axis;
+  int first, count;  // faces; both have 3 to 6
+  bool follows;
+};
+
+class Followers : public testing::TestWithParam<Holder> {};
+
+TEST_P(Followers, StayWhereALargerGroupHoldsAllThatTheyHaveInCommon) {
+  const Holder& holder = GetParam();
+  SymmetryAnnotation annotation;
+  annotation.regions = {region("C5", Vector3d::UnitZ(), 0, 7), region("Cs", Vector3d::UnitX(), 3, 7),
+                        region(holder.group, holder.axis, holder.first, holder.count)};
+  const DomainMap domains(pinwheels(Matrix3d::Identity()), annotation, {});
+  EXPECT_EQ(domains.follows(0, 1), holder.follows);
+  EXPECT_EQ(domains.follows(1, 0), holder.follows);
+  if (!holder.follows) return;
+  for (int e = 0; e < kBlades; ++e) EXPECT_EQ(domains.images_of(1, 0, e), std::vector{1});
+  for (int e = 0; e < 2; ++e) EXPECT_EQ(domains.images_of(0, 1, e), std::vector{0});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Groups, Followers,
+    testing::Values(Holder{"Cinfv", Vector3d::UnitZ(), 3, 4, true}, Holder{"Dinfh", Vector3d::UnitZ(), 3, 4, true},
+                    Holder{"Kh", Vector3d::UnitZ(), 3, 4, true}, Holder{"K", Vector3d::UnitZ(), 3, 4, false},
+                    Holder{"Cinf", Vector3d::UnitZ(), 3, 4, false}, Holder{"Cinfh", Vector3d::UnitZ(), 3, 4, false},
+                    Holder{"Cinfv", Vector3d::UnitX(), 3, 4, false}, Holder{"C5", Vector3d::UnitZ(), 3, 4, false},
+                    Holder{"Cinfv", Vector3d::UnitZ(), 3, 3, false}, Holder{"Cinfv", Vector3d::UnitZ(), 3, 5, false}));
+
 }  // namespace
 }  // namespace orbifit

@@ -222,6 +222,33 @@ void ConsistencySearch::find_moves() {
   }
 }
 
+// What gave up faces may be left with those of a region whose group holds its own: it then says nothing more. It goes
+// with its images, where these say nothing either.
+void ConsistencySearch::leave_out_repeated() {
+  const auto repeats = [&](std::size_t region) -> std::optional<std::size_t> {
+    const KnownRegion& known = regions_[region];
+    for (std::size_t other = 0; other < regions_.size(); ++other) {
+      const KnownRegion& holder = regions_[other];
+      if (holder.state != State::placed || !shapes_.within(known.shape, holder.shape)) continue;
+      if (!(halvings(holder.region.group) > halvings(known.region.group))) continue;
+      if (distance_from_within(*known.place, *holder.place, extent(other)) <= 10 * rounding_) return other;
+    }
+    return std::nullopt;
+  };
+  std::map<std::size_t, std::vector<std::size_t>> families;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (regions_[i].state == State::placed) families[regions_[i].family].push_back(i);
+  }
+  bool any = false;
+  for (const auto& [first, members] : families) {
+    const std::optional<std::size_t> holder = repeats(members.front());
+    if (!holder || !std::ranges::all_of(members, [&](std::size_t i) { return repeats(i).has_value(); })) continue;
+    for (const std::size_t i : members) leave_out_region(i, label(*holder) + " says the same and more");
+    any = true;
+  }
+  if (any) find_moves();
+}
+
 ConsistencyOutcome ConsistencySearch::run() {
   struct Item {
     bool pattern;
@@ -263,6 +290,8 @@ ConsistencyOutcome ConsistencySearch::run() {
       if (regions_[item.number].state == State::placed) yield_to_preferred(item.number);
     }
   }
+  while (drop_contradictions()) find_moves();
+  leave_out_repeated();
   while (drop_contradictions()) find_moves();
   const double saved = total_saving();
   return {result(), saved, std::move(refused_)};

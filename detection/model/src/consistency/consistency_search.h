@@ -220,6 +220,7 @@ class ConsistencySearch {
   void add_moves_of_pattern(std::size_t pattern);
   void find_moves();
   bool drop_contradictions();
+  void leave_out_repeated();
   void trim_slivers();
   void trim_to_common(std::size_t a, std::size_t b);
   ConsistentAnnotation result();
