@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -353,6 +354,10 @@ struct Overlap {
   const char* hub;
   int blades, arms;
 };
+
+void PrintTo(const Overlap& overlap, std::ostream* to) {
+  *to << overlap.turning << " and " << overlap.mirroring << " on " << overlap.hub;
+}
 
 class OverlappingGroups : public testing::TestWithParam<Overlap> {
  protected:

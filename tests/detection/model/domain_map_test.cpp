@@ -3,6 +3,7 @@
 #include <array>
 #include <numbers>
 #include <numeric>
+#include <ostream>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -112,6 +113,10 @@ struct Holder {
   int first, count;  // faces; both have 3 to 6
   bool follows;
 };
+
+void PrintTo(const Holder& holder, std::ostream* to) {
+  *to << holder.group << " about " << holder.axis.transpose() << " on " << holder.count << " faces";
+}
 
 class Followers : public testing::TestWithParam<Holder> {};
 

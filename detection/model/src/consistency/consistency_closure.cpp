@@ -68,7 +68,8 @@ class Closure {
   }
 
   bool holds_everything(const Claim& claim) const {
-    return !claim.pattern && area(kept_.annotation.regions[claim.number].faces) >= (1 - 1e-9) * areas_.sum();
+    return !claim.pattern &&
+           area(kept_.annotation.regions[claim.number].faces) >= ConsistencyPolicy{}.everything * areas_.sum();
   }
 
   // Of a claim on what is kept.

@@ -148,25 +148,27 @@ void ConsistencySearch::trim_to_common(std::size_t a, std::size_t b) {
     faces = std::move(within);
     for (const int face : faces) held[static_cast<std::size_t>(face)] = 1;
   }
-  constexpr char kOfOne = 1;
-  constexpr char kOfOther = 2;
-  constexpr char kHeld = 4;
-  std::vector<char> vertices(static_cast<std::size_t>(mesh_.vertices.rows()), 0);
-  const auto mark = [&](const std::vector<int>& faces, char whose) {
+  using Vertices = std::vector<char>;  // by vertex: whether it is one of them
+  const Vertices none(static_cast<std::size_t>(mesh_.vertices.rows()), 0);
+  Vertices of_held = none;
+  const auto vertices_beside = [&](const std::vector<int>& faces) {
+    Vertices result = none;
     for (const int face : faces) {
-      for (const int vertex : mesh_.faces.row(face)) {
-        vertices[static_cast<std::size_t>(vertex)] |= is_held(face) ? kHeld : whose;
-      }
+      Vertices& to = is_held(face) ? of_held : result;
+      for (const int vertex : mesh_.faces.row(face)) to[static_cast<std::size_t>(vertex)] = 1;
     }
+    return result;
   };
-  mark(one, kOfOne);
-  mark(other, kOfOther);
+  const Vertices beside_one = vertices_beside(one);
+  const Vertices beside_other = vertices_beside(other);
+  const auto where_they_touch = [&](int vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    return beside_one[v] != 0 && beside_other[v] != 0 && of_held[v] == 0;
+  };
   const auto trimmed = [&](std::vector<int>& faces) {
     std::erase_if(faces, [&](int face) {
       return !is_held(face) &&
-             (std::ranges::binary_search(common, face) || std::ranges::any_of(mesh_.faces.row(face), [&](int vertex) {
-                return vertices[static_cast<std::size_t>(vertex)] == (kOfOne | kOfOther);
-              }));
+             (std::ranges::binary_search(common, face) || std::ranges::any_of(mesh_.faces.row(face), where_they_touch));
     });
   };
   const std::size_t of_one = regions_[a].family;

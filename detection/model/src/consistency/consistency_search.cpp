@@ -130,7 +130,7 @@ std::vector<Claim> ConsistencySearch::family_of(const Claim& claim) const {
 }
 
 bool ConsistencySearch::is_everything(const Claim& claim) const {
-  return !claim.pattern && shapes_.holds_everything(regions_[claim.number].shape);
+  return !claim.pattern && shapes_.area(regions_[claim.number].shape) >= policy_.everything * shapes_.area_of_all();
 }
 
 double ConsistencySearch::saving(std::size_t region) const {

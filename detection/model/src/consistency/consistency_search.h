@@ -35,6 +35,8 @@ struct ConsistencyPolicy {
   double far_more_exact = 0.1;
   /// Share of its area that a region must keep where it gives up what another takes of it.
   double left = 0.5;
+  /// Share of the mesh's area that is all of it: what has no area need not be held, and sums round.
+  double everything = 1 - 1e-9;
   /// To what positions are told, as a fraction of the diagonal: what files of single precision hold.
   double told = 1e-6;
   /// What counts as met, as a fraction of the size of the coordinates: some hundred roundings.

@@ -56,8 +56,7 @@ class RegionShapes {
   const Extent& extent(int shape) const { return at(shape).extent; }
   double near() const { return near_; }
 
-  /// Whether it holds every face that has an area.
-  bool holds_everything(int shape) const { return area(shape) >= (1 - 1e-9) * areas_.sum(); }
+  double area_of_all() const { return areas_.sum(); }
 
   /// Area of the faces that both hold; kept, since it is asked for often.
   double common_area(int a, int b) const;

@@ -161,7 +161,11 @@ bool DomainMap::group_within(int inner, int outer) const {
       (a.continuum->spherical || a.continuum->axis.cross(turning.axis).norm() > kSameGroup)) {
     return false;
   }
-  if (a.continuum && turning.distance(a.continuum->foot(a.centre)) > kSameGroup * size_) return false;
+  if (a.continuum) {  // its axis, or centre, lies on the other's
+    const Eigen::Vector3d foot = turning.spherical ? a.continuum->foot(turning.centre) : turning.foot(a.centre);
+    const Eigen::Vector3d due = turning.spherical ? turning.centre : a.centre;
+    if ((foot - due).norm() > kSameGroup * size_) return false;
+  }
   // Of a component: whether it turns space inside out, and the axis over.
   const auto kind = [&](const Motion& motion) {
     const double along = turning.spherical ? 1 : (motion.linear * turning.axis).dot(turning.axis);

@@ -36,7 +36,8 @@ struct ConsistentAnnotation {
 /// faces with A and does not hold all of it, there is a region C that is the image of B: C has B's group, placed by g
 /// exactly, and holds what g makes of the faces that A and B share (docs/method.md 3). Of continuous groups that hold
 /// all of a pattern's instance there is an image as well.
-/// Shared planes and axes, axes in planes and right angles are the cases in which C is B itself.
+/// Shared planes and axes, axes in planes and right angles are the cases in which C is B itself. None is needed where
+/// regions whose groups hold those of A and of B hold all that A and B share: they say what would be asked there.
 ///
 /// Regions are taken largest first. Each comes with all its images under those already taken (its family); images that
 /// the annotation lacks are added where the surface has them. The placement of the family's first region is fitted:
@@ -51,8 +52,9 @@ struct ConsistentAnnotation {
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
 /// barred it where that saves more, and so is what was given up. A region of order |G| saves its area log2 |G| times,
 /// as often as its group halves it, and a pattern of n instances theirs log2 n times. Regions of the whole are never
-/// given up. What a region holds of another but for a sliver at the border counts as all of it. At last regions give up
-/// faces around vertices whose images lie in regions that they do not.
+/// given up. Of regions on the same faces what both save by the same elements counts once. What a region holds of
+/// another but for a sliver at the border counts as all of it. At last regions give up faces around vertices whose
+/// images lie in regions that they do not.
 ///
 /// An annotation that is consistent comes back as it is.
 /// \pre the annotation fits the mesh (read_annotation checks it)
