@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "base/random.h"
 #include "evidence/policy.h"
@@ -29,9 +30,9 @@ ClaimQuotient::ClaimQuotient(const PreparedMesh& prepared, const std::vector<Sym
     const SurfaceSamples samples =
         sample_surface(prepared.mesh, prepared.areas, prepared.normals, count, random, atoms.faces(atom));
     for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
-      Sample& sample = samples_.emplace_back();
-      sample.weight = area / count;
-      sample.orbit.push_back({samples.points.row(i), static_cast<int>(atom), std::vector<bool>(claims.size(), false)});
+      Sample& sample = samples_.emplace_back(Sample{area / count, NearPoints(0.5 * tolerance), {}, {}});
+      sample.points.add(samples.points.row(i));
+      sample.orbit.push_back({static_cast<int>(atom), std::vector<bool>(claims.size(), false)});
     }
   }
 }
@@ -104,17 +105,11 @@ bool ClaimQuotient::turns_alike(std::size_t known, std::size_t claim) const {
          apart.cross(a.axis).norm() <= 0.5 * tolerance_;
 }
 
-bool ClaimQuotient::same(const Site& known, const Vector3d& point) const {
-  return near(known.point, point) || std::ranges::any_of(continuous_, [&](std::size_t claim) {
-           return known.complete[claim] && on_one_circle(claim, known.point, point);
-         });
-}
-
 int ClaimQuotient::find(const Sample& sample, const Vector3d& point) const {
-  const auto found = std::ranges::find_if(sample.orbit, [&](const Site& known) { return near(known.point, point); });
-  if (found != sample.orbit.end()) return static_cast<int>(found - sample.orbit.begin());
+  const int found = sample.points.first_near(point);
+  if (found >= 0) return found;
   const auto circle = std::ranges::find_if(sample.circles, [&](const Circle& each) {
-    return on_one_circle(each.claim, sample.orbit[each.site].point, point);
+    return on_one_circle(each.claim, sample.points[each.site], point);
   });
   return circle == sample.circles.end() ? -1 : static_cast<int>(circle->site);
 }
@@ -126,45 +121,55 @@ int ClaimQuotient::atom_at(const Vector3d& point) const {
 
 // Of the orbit that the claim gives a point, n points of which e are known to be in one orbit: of n / e orbits one is
 // left. Points on circles that are known to be filled count once for the circle.
-double ClaimQuotient::saved_share(const Sample& sample, const Site& site, std::size_t claim) const {
+double ClaimQuotient::saved_share(const Sample& sample, std::size_t number, std::size_t claim) const {
+  const Site& site = sample.orbit[number];
   if (site.complete[claim]) return 0;
+  std::vector<std::size_t> filled;  // continuous claims whose circles through the point are known
+  std::ranges::copy_if(continuous_, std::back_inserter(filled), [&](std::size_t known) { return site.complete[known]; });
   // Whether the claim turns the point along a circle that is not yet known.
-  const bool fills = continuous(claim) && std::ranges::none_of(continuous_, [&](std::size_t known) {
-                       return site.complete[known] && turns_alike(known, claim);
-                     });
-  Site image_site = site;  // with what is known of the point
-  std::vector<Vector3d> images{site.point};
+  const bool fills = continuous(claim) &&
+                     std::ranges::none_of(filled, [&](std::size_t known) { return turns_alike(known, claim); });
+  NearPoints images(0.5 * tolerance_);
+  images.add(sample.points[number]);
   std::size_t known = 1;
   for (const Motion& motion : claims_[claim].motions[static_cast<std::size_t>(atoms_.piece(claim, site.atom))]) {
-    const Vector3d image = motion(site.point);
-    const bool repeated = std::ranges::any_of(images, [&](const Vector3d& other) {
-      image_site.point = other;
-      return same(image_site, image);
-    });
+    const Vector3d image = motion(sample.points[number]);
+    bool repeated = images.first_near(image) >= 0;
+    for (std::size_t i = 0; i < images.size() && !repeated && !filled.empty(); ++i) {
+      repeated =
+          std::ranges::any_of(filled, [&](std::size_t each) { return on_one_circle(each, images[i], image); });
+    }
     if (repeated) continue;
     if (!fills && find(sample, image) >= 0) ++known;
-    images.push_back(image);
+    images.add(image);
   }
   // The finite group in place of a continuous one need not hold the elements that are known.
   if (fills) {
-    known = static_cast<std::size_t>(std::ranges::count_if(
-        sample.orbit, [&](const Site& other) { return on_one_circle(claim, other.point, site.point); }));
+    known = 0;
+    for (std::size_t i = 0; i < sample.points.size(); ++i) {
+      known += on_one_circle(claim, sample.points[i], sample.points[number]) ? 1 : 0;
+    }
   }
   return std::max(0.0, 1 - static_cast<double>(known) / static_cast<double>(images.size()));
 }
 
 double ClaimQuotient::saving(const std::vector<std::size_t>& family) const {
-  double sum = 0;
-  for (const Sample& sample : samples_) {
-    double share = 0;  // members that hold points of one orbit save the same
-    for (const std::size_t claim : family) {
-      const auto site =
-          std::ranges::find_if(sample.orbit, [&](const Site& each) { return atoms_.piece(claim, each.atom) >= 0; });
-      if (site != sample.orbit.end()) share = std::max(share, saved_share(sample, *site, claim));
+  std::vector<double> saved(samples_.size(), 0);
+  const auto ask = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Sample& sample = samples_[s];
+      double share = 0;  // members that hold points of one orbit save the same
+      for (const std::size_t claim : family) {
+        const auto site =
+            std::ranges::find_if(sample.orbit, [&](const Site& each) { return atoms_.piece(claim, each.atom) >= 0; });
+        if (site == sample.orbit.end()) continue;
+        share = std::max(share, saved_share(sample, static_cast<std::size_t>(site - sample.orbit.begin()), claim));
+      }
+      saved[s] = share * sample.weight / static_cast<double>(sample.orbit.size());
     }
-    sum += share * sample.weight / static_cast<double>(sample.orbit.size());
-  }
-  return sum;
+  };
+  parallel_for(context_, samples_.size(), ask, 16);
+  return std::accumulate(saved.begin(), saved.end(), 0.0);
 }
 
 void ClaimQuotient::accept(const std::vector<std::size_t>& family) {
@@ -173,36 +178,36 @@ void ClaimQuotient::accept(const std::vector<std::size_t>& family) {
   parallel_for(
       context_, samples_.size(),
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t s = begin; s < end; ++s) extend(samples_[s]);
+        for (std::size_t s = begin; s < end; ++s) extend(samples_[s], family);
       },
       16);
   context_.check();
 }
 
-void ClaimQuotient::extend(Sample& sample) const {
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < sample.orbit.size(); ++i) open.push_back(i);
-  for (std::size_t next = 0; next < open.size(); ++next) {
-    for (const std::size_t claim : accepted_) {
+// The points that are known are complete under all that was accepted before.
+void ClaimQuotient::extend(Sample& sample, const std::vector<std::size_t>& news) const {
+  const std::size_t known = sample.orbit.size();
+  for (std::size_t site = 0; site < sample.orbit.size(); ++site) {
+    for (const std::size_t claim : site < known ? news : accepted_) {
       if (sample.orbit.size() >= kQuotientResolution.orbit) return;
-      expand(sample, open[next], claim, open);
+      expand(sample, site, claim);
     }
   }
 }
 
-void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim, std::vector<std::size_t>& open) const {
+void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim) const {
   if (sample.orbit[site].complete[claim]) return;
   const int piece = atoms_.piece(claim, sample.orbit[site].atom);
   if (piece < 0) return;
-  const Vector3d point = sample.orbit[site].point;
+  const Vector3d point = sample.points[site];
   std::vector<std::size_t> arrived{site};
   for (const Motion& motion : claims_[claim].motions[static_cast<std::size_t>(piece)]) {
     const Vector3d image = motion(point);
     int at = find(sample, image);
     if (at < 0) {
       at = static_cast<int>(sample.orbit.size());
-      open.push_back(sample.orbit.size());
-      sample.orbit.push_back({image, atom_at(image), std::vector<bool>(claims_.size(), false)});
+      sample.points.add(image);
+      sample.orbit.push_back({atom_at(image), std::vector<bool>(claims_.size(), false)});
     }
     arrived.push_back(static_cast<std::size_t>(at));
   }
@@ -210,15 +215,16 @@ void ClaimQuotient::expand(Sample& sample, std::size_t site, std::size_t claim, 
   if (!continuous(claim)) return;
   for (const std::size_t each : arrived) {
     const bool known = std::ranges::any_of(sample.circles, [&](const Circle& circle) {
-      return circle.claim == claim && on_one_circle(claim, sample.orbit[circle.site].point, sample.orbit[each].point);
+      return circle.claim == claim && on_one_circle(claim, sample.points[circle.site], sample.points[each]);
     });
     if (!known) sample.circles.push_back({claim, each});
   }
   // The other points on the circles that are now filled.
-  for (Site& other : sample.orbit) {
+  for (std::size_t i = 0; i < sample.orbit.size(); ++i) {
+    Site& other = sample.orbit[i];
     if (other.complete[claim] || atoms_.piece(claim, other.atom) < 0) continue;
     other.complete[claim] = std::ranges::any_of(
-        arrived, [&](std::size_t each) { return on_one_circle(claim, sample.orbit[each].point, other.point); });
+        arrived, [&](std::size_t each) { return on_one_circle(claim, sample.points[each], sample.points[i]); });
   }
 }
 

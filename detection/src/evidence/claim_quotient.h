@@ -6,6 +6,7 @@
 #include "orbifit/model/run_context.h"
 
 #include "evidence/claims.h"
+#include "evidence/near_points.h"
 
 namespace orbifit {
 
@@ -31,14 +32,13 @@ class ClaimQuotient {
   bool lies_within_accepted(const std::vector<std::size_t>& family) const;
 
   /// What accepting claims that are images of one another would take off the area, about: exact for one claim whose
-  /// orbits meet known ones evenly. O(A |G| n) for orbits of n points.
+  /// orbits meet known ones evenly. O(A (n + |G|)) for orbits of n points.
   double saving(const std::vector<std::size_t>& family) const;
 
   void accept(const std::vector<std::size_t>& family);
 
  private:
   struct Site {
-    Eigen::Vector3d point;
     int atom;
     std::vector<bool> complete;  // by claim: whether the orbit under it is in
   };
@@ -49,23 +49,23 @@ class ClaimQuotient {
   };
   struct Sample {
     double weight;  // area
-    std::vector<Site> orbit;
+    NearPoints points;
+    std::vector<Site> orbit;  // of each point
     std::vector<Circle> circles;
   };
 
   // The site at the point, or on a filled circle with it; -1: none.
   int find(const Sample& sample, const Eigen::Vector3d& point) const;
-  bool same(const Site& known, const Eigen::Vector3d& point) const;
   bool turns_alike(std::size_t known, std::size_t claim) const;
   bool near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   bool on_one_circle(std::size_t claim, const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   int atom_at(const Eigen::Vector3d& point) const;
-  double saved_share(const Sample& sample, const Site& site, std::size_t claim) const;
+  double saved_share(const Sample& sample, std::size_t number, std::size_t claim) const;
   bool continuous(std::size_t claim) const {
     return claims_[claim].region != nullptr && claims_[claim].region->group.continuous();
   }
-  void extend(Sample& sample) const;
-  void expand(Sample& sample, std::size_t site, std::size_t claim, std::vector<std::size_t>& open) const;
+  void extend(Sample& sample, const std::vector<std::size_t>& news) const;
+  void expand(Sample& sample, std::size_t site, std::size_t claim) const;
 
   const PreparedMesh& prepared_;
   const std::vector<SymmetryClaim>& claims_;

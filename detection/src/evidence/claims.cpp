@@ -98,8 +98,11 @@ class Images {
     for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
       witnesses_.push_back(witnesses(atoms.faces(atom)));
       atom_areas_.push_back(area_of(prepared, atoms.faces(atom)));
+      std::vector<std::size_t>& here = claims_at_.emplace_back();
       for (std::size_t claim = 0; claim < claims.size(); ++claim) {
-        if (atoms.piece(claim, static_cast<int>(atom)) >= 0) areas_[claim] += atom_areas_.back();
+        if (atoms.piece(claim, static_cast<int>(atom)) < 0) continue;
+        areas_[claim] += atom_areas_.back();
+        here.push_back(claim);
       }
     }
   }
@@ -149,12 +152,13 @@ class Images {
         const SurfaceIndex::Nearest nearest =
             prepared_.index->nearest(motion(witness), kQuotientResolution.reach * tolerance_);
         const int there = nearest.face < 0 ? -1 : atoms_.of_face(nearest.face);
-        for (std::size_t from = 0; from < claims_.size(); ++from) {
-          if (from == mover || atoms_.piece(from, static_cast<int>(atom)) < 0) continue;
+        for (const std::size_t from : claims_at_[atom]) {
+          if (from == mover) continue;
           Arrival& arrival = arrivals[from];
           arrival.asked += weight;
-          for (std::size_t to = 0; to < claims_.size(); ++to) {
-            if (atoms_.piece(to, there) >= 0 && alike(from, to)) arrival.at[to] += weight;
+          if (there < 0) continue;
+          for (const std::size_t to : claims_at_[static_cast<std::size_t>(there)]) {
+            if (alike(from, to)) arrival.at[to] += weight;
           }
         }
       }
@@ -181,7 +185,8 @@ class Images {
   const ClaimAtoms& atoms_;
   double tolerance_;
   DisjointSets families_;
-  std::vector<std::vector<Vector3d>> witnesses_;  // by atom
+  std::vector<std::vector<Vector3d>> witnesses_;      // by atom
+  std::vector<std::vector<std::size_t>> claims_at_;  // by atom
   std::vector<double> atom_areas_, areas_;        // by atom, by claim
   std::vector<SurfaceMoments> moments_;           // by claim, of regions
 };
