@@ -74,6 +74,35 @@ TEST(BadInput, EveryReaderStaysSoundOnEveryFile) {
   }
 }
 
+// An STL's triangles have corners of their own: its annotation may count the places where these meet.
+TEST(BadInput, AnnotationsOfAMeshWhoseFacesShareNoVertexAreReadAsThoseOfOneWhoseFacesDo) {
+  const TemporaryFolder folder;
+  ReadingContext soup;
+  const Mesh cube = std::exchange(soup.mesh, {});
+  soup.mesh.vertices.resize(3 * cube.faces.rows(), 3);
+  soup.mesh.faces.resize(cube.faces.rows(), 3);
+  for (Eigen::Index corner = 0; corner < cube.faces.size(); ++corner) {
+    soup.mesh.vertices.row(corner) = cube.vertices.row(cube.faces.data()[corner]);
+    soup.mesh.faces.data()[corner] = static_cast<int>(corner);
+  }
+  const auto expected = expected_outcomes();
+  int read = 0;
+  for (const BadInput& file : bad_input()) {
+    if (file.kind != BadInputKind::annotation) continue;
+    SCOPED_TRACE(file.name);
+    folder.write(file.name, file.content);
+    const std::string outcome = reading_of(file.kind, folder.file(file.name), soup);
+    read += outcome.starts_with("read: ") ? 1 : 0;
+    const std::string& of_cube = expected.at(file.name);
+    if (of_cube.find("mesh.vertices") == std::string::npos) {
+      EXPECT_EQ(outcome, of_cube);
+    } else {
+      EXPECT_NE(outcome.find("mesh.vertices"), std::string::npos) << outcome;
+    }
+  }
+  EXPECT_GT(read, 0);
+}
+
 class FalseNumbers : public testing::TestWithParam<bool> {};
 
 // Behind the checksums: numbers of a basis that are not what was written, one by one.

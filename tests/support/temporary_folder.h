@@ -31,6 +31,7 @@ class TemporaryFolder {
   std::filesystem::path file(std::string_view name) const { return path_ / name; }
 
   std::filesystem::path write(std::string_view name, std::string_view content) const {
+    std::filesystem::remove(file(name));  // some file systems wait for the disk where one is overwritten
     std::ofstream stream(file(name), std::ios::binary);
     stream.write(content.data(), static_cast<std::streamsize>(content.size()));
     return file(name);

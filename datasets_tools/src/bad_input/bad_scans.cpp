@@ -71,6 +71,7 @@ void add_binary_pcd(BadInputs& files) {
   const std::string literal = "\x1f" + body.substr(0, 32) + "\x03" + body.substr(32);  // runs of 32 and 4 letters
   const auto size = static_cast<std::uint32_t>(literal.size());
   add("packed", packed(size, 36, literal));
+  add("packed_run", packed(5, 36, std::string("\0a\xe0\x1a\0", 5)));  // one letter, then 35 times the one before
   add("packed_nothing", compressed);
   add("packed_cut", packed(size, 36, literal.substr(0, 20)));
   add("packed_size_2_32", packed(0xffffffffU, 36, literal));

@@ -108,9 +108,8 @@ bool ClaimQuotient::turns_alike(std::size_t known, std::size_t claim) const {
 int ClaimQuotient::find(const Sample& sample, const Vector3d& point) const {
   const int found = sample.points.first_near(point);
   if (found >= 0) return found;
-  const auto circle = std::ranges::find_if(sample.circles, [&](const Circle& each) {
-    return on_one_circle(each.claim, sample.points[each.site], point);
-  });
+  const auto circle = std::ranges::find_if(
+      sample.circles, [&](const Circle& each) { return on_one_circle(each.claim, sample.points[each.site], point); });
   return circle == sample.circles.end() ? -1 : static_cast<int>(circle->site);
 }
 
@@ -125,10 +124,11 @@ double ClaimQuotient::saved_share(const Sample& sample, std::size_t number, std:
   const Site& site = sample.orbit[number];
   if (site.complete[claim]) return 0;
   std::vector<std::size_t> filled;  // continuous claims whose circles through the point are known
-  std::ranges::copy_if(continuous_, std::back_inserter(filled), [&](std::size_t known) { return site.complete[known]; });
+  std::ranges::copy_if(continuous_, std::back_inserter(filled),
+                       [&](std::size_t known) { return site.complete[known]; });
   // Whether the claim turns the point along a circle that is not yet known.
-  const bool fills = continuous(claim) &&
-                     std::ranges::none_of(filled, [&](std::size_t known) { return turns_alike(known, claim); });
+  const bool fills =
+      continuous(claim) && std::ranges::none_of(filled, [&](std::size_t known) { return turns_alike(known, claim); });
   NearPoints images(0.5 * tolerance_);
   images.add(sample.points[number]);
   std::size_t known = 1;
@@ -136,8 +136,7 @@ double ClaimQuotient::saved_share(const Sample& sample, std::size_t number, std:
     const Vector3d image = motion(sample.points[number]);
     bool repeated = images.first_near(image) >= 0;
     for (std::size_t i = 0; i < images.size() && !repeated && !filled.empty(); ++i) {
-      repeated =
-          std::ranges::any_of(filled, [&](std::size_t each) { return on_one_circle(each, images[i], image); });
+      repeated = std::ranges::any_of(filled, [&](std::size_t each) { return on_one_circle(each, images[i], image); });
     }
     if (repeated) continue;
     if (!fills && find(sample, image) >= 0) ++known;

@@ -185,10 +185,10 @@ class Images {
   const ClaimAtoms& atoms_;
   double tolerance_;
   DisjointSets families_;
-  std::vector<std::vector<Vector3d>> witnesses_;      // by atom
+  std::vector<std::vector<Vector3d>> witnesses_;     // by atom
   std::vector<std::vector<std::size_t>> claims_at_;  // by atom
-  std::vector<double> atom_areas_, areas_;        // by atom, by claim
-  std::vector<SurfaceMoments> moments_;           // by claim, of regions
+  std::vector<double> atom_areas_, areas_;           // by atom, by claim
+  std::vector<SurfaceMoments> moments_;              // by claim, of regions
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ class NearPoints {
 
   double reach_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<int> heads_;  // by cell, modulo their number, a power of two: its last point; -1: none. Empty for few
+  std::vector<int> heads_;   // by cell, modulo their number, a power of two: its last point; -1: none. Empty for few
   std::vector<int> before_;  // by point: the one before it there
 };
 
