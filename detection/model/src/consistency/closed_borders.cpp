@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "consistency/consistency_search.h"
@@ -15,8 +18,13 @@ namespace orbifit {
 
 namespace {
 
-// Of each place the vertices around which it cannot be kept.
-using Conflicts = std::vector<std::set<int>>;
+// Places of which one is to give up its faces around a vertex; of one alone, both are the same.
+struct Conflict {
+  int vertex;
+  int place, other;
+
+  bool names(int either) const { return place == either || other == either; }
+};
 
 class BorderCheck {
  public:
@@ -25,10 +33,9 @@ class BorderCheck {
         domains_(domains),
         context_(context),
         grid_(mesh.vertices, kDoublet * diagonal(mesh.vertices)),
-        sets_(closed_sets_of_vertices(mesh, domains, grid_)),
-        result_(static_cast<std::size_t>(domains.places())) {}
+        sets_(closed_sets_of_vertices(mesh, domains, grid_)) {}
 
-  Conflicts run() {
+  std::vector<Conflict> run() {
     for (int vertex = 0; vertex < static_cast<int>(sets_.size()); ++vertex) {
       if (vertex % 1024 == 0) context_.check();
       const std::vector<int> places = domains_.set_places(set_of(vertex));
@@ -64,13 +71,13 @@ class BorderCheck {
       const bool others = std::ranges::any_of(sets_at(position, place), [&](int other) {
         return other != set_of(vertex) && domains_.carried_set(other, place, element) == only;
       });
-      if (others) result_[static_cast<std::size_t>(place)].insert(vertex);
+      if (others) result_.push_back({vertex, place, place});
       return;
     }
     for (const int other : domains_.set_places(set_of(vertex))) {
       const std::vector<int> images = domains_.images_of(other, place, element);
       if (std::ranges::all_of(images, [&](int image) { return domains_.holds(only, image); })) continue;
-      for (const int either : {place, other}) result_[static_cast<std::size_t>(either)].insert(vertex);
+      result_.push_back({vertex, place, other});
     }
   }
 
@@ -79,7 +86,7 @@ class BorderCheck {
   const RunContext& context_;
   VertexGrid grid_;
   std::vector<int> sets_;
-  Conflicts result_;
+  std::vector<Conflict> result_;
 };
 
 std::vector<int> faces_around(const Mesh& mesh, const std::vector<int>& faces, const std::set<int>& vertices) {
@@ -87,6 +94,34 @@ std::vector<int> faces_around(const Mesh& mesh, const std::vector<int>& faces, c
   std::ranges::copy_if(faces, std::back_inserter(result), [&](int face) {
     return std::ranges::any_of(mesh.faces.row(face), [&](int vertex) { return vertices.contains(vertex); });
   });
+  return result;
+}
+
+// What a place would give up.
+struct Loss {
+  int place;
+  std::vector<int> faces;
+};
+
+// The place that loses the smallest share of its faces where it gives up those around its conflicts; none where each
+// would lose too much, and is left as it is.
+std::optional<Loss> least_loss(const Mesh& mesh, const std::vector<std::vector<int>*>& faces, const DomainMap& domains,
+                               const std::vector<Conflict>& conflicts) {
+  std::map<int, std::set<int>> vertices;  // by place
+  for (const Conflict& conflict : conflicts) {
+    for (const int place : {conflict.place, conflict.other}) vertices[place].insert(conflict.vertex);
+  }
+  double least = 1 - ConsistencyPolicy{}.left;
+  std::optional<Loss> result;
+  for (const auto& [place, around] : vertices) {
+    if (domains.whole(place) || domains.continuum(place) != nullptr) continue;
+    const std::vector<int>& own = *faces[static_cast<std::size_t>(place)];
+    std::vector<int> given = faces_around(mesh, own, around);
+    const double share = static_cast<double>(given.size()) / static_cast<double>(own.size());
+    if (given.empty() || share >= least) continue;
+    least = share;
+    result = {place, std::move(given)};
+  }
   return result;
 }
 
@@ -101,25 +136,18 @@ bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunCo
   bool any = false;
   while (true) {
     const DomainMap domains(mesh, annotation, instance_motions(annotation));
-    const Conflicts conflicts = BorderCheck(mesh, domains, context).run();
-    double least = 1 - ConsistencyPolicy{}.left;  // what would lose more is left as it is
-    std::vector<int> taken;
-    std::size_t loser = 0;
-    for (std::size_t place = 0; place < faces.size(); ++place) {
-      const auto number = static_cast<int>(place);
-      if (conflicts[place].empty() || domains.whole(number) || domains.continuum(number) != nullptr) continue;
-      std::vector<int> around = faces_around(mesh, *faces[place], conflicts[place]);
-      const double share = static_cast<double>(around.size()) / static_cast<double>(faces[place]->size());
-      if (around.empty() || share >= least) continue;
-      least = share;
-      taken = std::move(around);
-      loser = place;
+    std::vector<Conflict> conflicts = BorderCheck(mesh, domains, context).run();
+    bool taken = false;
+    while (const std::optional<Loss> loss = least_loss(mesh, faces, domains, conflicts)) {
+      taken = true;
+      std::vector<int>& losing = *faces[static_cast<std::size_t>(loss->place)];
+      std::vector<int> rest;
+      std::ranges::set_difference(losing, loss->faces, std::back_inserter(rest));
+      losing = std::move(rest);
+      std::erase_if(conflicts, [&](const Conflict& conflict) { return conflict.names(loss->place); });
     }
-    if (taken.empty()) return any;
-    any = true;
-    std::vector<int> rest;
-    std::ranges::set_difference(*faces[loser], taken, std::back_inserter(rest));
-    *faces[loser] = std::move(rest);
+    if (!taken) return any;
+    any = true;  // what is left of the conflicts, and new ones, show once more
   }
 }
 
