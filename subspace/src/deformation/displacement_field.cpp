@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -157,19 +159,31 @@ class FieldEvaluator {
   std::map<std::array<int, 4>, Seen> seen_;
 };
 
+// A mesh's vertices in a state, for any number of threads.
+struct VertexField {
+  VertexField(const Subspace& of, const Mesh& its_mesh, const SubspaceState& state, const RunContext& context)
+      : subspace(of),
+        mesh(its_mesh),
+        baked(vertex_displacements(of, state, context)),
+        near(its_mesh.vertices, kMet * of->diagonal) {
+    if (of->lift_kind != LiftKind::orbit) return;
+    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v) sets.push_back(set_of_vertex(of->orbits, v));
+  }
+
+  int set_of(int vertex) const { return sets.empty() ? 0 : sets[static_cast<std::size_t>(vertex)]; }
+
+  const Subspace& subspace;
+  const Mesh& mesh;
+  Points baked;           // displacements
+  VertexGrid near;        // vertices that may be images
+  std::vector<int> sets;  // of the vertices; empty where the lift knows none
+};
+
 // Pairs of a point and its image by one motion of a place, and how far the field is from carrying one to the other.
 class PairResidual {
  public:
-  PairResidual(const Subspace& subspace, const Mesh& mesh, const SubspaceState& state, const RunContext& context)
-      : subspace_(subspace),
-        mesh_(mesh),
-        baked_(vertex_displacements(subspace, state, context)),
-        images_(mesh.vertices, kMet * subspace->diagonal),
-        field_(subspace, state, context) {
-    if (subspace->lift_kind != LiftKind::orbit) return;
-    for (int v = 0; v < static_cast<int>(mesh.vertices.rows()); ++v)
-      sets_.push_back(set_of_vertex(subspace->orbits, v));
-  }
+  PairResidual(const VertexField& vertices, FieldEvaluator& field)
+      : vertices_(vertices), subspace_(vertices.subspace), mesh_(vertices.mesh), field_(field) {}
 
   /// Images at vertices are measured at once, others by finish().
   /// \param motion that of element number `element` of the place, or with a rotation of its continuum after it
@@ -177,19 +191,20 @@ class PairResidual {
   void add(int vertex, const Motion& motion, const Motion& carried, int from_place, int element) {
     const Vector3d place = mesh_.vertices.row(vertex).transpose();
     const Vector3d image = motion(place);
-    const int image_set = sets_.empty() ? 0 : subspace_->regions->carried_set(set_of(vertex), from_place, element);
+    const int image_set =
+        vertices_.sets.empty() ? 0 : subspace_->regions->carried_set(vertices_.set_of(vertex), from_place, element);
     int met = -1;
     const auto& followers = subspace_->orbits.followers;
     const int own = followers[static_cast<std::size_t>(vertex)].representative;
-    images_.visit(image, [&](int other) {
+    vertices_.near.visit(image, [&](int other) {
       if (met >= 0 || followers[static_cast<std::size_t>(other)].representative != own) return;
-      if (set_of(other) == image_set) met = other;  // of parts that touch, the one that it is on
+      if (vertices_.set_of(other) == image_set) met = other;  // of parts that touch, the one that it is on
     });
     if (met < 0) {
       off_vertices_.push_back({vertex, motion, carried, from_place, element});
       return;
     }
-    measure(baked_.row(vertex).transpose(), baked_.row(met).transpose(), place, motion, carried);
+    measure(vertices_.baked.row(vertex).transpose(), vertices_.baked.row(met).transpose(), place, motion, carried);
   }
 
   /// Measures images off the vertices, at most `most` of them, evenly spread: each is worth thousands at vertices.
@@ -209,18 +224,16 @@ class PairResidual {
       const Pair& pair = off_vertices_[k];
       const Vector3d place = mesh_.vertices.row(pair.vertex).transpose();
       const Vector3d image = pair.motion(place);
-      const int set = set_of(pair.vertex);
+      const int set = vertices_.set_of(pair.vertex);
       const int image_set = subspace_->regions->carried_set(set, pair.from_place, pair.element);
       measure(field_(place, set), field_(image, image_set), place, pair.motion, pair.carried);
     }
-    off_vertices_.clear();
   }
 
-  /// Of what was measured since the last call.
-  Residual take() {
-    Residual result = std::exchange(residual_, {});
+  /// Of what was measured.
+  Residual result() const {
+    Residual result = residual_;
     if (count_ > 0) result.rms = std::sqrt(squares_ / count_);
-    squares_ = count_ = 0;
     return result;
   }
 
@@ -231,8 +244,6 @@ class PairResidual {
     int from_place, element;
   };
 
-  int set_of(int vertex) const { return sets_.empty() ? 0 : sets_[static_cast<std::size_t>(vertex)]; }
-
   // The rest shape's own residual is not the displacement's: y(g p) - g' y(p) less the same at rest.
   void measure(const Vector3d& here, const Vector3d& there, const Vector3d& place, const Motion& motion,
                const Motion& carried) {
@@ -242,13 +253,11 @@ class PairResidual {
     count_ += 1;
   }
 
+  const VertexField& vertices_;
   const Subspace& subspace_;
   const Mesh& mesh_;
-  std::vector<int> sets_;  // of the vertices; empty where the lift knows none
+  FieldEvaluator& field_;
   std::vector<Pair> off_vertices_;
-  Points baked_;
-  VertexGrid images_;  // vertices that may be images
-  FieldEvaluator field_;
   Residual residual_;
   double squares_ = 0, count_ = 0;
 };
@@ -260,9 +269,11 @@ std::size_t most_off_vertices(int pairs) {
   return static_cast<std::size_t>(std::max(pairs / 20, std::min(pairs, 200)));
 }
 
-Residual residual_of(PairResidual& residual, const Subspace& subspace, const Mesh& mesh, const Region& region,
-                     int region_number, const SubspaceState& state, const RunContext& context, int pairs) {
-  const std::vector<int> vertices = vertices_of_faces(mesh, region.faces);
+Residual residual_of(const VertexField& vertices_in, FieldEvaluator& field, const Region& region, int region_number,
+                     const SubspaceState& state, const RunContext& context, int pairs) {
+  const Subspace& subspace = vertices_in.subspace;
+  PairResidual residual(vertices_in, field);
+  const std::vector<int> vertices = vertices_of_faces(vertices_in.mesh, region.faces);
   const std::vector<Motion> elements = subspace->regions->test_elements(region_number);
   const std::size_t components = subspace->regions->elements(region_number).size();
   const std::size_t step = 1 + vertices.size() * elements.size() / static_cast<std::size_t>(std::max(1, pairs));
@@ -275,8 +286,32 @@ Residual residual_of(PairResidual& residual, const Subspace& subspace, const Mes
     }
   }
   residual.finish(most_off_vertices(pairs), context);
-  return residual.take();
+  return residual.result();
 }
+
+// One evaluator for each thread that asks for one at a time: what it has seen makes the next points cheaper.
+class FieldEvaluators {
+ public:
+  explicit FieldEvaluators(std::function<std::unique_ptr<FieldEvaluator>()> made) : made_(std::move(made)) {}
+
+  std::unique_ptr<FieldEvaluator> take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (idle_.empty()) return made_();
+    std::unique_ptr<FieldEvaluator> one = std::move(idle_.back());
+    idle_.pop_back();
+    return one;
+  }
+
+  void give_back(std::unique_ptr<FieldEvaluator> one) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    idle_.push_back(std::move(one));
+  }
+
+ private:
+  std::function<std::unique_ptr<FieldEvaluator>()> made_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<FieldEvaluator>> idle_;
+};
 
 }  // namespace
 
@@ -293,8 +328,8 @@ Points displacement_field(const Subspace& subspace, const SubspaceState& state, 
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
                         const SubspaceState& state, const RunContext& context, int pairs) {
-  PairResidual residual(subspace, mesh, state, context);
-  return residual_of(residual, subspace, mesh, region, region_number, state, context, pairs);
+  FieldEvaluator field(subspace, state, context);
+  return residual_of({subspace, mesh, state, context}, field, region, region_number, state, context, pairs);
 }
 
 Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region& region, int region_number,
@@ -304,13 +339,18 @@ Residual field_residual(const Subspace& subspace, const Mesh& mesh, const Region
 
 std::vector<Residual> field_residuals(const Subspace& subspace, const Mesh& mesh, const SymmetryAnnotation& annotation,
                                       const SubspaceState& state, const RunContext& context, int pairs) {
-  PairResidual residual(subspace, mesh, state, context);
-  std::vector<Residual> result;
-  for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
-    const auto number = static_cast<int>(i);
-    context.progress("residuals", double(i) / static_cast<double>(annotation.regions.size()));
-    result.push_back(residual_of(residual, subspace, mesh, annotation.regions[i], number, state, context, pairs));
-  }
+  const VertexField vertices(subspace, mesh, state, context);
+  FieldEvaluators evaluators([&] { return std::make_unique<FieldEvaluator>(subspace, state, context); });
+  std::vector<Residual> result(annotation.regions.size());
+  context.progress("residuals", 0);
+  const auto measure = [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<FieldEvaluator> field = evaluators.take();
+    for (std::size_t i = begin; i < end; ++i) {
+      result[i] = residual_of(vertices, *field, annotation.regions[i], static_cast<int>(i), state, context, pairs);
+    }
+    evaluators.give_back(std::move(field));
+  };
+  parallel_for(context, result.size(), measure);
   return result;
 }
 
@@ -331,7 +371,9 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
   const ConjugatedBasis& basis = basis_of(subspace, state);
   Eigen::VectorXd carriers = basis.carried * state.q;
   if (carriers.size() > 0) carriers += basis.carried_offset;
-  PairResidual residual(subspace, mesh, state, context);
+  const VertexField vertices(subspace, mesh, state, context);
+  FieldEvaluator field(subspace, state, context);
+  PairResidual residual(vertices, field);
   for (const int vertex : vertices_of_faces(mesh, pattern.instances.front().faces)) {
     context.check();
     for (std::size_t a = 1; a < pattern.instances.size(); ++a) {
@@ -343,7 +385,7 @@ Residual pattern_residual(const Subspace& subspace, const Mesh& mesh, const Patt
     }
   }
   residual.finish(most_off_vertices(kPatternPairs), context);
-  return residual.take();
+  return residual.result();
 }
 
 }  // namespace orbifit
