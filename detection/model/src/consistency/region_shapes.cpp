@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "base/disjoint_sets.h"
@@ -99,6 +100,7 @@ int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();
   Shape shape;
   shape.faces = faces;
+  shape.digest.add(std::span<const int>(faces));
   shape.holds.assign(static_cast<std::size_t>(mesh_.faces.rows()), 0);
   Vector3d sum = Vector3d::Zero();
   for (const int face : faces) {
@@ -238,7 +240,20 @@ bool RegionShapes::ends_at(int inner, int outer) const {
   return result;
 }
 
+Digest RegionShapes::question(int from, int domain, const Motion& motion, int to, int arrival) const {
+  Digest digest;
+  for (const int shape : {from, domain, to, arrival}) digest.add(at(shape).digest);
+  for (const double number : motion.linear.reshaped()) digest.add(number);
+  for (const double number : motion.translation) digest.add(number);
+  return digest;
+}
+
 double RegionShapes::arrived(int from, int domain, const Motion& motion, int to, int arrival) const {
+  return remembered(arrived_, question(from, domain, motion, to, arrival),
+                    [&] { return share_arrived(from, domain, motion, to, arrival); });
+}
+
+double RegionShapes::share_arrived(int from, int domain, const Motion& motion, int to, int arrival) const {
   const auto arriving = [&](int shape, int within, const Motion& way, int target) {
     const Shape& source = at(shape);
     const std::vector<char>& holds = at(within).holds;
@@ -260,12 +275,19 @@ double RegionShapes::arrived(int from, int domain, const Motion& motion, int to,
 }
 
 double RegionShapes::distance(int from, int domain, const Motion& motion, int to, int arrival) const {
-  const Motion told{Eigen::Matrix3d::Identity(), -origin_};
-  return separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival),
-                    diagonal_);
+  return remembered(distances_, question(from, domain, motion, to, arrival), [&] {
+    const Motion told{Eigen::Matrix3d::Identity(), -origin_};
+    return separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival),
+                      diagonal_);
+  });
 }
 
 std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
+  return remembered(image_faces_, question(from, domain, motion, arrival, arrival),
+                    [&] { return faces_brought(from, domain, motion, arrival); });
+}
+
+std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion& motion, int arrival) const {
   constexpr std::size_t kWorthAThread = 512;  // faces, of which each takes up to a microsecond
   const Motion back = inverse(motion);
   const Shape& source = at(from);

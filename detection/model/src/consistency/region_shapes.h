@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 
+#include "base/digest.h"
 #include "consistency/group_place.h"
 #include "domains/piece_moments.h"
 #include "geometry/surface_index.h"
@@ -22,7 +24,7 @@ namespace orbifit {
 
 /// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by
 /// less than a fiftieth of the smaller one's area is a sliver: borders drawn face by face overlap by that much by
-/// chance.
+/// chance. What was asked once of shapes of the same faces is remembered; it counts as work as it did then.
 class RegionShapes {
  public:
   /// \param near how far an image may lie from the surface, mesh units
@@ -98,6 +100,7 @@ class RegionShapes {
  private:
   struct Shape {
     std::vector<int> faces;  // ascending
+    Digest digest;           // of the faces
     std::vector<char> holds;
     std::vector<int> points;  // numbers of the vertices' positions, ascending
     double area = 0;
@@ -113,6 +116,26 @@ class RegionShapes {
   const SurfaceIndex& index(int shape) const;
   PieceMoments common_moments(int a, int b) const;
   bool ends_at(int inner, int outer) const;
+  Digest question(int from, int domain, const Motion& motion, int to, int arrival) const;
+  double share_arrived(int from, int domain, const Motion& motion, int to, int arrival) const;
+  std::vector<int> faces_brought(int from, int domain, const Motion& motion, int arrival) const;
+
+  // What was answered, and the work that it took.
+  template <class Answer>
+  using Answers = std::unordered_map<Digest, std::pair<Answer, std::size_t>, Digest::Hash>;
+  template <class Answer, class Ask>
+  const Answer& remembered(Answers<Answer>& answers, const Digest& question, const Ask& ask) const {
+    const auto [entry, is_new] = answers.try_emplace(question);
+    auto& [answer, work] = entry->second;
+    if (is_new) {
+      const std::size_t before = work_;
+      answer = ask();
+      work = work_ - before;
+    } else {
+      work_ += work;
+    }
+    return answer;
+  }
   void sample(Shape& shape) const;
 
   const Mesh& mesh_;
@@ -125,6 +148,8 @@ class RegionShapes {
   Points centroids_;
   std::vector<Shape> shapes_;
   mutable std::map<std::pair<int, int>, bool> ends_at_;
+  mutable Answers<double> arrived_, distances_;
+  mutable Answers<std::vector<int>> image_faces_;
   mutable std::size_t work_ = 0;
 };
 
