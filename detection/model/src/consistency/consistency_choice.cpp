@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -25,10 +26,10 @@ class Choice {
         context_(context),
         shapes_(ConsistencySearch::shapes_of(mesh, annotation, context)) {}
 
-  ConsistentAnnotation run() {
+  std::optional<ConsistentAnnotation> run() {
     {
       ConsistencySearch search(mesh_, annotation_, shapes_, {}, {}, context_);
-      if (search.agrees() && disagreements(mesh_, annotation_, context_).empty()) return {annotation_, {}, 0, 0};
+      if (search.agrees() && disagreements(mesh_, annotation_, context_).empty()) return std::nullopt;
       for (std::size_t i = 0; i < annotation_.regions.size(); ++i) savings_[{false, i}] = search.saving({false, i});
       for (std::size_t i = 0; i < annotation_.patterns.size(); ++i) savings_[{true, i}] = search.saving({true, i});
     }
@@ -154,8 +155,8 @@ class Choice {
 
 }  // namespace
 
-ConsistentAnnotation chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
-                                       const RunContext& context) {
+std::optional<ConsistentAnnotation> chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
+                                                      const RunContext& context) {
   return Choice(mesh, annotation, context).run();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/mesh.h"
@@ -12,7 +14,8 @@ namespace orbifit {
 /// that, a search without the latter is tried, and taken if what it keeps saves more in all.
 /// The whole shape's regions are never given up. Cost: a search for each trial, as far as `ConsistencyPolicy::work`
 /// goes.
-ConsistentAnnotation chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
-                                       const RunContext& context);
+/// \return nothing where all of them agree as they are
+std::optional<ConsistentAnnotation> chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
+                                                      const RunContext& context);
 
 }  // namespace orbifit

@@ -1,6 +1,7 @@
 #include "orbifit/model/consistent_annotation.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "consistency/closed_borders.h"
@@ -27,22 +28,30 @@ bool is_given(const LeftOut& left_out, const SymmetryAnnotation& annotation) {
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context) {
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
-  ConsistentAnnotation result = chosen_annotation(mesh, annotation, context);
-  // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
-  bool settled = result.left_out.empty() && result.added == 0;
-  while (close_borders(mesh, result.annotation, context) || !settled) {
-    ConsistentAnnotation again = chosen_annotation(mesh, result.annotation, context);
-    settled = again.left_out.empty();
-    result.annotation = std::move(again.annotation);
-    result.largest_movement = std::max(result.largest_movement, again.largest_movement);
-    result.added += again.added;
-    for (LeftOut& left_out : again.left_out) {
+  ConsistentAnnotation result{annotation, {}, 0, 0};
+  const auto take = [&](ConsistentAnnotation chosen) {
+    result.annotation = std::move(chosen.annotation);
+    result.largest_movement = std::max(result.largest_movement, chosen.largest_movement);
+    result.added += chosen.added;
+    for (LeftOut& left_out : chosen.left_out) {
       if (is_given(left_out, annotation)) {
         result.left_out.push_back(std::move(left_out));
       } else {
         --result.added;
       }
     }
+  };
+  bool settled = true;
+  if (std::optional<ConsistentAnnotation> chosen = chosen_annotation(mesh, annotation, context)) {
+    settled = chosen->left_out.empty() && chosen->added == 0;
+    take(std::move(*chosen));
+  }
+  // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
+  while (close_borders(mesh, result.annotation, context) || !settled) {
+    std::optional<ConsistentAnnotation> again = chosen_annotation(mesh, result.annotation, context);
+    if (!again) break;  // all agree, and their borders are closed
+    settled = again->left_out.empty();
+    take(std::move(*again));
   }
   return result;
 }

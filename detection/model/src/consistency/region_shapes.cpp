@@ -175,12 +175,14 @@ double RegionShapes::common_area(int a, int b) const {
 
 PieceMoments RegionShapes::common_moments(int a, int b) const {
   if (at(b).faces.size() == static_cast<std::size_t>(mesh_.faces.rows())) return at(a).moments;
-  work_ += at(a).faces.size();
-  std::vector<int> common;
-  for (const int face : at(a).faces) {
-    if (at(b).holds[static_cast<std::size_t>(face)] != 0) common.push_back(face);
-  }
-  return common.size() == at(a).faces.size() ? at(a).moments : moments_of_faces(mesh_, common, origin_);
+  return remembered(common_moments_, Digest().add(at(a).digest).add(at(b).digest), [&] {
+    work_ += at(a).faces.size();
+    std::vector<int> common;
+    for (const int face : at(a).faces) {
+      if (at(b).holds[static_cast<std::size_t>(face)] != 0) common.push_back(face);
+    }
+    return common.size() == at(a).faces.size() ? at(a).moments : moments_of_faces(mesh_, common, origin_);
+  });
 }
 
 std::vector<int> RegionShapes::common_faces(int a, int b) const {

@@ -149,6 +149,7 @@ class RegionShapes {
   std::vector<Shape> shapes_;
   mutable std::map<std::pair<int, int>, bool> ends_at_;
   mutable Answers<double> arrived_, distances_;
+  mutable Answers<PieceMoments> common_moments_;
   mutable Answers<std::vector<int>> image_faces_;
   mutable std::size_t work_ = 0;
 };
