@@ -20,13 +20,29 @@ using Eigen::Vector3d;
 ClaimQuotient::ClaimQuotient(const PreparedMesh& prepared, const std::vector<SymmetryClaim>& claims,
                              const ClaimAtoms& atoms, double tolerance, const RunContext& context)
     : prepared_(prepared), claims_(claims), atoms_(atoms), tolerance_(tolerance), context_(context) {
+  std::vector<double> areas(atoms.count(), 0);  // of the atoms
+  std::vector<double> named(claims.size(), 0);
+  for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
+    if (!atoms.faces(atom).empty()) areas[atom] = area_of(prepared, atoms.faces(atom));
+    for (std::size_t claim = 0; claim < claims.size(); ++claim) {
+      if (atoms.piece(claim, static_cast<int>(atom)) >= 0) named[claim] += areas[atom];
+    }
+  }
+  // Where borders that are drawn face by face differ: of next to nothing of each claim that names it.
+  const auto is_sliver = [&](std::size_t atom) {
+    for (std::size_t claim = 0; claim < claims.size(); ++claim) {
+      if (atoms.piece(claim, static_cast<int>(atom)) < 0) continue;
+      if (areas[atom] > kEvidencePolicy.sliver * named[claim]) return false;
+    }
+    return true;
+  };
   Random random(context.seed, "quotient");
   for (std::size_t atom = 0; atom < atoms.count(); ++atom) {
-    if (atoms.faces(atom).empty()) continue;
-    const double area = area_of(prepared, atoms.faces(atom));
+    const double area = areas[atom];
     if (!(area > 0)) continue;
-    const int count = std::max(kQuotientResolution.samples_of_atom,
-                               static_cast<int>(std::lround(kQuotientResolution.samples * area / prepared.area)));
+    const int least = is_sliver(atom) ? 1 : kQuotientResolution.samples_of_atom;
+    const int count =
+        std::max(least, static_cast<int>(std::lround(kQuotientResolution.samples * area / prepared.area)));
     const SurfaceSamples samples =
         sample_surface(prepared.mesh, prepared.areas, prepared.normals, count, random, atoms.faces(atom));
     for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {

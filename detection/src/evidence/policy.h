@@ -28,7 +28,7 @@ inline constexpr EvidencePolicy kEvidencePolicy;
 /// How finely the quotient of a surface is measured.
 struct QuotientResolution {
   int samples = 400;          ///< of the whole surface, about: areas to a few percent
-  int samples_of_atom = 1;    ///< at least, so that no part goes unasked
+  int samples_of_atom = 3;    ///< at least, so that no small part goes unasked; of a sliver one
   std::size_t witnesses = 6;  ///< faces of an atom that are asked where a motion takes it
   int circle = 36;            ///< images about an axis that stand for a circle: divisible by the usual orders
   std::size_t orbit = 400;    ///< points at most: groups that do not close
