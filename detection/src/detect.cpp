@@ -458,7 +458,7 @@ std::optional<CoarseMesh> proxy_mesh_of(const PreparedMesh& fine, double noise, 
 SymmetryAnnotation listed(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation annotation,
                           const DetectOptions& options, const RunContext& context) {
   annotation = options.all
-                   ? kept_consistent(mesh, annotation, options.explanation, context)
+                   ? kept_consistent(prepared, mesh, annotation, options.explanation, context)
                    : kept_without_what_follows(prepared, mesh, std::move(annotation), options.explanation, context);
   const std::vector<std::vector<std::size_t>> families =
       list_by_importance(prepared, annotation, options.all, options.explanation, context);

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "orbifit/model/consistent_annotation.h"
 
+#include "consistency/group_place.h"
 #include "evidence/importance.h"
+#include "support/found_region.h"
+#include "support/trimmed_regions.h"
 
 namespace orbifit {
 
@@ -60,6 +64,43 @@ SymmetryAnnotation sorted(const Mesh& mesh, SymmetryAnnotation annotation, std::
   return annotation;
 }
 
+// Consistency moves groups, and takes faces away whose images then have none: these go as well, as far as
+// trim_regions() goes. All regions that it changed are measured anew. \return whether faces went
+bool trim_changed(const PreparedMesh& prepared, const SymmetryAnnotation& found, SymmetryAnnotation& kept,
+                  Explanation* explanation, const RunContext& context) {
+  const auto as_it_was = [&](const Region& region) {
+    return std::ranges::any_of(found.regions, [&](const Region& before) {
+      return before.group == region.group && before.residual.max == region.residual.max && before.faces == region.faces;
+    });
+  };
+  const SymmetryAnnotation local = transformed(kept, inverse(prepared.input_of_normalised));
+  bool any = false;
+  for (std::size_t i = 0; i < kept.regions.size(); ++i) {
+    const std::optional<GroupPlace> place = place_of(local.regions[i]);
+    if (!place || as_it_was(kept.regions[i])) continue;
+    std::vector<FoundRegion> changed{
+        {{place->group, place->frame, place->centre}, kept.regions[i].faces, 0, kept.regions[i].name}};
+    trim_regions(prepared, kept.tolerance, context, changed, explanation);
+    any = any || changed.front().faces.size() < kept.regions[i].faces.size();
+    kept.regions[i].faces = std::move(changed.front().faces);
+    // Without one faces went, and another pass measures what is left.
+    if (changed.front().residual) kept.regions[i].residual = *changed.front().residual;
+  }
+  return any;
+}
+
+// Trimmed and measured where consistency changed it. \param gone  how many were left out before
+SymmetryAnnotation finished(const PreparedMesh& prepared, const Mesh& mesh, const SymmetryAnnotation& found,
+                            ConsistentAnnotation kept, std::size_t gone, Explanation* explanation,
+                            const RunContext& context) {
+  while (trim_changed(prepared, found, kept.annotation, explanation, context)) {
+    kept = consistent_annotation(mesh, kept.annotation, context);
+    note_left_out(kept.left_out, explanation);
+    gone += kept.left_out.size();
+  }
+  return sorted(mesh, std::move(kept.annotation), gone, context);
+}
+
 }  // namespace
 
 SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
@@ -67,6 +108,14 @@ SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& f
   ConsistentAnnotation kept = consistent_annotation(mesh, found, context);
   note_left_out(kept.left_out, explanation);
   return sorted(mesh, std::move(kept.annotation), kept.left_out.size(), context);
+}
+
+SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mesh, const SymmetryAnnotation& found,
+                                   Explanation* explanation, const RunContext& context) {
+  ConsistentAnnotation kept = consistent_annotation(mesh, found, context);
+  note_left_out(kept.left_out, explanation);
+  const std::size_t gone = kept.left_out.size();
+  return finished(prepared, mesh, found, std::move(kept), gone, explanation, context);
 }
 
 SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
@@ -79,7 +128,9 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
     gone += kept.left_out.size();
     for (SymmetryAnnotation* annotation : {&found, &listed}) take_out(*annotation, kept.left_out);
     SymmetryAnnotation again = kept.left_out.empty() ? listed : without_what_follows(prepared, found, context);
-    if (same_claims(again, listed)) return sorted(mesh, std::move(kept.annotation), gone, context);
+    if (same_claims(again, listed)) {
+      return finished(prepared, mesh, found, std::move(kept), gone, explanation, context);
+    }
     listed = std::move(again);  // what was left out had implied something
   }
 }

@@ -14,6 +14,12 @@ namespace orbifit {
 SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
                                    const RunContext& context);
 
+/// The same, of what was found on `mesh`, of which `prepared` is made: where that moved a region, or took faces from
+/// it, faces that an element takes farther than the tolerance from those that are left go too (trim_regions()), and its
+/// residual is measured anew.
+SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mesh, const SymmetryAnnotation& found,
+                                   Explanation* explanation, const RunContext& context);
+
 /// As above, of what was found without what follows from the rest (without_what_follows()), so that this stands in
 /// nothing's way: what follows from something that cannot be kept comes back.
 /// \param found  in the frame of `mesh`, of which `prepared` is made

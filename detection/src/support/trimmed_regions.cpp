@@ -159,15 +159,15 @@ void trim_regions(const PreparedMesh& prepared, double tolerance, const RunConte
   for (FoundRegion& region : regions) {
     if (late && late()) break;
     const GroupPlacement& placement = region.placement;
-    if (placement.group.continuous() &&
-        largest_sagitta(prepared, placement, region.faces) > kEvidencePolicy.sagitta * tolerance) {
-      continue;
-    }
     if (region.residual && region.residual->max <= tolerance) continue;
     const SurfacePatch patch = make_patch(prepared, region.faces, kResidualSamples, tolerance, context, "residual");
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
     if (!region.residual) region.residual = measure_residual(patch, motions, context);
     if (region.residual->max <= tolerance) continue;
+    if (placement.group.continuous() &&
+        largest_sagitta(prepared, placement, region.faces) > kEvidencePolicy.sagitta * tolerance) {
+      continue;
+    }
     std::optional<std::vector<int>> left =
         Trimmer(prepared, tolerance, motions, context, region.faces).run(patch.samples.faces);
     if (explanation != nullptr) {

@@ -13,6 +13,7 @@ namespace orbifit {
 /// Takes from each region of a finite group the faces that an element takes farther than the tolerance from those that
 /// are left, so that its largest residual is within the tolerance. A region stays as it is where that would take more
 /// than a tenth of its area: it ends within a surface whose faces are too large for the group's images of its border.
+/// What was not measured and stays is measured.
 /// \param tolerance of the detector, a fraction of the diagonal \param late  whether no time is left: regions that were
 /// not looked at then stay as they are; empty: there is
 /// Costs O((B + D) M log F) for B faces at a region's border, D that go, M elements and F faces; nothing but samples
