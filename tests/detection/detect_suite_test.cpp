@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "orbifit/detection/detect.h"
 
+#include "group/verification.h"
+#include "remeshing/remesh.h"
 #include "suite/detection_suite.h"
+#include "surface/surface_patch.h"
 
 namespace orbifit {
 namespace {
@@ -66,6 +70,27 @@ TEST(DetectSuite, PartsComeBeforeWhatEndsWithinThem) {
         found.regions, [&](const Region& region) { return region.group == part.group && region.faces == part.faces; });
     EXPECT_TRUE(is_found) << part.name;
   }
+}
+
+// What was moved or gave up faces so that all can be kept is measured as it is then.
+TEST(DetectSuite, ResidualsAreOfTheFacesAndPlacesThatAreListed) {
+  RunContext context;
+  const Mesh mesh = remesh(suite_model("blower").mesh, {}, context).mesh;
+  const SymmetryAnnotation found = detect(mesh, {}, context);
+  const PreparedMesh prepared = prepare(mesh);
+  const SymmetryAnnotation local = transformed(found, inverse(prepared.input_of_normalised));
+  int measured = 0;
+  for (const Region& region : local.regions) {
+    if (region.group.continuous()) continue;
+    SCOPED_TRACE(region.name);
+    const SurfacePatch patch = make_patch(prepared, region.faces, kResidualSamples, found.tolerance, context, "test");
+    const std::vector<Motion> motions(region.elements.begin() + 1, region.elements.end());
+    const Residual residual = measure_residual(patch, motions, context);
+    EXPECT_LE(residual.max, 1.2 * std::max(region.residual.max, found.tolerance));  // of other samples
+    EXPECT_LE(residual.rms, 1.2 * region.residual.rms + 1e-4);
+    ++measured;
+  }
+  EXPECT_GE(measured, 3);
 }
 
 }  // namespace
