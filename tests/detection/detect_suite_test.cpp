@@ -75,7 +75,7 @@ TEST(DetectSuite, PartsComeBeforeWhatEndsWithinThem) {
 // What was moved or gave up faces so that all can be kept is measured as it is then.
 TEST(DetectSuite, ResidualsAreOfTheFacesAndPlacesThatAreListed) {
   RunContext context;
-  const Mesh mesh = remesh(suite_model("blower").mesh, {}, context).mesh;
+  const Mesh mesh = remesh(suite_model("yard_tool").mesh, {}, context).mesh;
   const SymmetryAnnotation found = detect(mesh, {}, context);
   const PreparedMesh prepared = prepare(mesh);
   const SymmetryAnnotation local = transformed(found, inverse(prepared.input_of_normalised));
