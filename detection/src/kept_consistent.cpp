@@ -9,6 +9,8 @@
 
 #include "orbifit/model/consistent_annotation.h"
 
+#include "consistency/consistency_choice.h"
+#include "consistency/consistency_search.h"
 #include "consistency/group_place.h"
 #include "evidence/importance.h"
 #include "support/found_region.h"
@@ -90,15 +92,15 @@ bool trim_changed(const PreparedMesh& prepared, const SymmetryAnnotation& found,
 }
 
 // Trimmed and measured where consistency changed it. \param gone  how many were left out before
-SymmetryAnnotation finished(const PreparedMesh& prepared, const Mesh& mesh, const SymmetryAnnotation& found,
+SymmetryAnnotation finished(const PreparedMesh& prepared, const ShapeSurface& surface, const SymmetryAnnotation& found,
                             ConsistentAnnotation kept, std::size_t gone, Explanation* explanation,
                             const RunContext& context) {
   while (trim_changed(prepared, found, kept.annotation, explanation, context)) {
-    kept = consistent_annotation(mesh, kept.annotation, context);
+    kept = consistent_annotation(surface, kept.annotation, context);
     note_left_out(kept.left_out, explanation);
     gone += kept.left_out.size();
   }
-  return sorted(mesh, std::move(kept.annotation), gone, context);
+  return sorted(surface.mesh, std::move(kept.annotation), gone, context);
 }
 
 }  // namespace
@@ -112,24 +114,26 @@ SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& f
 
 SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mesh, const SymmetryAnnotation& found,
                                    Explanation* explanation, const RunContext& context) {
-  ConsistentAnnotation kept = consistent_annotation(mesh, found, context);
+  const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
+  ConsistentAnnotation kept = consistent_annotation(surface, found, context);
   note_left_out(kept.left_out, explanation);
   const std::size_t gone = kept.left_out.size();
-  return finished(prepared, mesh, found, std::move(kept), gone, explanation, context);
+  return finished(prepared, surface, found, std::move(kept), gone, explanation, context);
 }
 
 SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
                                              Explanation* explanation, const RunContext& context) {
   number(found);
   SymmetryAnnotation listed = without_what_follows(prepared, found, context);
+  const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
   for (std::size_t gone = 0;;) {
-    ConsistentAnnotation kept = consistent_annotation(mesh, listed, context);
+    ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
     note_left_out(kept.left_out, explanation);
     gone += kept.left_out.size();
     for (SymmetryAnnotation* annotation : {&found, &listed}) take_out(*annotation, kept.left_out);
     SymmetryAnnotation again = kept.left_out.empty() ? listed : without_what_follows(prepared, found, context);
     if (same_claims(again, listed)) {
-      return finished(prepared, mesh, found, std::move(kept), gone, explanation, context);
+      return finished(prepared, surface, found, std::move(kept), gone, explanation, context);
     }
     listed = std::move(again);  // what was left out had implied something
   }

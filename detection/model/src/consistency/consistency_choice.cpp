@@ -20,11 +20,11 @@ using Excluded = std::map<Claim, std::string>;
 
 class Choice {
  public:
-  Choice(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
-      : mesh_(mesh),
+  Choice(const ShapeSurface& surface, const SymmetryAnnotation& annotation, const RunContext& context)
+      : mesh_(surface.mesh),
         annotation_(annotation),
         context_(context),
-        shapes_(ConsistencySearch::shapes_of(mesh, annotation, context)) {}
+        shapes_(ConsistencySearch::shapes_of(surface, annotation)) {}
 
   std::optional<ConsistentAnnotation> run() {
     {
@@ -155,9 +155,9 @@ class Choice {
 
 }  // namespace
 
-std::optional<ConsistentAnnotation> chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
+std::optional<ConsistentAnnotation> chosen_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
                                                       const RunContext& context) {
-  return Choice(mesh, annotation, context).run();
+  return Choice(surface, annotation, context).run();
 }
 
 }  // namespace orbifit

@@ -4,8 +4,9 @@
 
 #include "orbifit/model/annotation.h"
 #include "orbifit/model/consistent_annotation.h"
-#include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+
+#include "consistency/region_shapes.h"
 
 namespace orbifit {
 
@@ -14,8 +15,13 @@ namespace orbifit {
 /// that, a search without the latter is tried, and taken if what it keeps saves more in all.
 /// The whole shape's regions are never given up. Cost: a search for each trial, as far as `ConsistencyPolicy::work`
 /// goes.
+/// \param surface  of the mesh, for the annotation's tolerance (ConsistencySearch::surface_of())
 /// \return nothing where all of them agree as they are
-std::optional<ConsistentAnnotation> chosen_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
+std::optional<ConsistentAnnotation> chosen_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
                                                       const RunContext& context);
+
+/// The public function, for annotations of one mesh and tolerance one after another: what was answered is known.
+ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
+                                           const RunContext& context);
 
 }  // namespace orbifit

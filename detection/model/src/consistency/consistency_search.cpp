@@ -20,9 +20,12 @@ bool stands_at(const Region& region, const GroupPlace& place, const Extent& exte
   });
 }
 
-RegionShapes ConsistencySearch::shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation,
-                                          const RunContext& context) {
-  RegionShapes result(mesh, ConsistencyPolicy{}.reach * annotation.tolerance * diagonal(mesh.vertices), context);
+ShapeSurface ConsistencySearch::surface_of(const Mesh& mesh, double tolerance, const RunContext& context) {
+  return {mesh, ConsistencyPolicy{}.reach * tolerance * diagonal(mesh.vertices), context};
+}
+
+RegionShapes ConsistencySearch::shapes_of(const ShapeSurface& surface, const SymmetryAnnotation& annotation) {
+  RegionShapes result(surface);
   for (const Region& region : annotation.regions) result.add(region.faces);
   for (const Pattern& pattern : annotation.patterns) {
     for (const PatternInstance& instance : pattern.instances) result.add(instance.faces);

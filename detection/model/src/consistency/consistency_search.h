@@ -85,7 +85,9 @@ class ConsistencySearch {
   ConsistencySearch(const ConsistencySearch&) = delete;
   ConsistencySearch& operator=(const ConsistencySearch&) = delete;
 
-  static RegionShapes shapes_of(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+  /// Of a mesh, for annotations of this tolerance (a fraction of the diagonal).
+  static ShapeSurface surface_of(const Mesh& mesh, double tolerance, const RunContext& context);
+  static RegionShapes shapes_of(const ShapeSurface& surface, const SymmetryAnnotation& annotation);
 
   /// Whether all regions and patterns agree as they are, to rounding: nothing is to be done then.
   bool agrees();

@@ -6,6 +6,7 @@
 
 #include "consistency/closed_borders.h"
 #include "consistency/consistency_choice.h"
+#include "consistency/consistency_search.h"
 
 namespace orbifit {
 
@@ -28,6 +29,11 @@ bool is_given(const LeftOut& left_out, const SymmetryAnnotation& annotation) {
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context) {
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
+  return consistent_annotation(ConsistencySearch::surface_of(mesh, annotation.tolerance, context), annotation, context);
+}
+
+ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
+                                           const RunContext& context) {
   ConsistentAnnotation result{annotation, {}, 0, 0};
   const auto take = [&](ConsistentAnnotation chosen) {
     result.annotation = std::move(chosen.annotation);
@@ -42,13 +48,13 @@ ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnot
     }
   };
   bool settled = true;
-  if (std::optional<ConsistentAnnotation> chosen = chosen_annotation(mesh, annotation, context)) {
+  if (std::optional<ConsistentAnnotation> chosen = chosen_annotation(surface, annotation, context)) {
     settled = chosen->left_out.empty() && chosen->added == 0;
     take(std::move(*chosen));
   }
   // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
-  while (close_borders(mesh, result.annotation, context) || !settled) {
-    std::optional<ConsistentAnnotation> again = chosen_annotation(mesh, result.annotation, context);
+  while (close_borders(surface.mesh, result.annotation, context) || !settled) {
+    std::optional<ConsistentAnnotation> again = chosen_annotation(surface, result.annotation, context);
     if (!again) break;  // all agree, and their borders are closed
     settled = again->left_out.empty();
     take(std::move(*again));

@@ -86,47 +86,47 @@ double spread(int number, int base) {
 
 }  // namespace
 
-RegionShapes::RegionShapes(const Mesh& mesh, double near, const RunContext& context)
-    : mesh_(mesh),
-      context_(context),
-      near_(near),
-      diagonal_(diagonal(mesh.vertices)),
-      origin_(bounding_box_centre(mesh.vertices)),
-      point_of_vertex_(numbered_points(mesh)),
-      areas_(face_areas(mesh)),
-      centroids_(face_centroids(mesh)) {}
+ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& running)
+    : mesh(of),
+      context(running),
+      near(reach),
+      diagonal(orbifit::diagonal(of.vertices)),
+      origin(bounding_box_centre(of.vertices)),
+      point_of_vertex(numbered_points(of)),
+      areas(face_areas(of)),
+      centroids(face_centroids(of)) {}
 
 int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();
   Shape shape;
   shape.faces = faces;
   shape.digest.add(std::span<const int>(faces));
-  shape.holds.assign(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  shape.holds.assign(static_cast<std::size_t>(surface_.mesh.faces.rows()), 0);
   Vector3d sum = Vector3d::Zero();
   for (const int face : faces) {
     shape.holds[static_cast<std::size_t>(face)] = 1;
-    shape.area += areas_[face];
-    sum += areas_[face] * centroids_.row(face).transpose();
-    for (const int vertex : mesh_.faces.row(face)) {
-      shape.box.extend(mesh_.vertices.row(vertex).transpose());
-      shape.points.push_back(point_of_vertex_[static_cast<std::size_t>(vertex)]);
+    shape.area += surface_.areas[face];
+    sum += surface_.areas[face] * surface_.centroids.row(face).transpose();
+    for (const int vertex : surface_.mesh.faces.row(face)) {
+      shape.box.extend(surface_.mesh.vertices.row(vertex).transpose());
+      shape.points.push_back(surface_.point_of_vertex[static_cast<std::size_t>(vertex)]);
     }
   }
   std::ranges::sort(shape.points);
   shape.points.erase(std::unique(shape.points.begin(), shape.points.end()), shape.points.end());
   if (faces.empty()) {
-    shape.extent = {Vector3d::Zero(), diagonal_};
+    shape.extent = {Vector3d::Zero(), surface_.diagonal};
   } else {
     shape.extent.centre = shape.area > 0 ? Vector3d(sum / shape.area) : shape.box.center();
     for (const int face : faces) {
-      for (const int vertex : mesh_.faces.row(face)) {
-        const double reach = (mesh_.vertices.row(vertex).transpose() - shape.extent.centre).norm();
+      for (const int vertex : surface_.mesh.faces.row(face)) {
+        const double reach = (surface_.mesh.vertices.row(vertex).transpose() - shape.extent.centre).norm();
         shape.extent.reach = std::max(shape.extent.reach, reach);
       }
     }
-    shape.extent.reach = std::max(shape.extent.reach, 1e-9 * diagonal_);
+    shape.extent.reach = std::max(shape.extent.reach, 1e-9 * surface_.diagonal);
   }
-  shape.moments = moments_of_faces(mesh_, faces, origin_);
+  shape.moments = moments_of_faces(surface_.mesh, faces, surface_.origin);
   sample(shape);
   shapes_.push_back(std::move(shape));
   return count() - 1;
@@ -140,11 +140,14 @@ void RegionShapes::sample(Shape& shape) const {
   std::size_t at = 0;
   for (int k = 0; k < kSamples; ++k) {
     const double due = (k + 0.5) / kSamples * shape.area;
-    while (at + 1 < shape.faces.size() && before + areas_[shape.faces[at]] < due) before += areas_[shape.faces[at++]];
+    while (at + 1 < shape.faces.size() && before + surface_.areas[shape.faces[at]] < due)
+      before += surface_.areas[shape.faces[at++]];
     const int face = shape.faces[at];
     const double root = std::sqrt(spread(k + 1, 2));
     const double side = spread(k + 1, 3);
-    const auto corner = [&](int c) { return Vector3d(mesh_.vertices.row(mesh_.faces(face, c)).transpose()); };
+    const auto corner = [&](int c) {
+      return Vector3d(surface_.mesh.vertices.row(surface_.mesh.faces(face, c)).transpose());
+    };
     shape.samples.row(k) =
         ((1 - root) * corner(0) + root * (1 - side) * corner(1) + root * side * corner(2)).transpose();
     shape.sample_faces.push_back(face);
@@ -153,7 +156,7 @@ void RegionShapes::sample(Shape& shape) const {
 
 const SurfaceIndex& RegionShapes::index(int shape) const {
   const Shape& known = at(shape);
-  if (!known.index) known.index = std::make_unique<SurfaceIndex>(mesh_, known.faces);
+  if (!known.index) known.index = std::make_unique<SurfaceIndex>(surface_.mesh, known.faces);
   return *known.index;
 }
 
@@ -168,20 +171,21 @@ double RegionShapes::common_area(int a, int b) const {
   const Shape& many = first ? at(b) : at(a);
   known = 0;
   for (const int face : few.faces) {
-    if (many.holds[static_cast<std::size_t>(face)] != 0) known += areas_[face];
+    if (many.holds[static_cast<std::size_t>(face)] != 0) known += surface_.areas[face];
   }
   return known;
 }
 
 PieceMoments RegionShapes::common_moments(int a, int b) const {
-  if (at(b).faces.size() == static_cast<std::size_t>(mesh_.faces.rows())) return at(a).moments;
-  return remembered(common_moments_, Digest().add(at(a).digest).add(at(b).digest), [&] {
+  if (at(b).faces.size() == static_cast<std::size_t>(surface_.mesh.faces.rows())) return at(a).moments;
+  return remembered(surface_.common_moments, Digest().add(at(a).digest).add(at(b).digest), [&] {
     work_ += at(a).faces.size();
     std::vector<int> common;
     for (const int face : at(a).faces) {
       if (at(b).holds[static_cast<std::size_t>(face)] != 0) common.push_back(face);
     }
-    return common.size() == at(a).faces.size() ? at(a).moments : moments_of_faces(mesh_, common, origin_);
+    return common.size() == at(a).faces.size() ? at(a).moments
+                                               : moments_of_faces(surface_.mesh, common, surface_.origin);
   });
 }
 
@@ -213,9 +217,9 @@ std::vector<int> RegionShapes::faces_at(int a, int b) const {
   std::vector<int> result;
   for (const int face : at(a).faces) {
     const auto shared = [&](int vertex) {
-      return std::ranges::binary_search(points, point_of_vertex_[static_cast<std::size_t>(vertex)]);
+      return std::ranges::binary_search(points, surface_.point_of_vertex[static_cast<std::size_t>(vertex)]);
     };
-    if (std::ranges::any_of(mesh_.faces.row(face), shared)) result.push_back(face);
+    if (std::ranges::any_of(surface_.mesh.faces.row(face), shared)) result.push_back(face);
   }
   return result;
 }
@@ -233,10 +237,10 @@ bool RegionShapes::ends_at(int inner, int outer) const {
   const bool result = std::ranges::all_of(at(inner).faces, [&](int face) {
     if (border.holds[static_cast<std::size_t>(face)] != 0) return true;
     const auto shared = [&](int vertex) {
-      return std::ranges::binary_search(border.points, point_of_vertex_[static_cast<std::size_t>(vertex)]);
+      return std::ranges::binary_search(border.points, surface_.point_of_vertex[static_cast<std::size_t>(vertex)]);
     };
-    return std::ranges::any_of(mesh_.faces.row(face), shared) ||
-           index(outer).within(centroids_.row(face).transpose(), near_);
+    return std::ranges::any_of(surface_.mesh.faces.row(face), shared) ||
+           index(outer).within(surface_.centroids.row(face).transpose(), surface_.near);
   });
   ends_at_[key] = result;
   return result;
@@ -251,7 +255,7 @@ Digest RegionShapes::question(int from, int domain, const Motion& motion, int to
 }
 
 double RegionShapes::arrived(int from, int domain, const Motion& motion, int to, int arrival) const {
-  return remembered(arrived_, question(from, domain, motion, to, arrival),
+  return remembered(surface_.arrived, question(from, domain, motion, to, arrival),
                     [&] { return share_arrived(from, domain, motion, to, arrival); });
 }
 
@@ -267,7 +271,8 @@ double RegionShapes::share_arrived(int from, int domain, const Motion& motion, i
     for (std::size_t k = 0; k < source.sample_faces.size() && 2 * missed <= taken; ++k) {
       if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
       const Vector3d image = way(source.samples.row(static_cast<Eigen::Index>(k)).transpose());
-      const bool arrived = at(target).box.exteriorDistance(image) <= near_ && index(target).within(image, near_);
+      const bool arrived =
+          at(target).box.exteriorDistance(image) <= surface_.near && index(target).within(image, surface_.near);
       missed += arrived ? 0 : 1;
     }
     return 1 - static_cast<double>(missed) / static_cast<double>(taken);  // or hopeless
@@ -277,15 +282,15 @@ double RegionShapes::share_arrived(int from, int domain, const Motion& motion, i
 }
 
 double RegionShapes::distance(int from, int domain, const Motion& motion, int to, int arrival) const {
-  return remembered(distances_, question(from, domain, motion, to, arrival), [&] {
-    const Motion told{Eigen::Matrix3d::Identity(), -origin_};
+  return remembered(surface_.distances, question(from, domain, motion, to, arrival), [&] {
+    const Motion told{Eigen::Matrix3d::Identity(), -surface_.origin};
     return separation(common_moments(from, domain), told * motion * inverse(told), common_moments(to, arrival),
-                      diagonal_);
+                      surface_.diagonal);
   });
 }
 
 std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
-  return remembered(image_faces_, question(from, domain, motion, arrival, arrival),
+  return remembered(surface_.image_faces, question(from, domain, motion, arrival, arrival),
                     [&] { return faces_brought(from, domain, motion, arrival); });
 }
 
@@ -300,14 +305,16 @@ std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion&
   std::vector<char> asked(faces.size(), 0);
   const auto look = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d origin = back(centroids_.row(faces[i]).transpose());
-      if (source.box.exteriorDistance(origin) > near_ || (part != nullptr && !part->within(origin, near_))) continue;
+      const Vector3d origin = back(surface_.centroids.row(faces[i]).transpose());
+      if (source.box.exteriorDistance(origin) > surface_.near ||
+          (part != nullptr && !part->within(origin, surface_.near)))
+        continue;
       asked[i] = 1;
-      const int nearest = surface.nearest(origin, near_).face;
+      const int nearest = surface.nearest(origin, surface_.near).face;
       brought[i] = nearest >= 0 && source.holds[static_cast<std::size_t>(nearest)] != 0 ? 1 : 0;
     }
   };
-  parallel_for(context_, faces.size(), look, kWorthAThread);
+  parallel_for(surface_.context, faces.size(), look, kWorthAThread);
   work_ += faces.size() / 4 + static_cast<std::size_t>(std::ranges::count(asked, 1));  // to find none costs a quarter
   std::vector<int> result;
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -317,17 +324,18 @@ std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion&
 }
 
 std::vector<int> RegionShapes::without_orbit(int shape, const std::vector<int>& taken, const GroupPlace& place) {
-  std::vector<char> gone(static_cast<std::size_t>(mesh_.faces.rows()), 0);
+  std::vector<char> gone(static_cast<std::size_t>(surface_.mesh.faces.rows()), 0);
   for (const int face : taken) gone[static_cast<std::size_t>(face)] = 1;
   if (place.group.continuous()) {
     // Those as far from the axis, and along it, as one that is taken.
     const Vector3d axis = place.frame.col(2);
     using Cell = std::pair<std::int64_t, std::int64_t>;
     const auto cell_of = [&](int face) {
-      const Vector3d offset = centroids_.row(face).transpose() - place.centre;
-      if (!place.group.has_axis()) return Cell(grid_cell(offset.norm() / near_ + 0.5), 0);
+      const Vector3d offset = surface_.centroids.row(face).transpose() - place.centre;
+      if (!place.group.has_axis()) return Cell(grid_cell(offset.norm() / surface_.near + 0.5), 0);
       const double along = offset.dot(axis);
-      return Cell(grid_cell((offset - along * axis).norm() / near_ + 0.5), grid_cell(along / near_ + 0.5));
+      return Cell(grid_cell((offset - along * axis).norm() / surface_.near + 0.5),
+                  grid_cell(along / surface_.near + 0.5));
     };
     std::set<Cell> cells;
     for (const int face : taken) {
@@ -375,7 +383,8 @@ Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) c
   double count = 0;
   for (const Motion& motion : motions) {
     for (Eigen::Index k = 0; k < at(shape).samples.rows(); ++k) {
-      const double distance = index(shape).nearest(motion(at(shape).samples.row(k).transpose())).distance / diagonal_;
+      const double distance =
+          index(shape).nearest(motion(at(shape).samples.row(k).transpose())).distance / surface_.diagonal;
       result.rms += distance * distance;
       result.max = std::max(result.max, distance);
       ++count;

@@ -22,14 +22,37 @@
 
 namespace orbifit {
 
+/// What is known of a mesh whatever its shapes are (RegionShapes), and what was answered about shapes of the same
+/// faces, with the work that it took then.
+struct ShapeSurface {
+  /// \param of  kept by reference
+  /// \param reach  how far an image may lie from the surface, mesh units
+  /// \param running  its threads are used; kept by reference
+  ShapeSurface(const Mesh& of, double reach, const RunContext& running);
+
+  template <class Answer>
+  using Answers = std::unordered_map<Digest, std::pair<Answer, std::size_t>, Digest::Hash>;
+
+  const Mesh& mesh;
+  const RunContext& context;
+  double near;
+  double diagonal;
+  Eigen::Vector3d origin;            ///< of moments
+  std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
+  Eigen::VectorXd areas;
+  Points centroids;  ///< of faces
+  mutable Answers<double> arrived, distances;
+  mutable Answers<PieceMoments> common_moments;
+  mutable Answers<std::vector<int>> image_faces;
+};
+
 /// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by
 /// less than a fiftieth of the smaller one's area is a sliver: borders drawn face by face overlap by that much by
 /// chance. What was asked once of shapes of the same faces is remembered; it counts as work as it did then.
 class RegionShapes {
  public:
-  /// \param near how far an image may lie from the surface, mesh units
-  /// \param context  its threads are used; kept by reference
-  RegionShapes(const Mesh& mesh, double near, const RunContext& context);
+  /// \param surface  kept by reference
+  explicit RegionShapes(const ShapeSurface& surface) : surface_(surface) {}
 
   /// \return the number of the new shape
   int add(const std::vector<int>& faces);
@@ -50,15 +73,15 @@ class RegionShapes {
   double area(int shape) const { return at(shape).area; }
   double area_of(const std::vector<int>& faces) const {
     double sum = 0;
-    for (const int face : faces) sum += areas_[face];
+    for (const int face : faces) sum += surface_.areas[face];
     return sum;
   }
-  double area_of(int face) const { return areas_[face]; }
+  double area_of(int face) const { return surface_.areas[face]; }
   bool holds(int shape, int face) const { return at(shape).holds[static_cast<std::size_t>(face)] != 0; }
   const Extent& extent(int shape) const { return at(shape).extent; }
-  double near() const { return near_; }
+  double near() const { return surface_.near; }
 
-  double area_of_all() const { return areas_.sum(); }
+  double area_of_all() const { return surface_.areas.sum(); }
 
   /// Area of the faces that both hold; kept, since it is asked for often.
   double common_area(int a, int b) const;
@@ -120,11 +143,8 @@ class RegionShapes {
   double share_arrived(int from, int domain, const Motion& motion, int to, int arrival) const;
   std::vector<int> faces_brought(int from, int domain, const Motion& motion, int arrival) const;
 
-  // What was answered, and the work that it took.
-  template <class Answer>
-  using Answers = std::unordered_map<Digest, std::pair<Answer, std::size_t>, Digest::Hash>;
   template <class Answer, class Ask>
-  const Answer& remembered(Answers<Answer>& answers, const Digest& question, const Ask& ask) const {
+  const Answer& remembered(ShapeSurface::Answers<Answer>& answers, const Digest& question, const Ask& ask) const {
     const auto [entry, is_new] = answers.try_emplace(question);
     auto& [answer, work] = entry->second;
     if (is_new) {
@@ -138,19 +158,9 @@ class RegionShapes {
   }
   void sample(Shape& shape) const;
 
-  const Mesh& mesh_;
-  const RunContext& context_;
-  double near_;
-  double diagonal_;
-  Eigen::Vector3d origin_;  // of the moments
-  std::vector<int> point_of_vertex_;
-  Eigen::VectorXd areas_;
-  Points centroids_;
+  const ShapeSurface& surface_;
   std::vector<Shape> shapes_;
   mutable std::map<std::pair<int, int>, bool> ends_at_;
-  mutable Answers<double> arrived_, distances_;
-  mutable Answers<PieceMoments> common_moments_;
-  mutable Answers<std::vector<int>> image_faces_;
   mutable std::size_t work_ = 0;
 };
 
