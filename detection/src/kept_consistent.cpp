@@ -67,26 +67,30 @@ SymmetryAnnotation sorted(const Mesh& mesh, SymmetryAnnotation annotation, std::
 }
 
 // Consistency moves groups, and takes faces away whose images then have none: these go as well, as far as
-// trim_regions() goes. All regions that it changed are measured anew. \return whether faces went
-bool trim_changed(const PreparedMesh& prepared, const SymmetryAnnotation& found, SymmetryAnnotation& kept,
+// trim_regions() goes. What changed is measured anew. \param measured  regions as they were measured; those that are
+// now are added \return whether faces went
+bool trim_changed(const PreparedMesh& prepared, std::vector<Region>& measured, SymmetryAnnotation& kept,
                   Explanation* explanation, const RunContext& context) {
-  const auto as_it_was = [&](const Region& region) {
-    return std::ranges::any_of(found.regions, [&](const Region& before) {
+  const auto is_measured = [&](const Region& region) {
+    return std::ranges::any_of(measured, [&](const Region& before) {
       return before.group == region.group && before.residual.max == region.residual.max && before.faces == region.faces;
     });
   };
   const SymmetryAnnotation local = transformed(kept, inverse(prepared.input_of_normalised));
   bool any = false;
   for (std::size_t i = 0; i < kept.regions.size(); ++i) {
+    Region& region = kept.regions[i];
     const std::optional<GroupPlace> place = place_of(local.regions[i]);
-    if (!place || as_it_was(kept.regions[i])) continue;
-    std::vector<FoundRegion> changed{
-        {{place->group, place->frame, place->centre}, kept.regions[i].faces, 0, kept.regions[i].name}};
+    if (!place || is_measured(region)) continue;
+    std::vector<FoundRegion> changed{{{place->group, place->frame, place->centre}, region.faces, 0, region.name}};
     trim_regions(prepared, kept.tolerance, context, changed, explanation);
-    any = any || changed.front().faces.size() < kept.regions[i].faces.size();
-    kept.regions[i].faces = std::move(changed.front().faces);
-    // Without one faces went, and another pass measures what is left.
-    if (changed.front().residual) kept.regions[i].residual = *changed.front().residual;
+    if (changed.front().residual) {
+      region.residual = *changed.front().residual;
+      measured.push_back(region);
+    } else {  // without those that go another pass measures it
+      region.faces = std::move(changed.front().faces);
+      any = true;
+    }
   }
   return any;
 }
@@ -95,7 +99,8 @@ bool trim_changed(const PreparedMesh& prepared, const SymmetryAnnotation& found,
 SymmetryAnnotation finished(const PreparedMesh& prepared, const ShapeSurface& surface, const SymmetryAnnotation& found,
                             ConsistentAnnotation kept, std::size_t gone, Explanation* explanation,
                             const RunContext& context) {
-  while (trim_changed(prepared, found, kept.annotation, explanation, context)) {
+  std::vector<Region> measured = found.regions;
+  while (trim_changed(prepared, measured, kept.annotation, explanation, context)) {
     kept = consistent_annotation(surface, kept.annotation, context);
     note_left_out(kept.left_out, explanation);
     gone += kept.left_out.size();
