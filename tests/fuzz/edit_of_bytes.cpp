@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 #include "orbifit/model/annotation_io.h"
 #include "orbifit/model/consistent_annotation.h"
@@ -160,10 +157,7 @@ void damage(ByteSource& bytes, SymmetryAnnotation& annotation) {
 }
 
 SymmetryAnnotation written_and_read(const SymmetryAnnotation& annotation, const Mesh& mesh) {
-  static const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("orbifit-edit-" + std::to_string(::getpid()) + ".json");
-  write_annotation(file, annotation);
-  return read_annotation(file, mesh);
+  return annotation_from_json(to_json(annotation), mesh, "a.json");
 }
 
 std::vector<Handle> handles(ByteSource& bytes, const Mesh& mesh, double size) {
