@@ -290,8 +290,16 @@ double RegionShapes::distance(int from, int domain, const Motion& motion, int to
 }
 
 std::vector<int> RegionShapes::image_faces(int from, int domain, const Motion& motion, int arrival) const {
-  return remembered(surface_.image_faces, question(from, domain, motion, arrival, arrival),
-                    [&] { return faces_brought(from, domain, motion, arrival); });
+  constexpr std::size_t kMost = std::size_t{1} << 24U;  // faces remembered: 64 MB
+  if (surface_.faces_remembered > kMost) {
+    surface_.image_faces.clear();
+    surface_.faces_remembered = 0;
+  }
+  return remembered(surface_.image_faces, question(from, domain, motion, arrival, arrival), [&] {
+    std::vector<int> faces = faces_brought(from, domain, motion, arrival);
+    surface_.faces_remembered += faces.size();
+    return faces;
+  });
 }
 
 std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion& motion, int arrival) const {

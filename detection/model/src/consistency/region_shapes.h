@@ -44,6 +44,7 @@ struct ShapeSurface {
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;
+  mutable std::size_t faces_remembered = 0;  ///< in these
 };
 
 /// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by
@@ -145,16 +146,13 @@ class RegionShapes {
 
   template <class Answer, class Ask>
   const Answer& remembered(ShapeSurface::Answers<Answer>& answers, const Digest& question, const Ask& ask) const {
-    const auto [entry, is_new] = answers.try_emplace(question);
-    auto& [answer, work] = entry->second;
-    if (is_new) {
-      const std::size_t before = work_;
-      answer = ask();
-      work = work_ - before;
-    } else {
-      work_ += work;
+    if (const auto known = answers.find(question); known != answers.end()) {
+      work_ += known->second.second;
+      return known->second.first;
     }
-    return answer;
+    const std::size_t before = work_;
+    Answer answer = ask();
+    return answers.emplace(question, std::pair(std::move(answer), work_ - before)).first->second.first;
   }
   void sample(Shape& shape) const;
 

@@ -1,0 +1,115 @@
+#include "consistency/region_shapes.h"
+
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/digest.h"
+
+namespace orbifit {
+namespace {
+
+constexpr int kColumns = 20;  // of squares of side 1
+constexpr int kRows = 5;
+
+// A strip in the plane z = 0, square by square, of two triangles each, column after column.
+Mesh strip() {
+  Mesh mesh;
+  mesh.vertices.resize((kColumns + 1) * (kRows + 1), 3);
+  for (int x = 0; x <= kColumns; ++x) {
+    for (int y = 0; y <= kRows; ++y) mesh.vertices.row(x * (kRows + 1) + y) << x, y, 0;
+  }
+  mesh.faces.resize(2 * kColumns * kRows, 3);
+  int face = 0;
+  for (int x = 0; x < kColumns; ++x) {
+    for (int y = 0; y < kRows; ++y) {
+      const int corner = x * (kRows + 1) + y;
+      mesh.faces.row(face++) << corner, corner + kRows + 1, corner + kRows + 2;
+      mesh.faces.row(face++) << corner, corner + kRows + 2, corner + 1;
+    }
+  }
+  return mesh;
+}
+
+std::vector<int> columns(int first, int count) {
+  std::vector<int> faces(static_cast<std::size_t>(2 * kRows * count));
+  std::iota(faces.begin(), faces.end(), 2 * kRows * first);
+  return faces;
+}
+
+Motion shift(double along) {
+  return {Eigen::Matrix3d::Identity(), Eigen::Vector3d(along, 0, 0)};
+}
+
+struct Answers {
+  double arrived, distance;
+  std::vector<int> faces;
+  std::size_t work;  // that they took
+
+  friend bool operator==(const Answers&, const Answers&) = default;
+};
+
+Answers answers_of(const RegionShapes& shapes, int from, int to, double along) {
+  const std::size_t before = shapes.work();
+  Answers result{shapes.arrived(from, from, shift(along), to, to), shapes.distance(from, from, shift(along), to, to),
+                 shapes.image_faces(from, from, shift(along), to), 0};
+  result.work = shapes.work() - before;
+  return result;
+}
+
+TEST(RegionShapes, SayWhereAMotionTakesThem) {
+  const Mesh mesh = strip();
+  const RunContext context;
+  const ShapeSurface surface(mesh, 0.01, context);
+  RegionShapes shapes(surface);
+  const int left = shapes.add(columns(0, 8));
+  const int right = shapes.add(columns(10, 8));
+  EXPECT_EQ(shapes.arrived(left, left, shift(10), right, right), 1);
+  EXPECT_LT(shapes.arrived(left, left, shift(3), right, right), 0.5);
+  EXPECT_LT(shapes.distance(left, left, shift(10), right, right), 1e-12);
+  EXPECT_GT(shapes.distance(left, left, shift(9), right, right), 0.01);
+  EXPECT_EQ(shapes.image_faces(left, left, shift(10), right), columns(10, 8));
+  EXPECT_EQ(shapes.image_faces(left, left, shift(4), left), columns(4, 4));
+}
+
+// Answers are known by the faces, not by the number, and cost as much work whether they were known or not.
+TEST(RegionShapes, RememberWhatWasAskedOfTheSameFaces) {
+  const Mesh mesh = strip();
+  const RunContext context;
+  const ShapeSurface surface(mesh, 0.01, context);
+  RegionShapes shapes(surface);
+  const int left = shapes.add(columns(0, 8));
+  int right = shapes.add(columns(10, 8));
+  const Answers first = answers_of(shapes, left, right, 10);
+  EXPECT_GT(first.work, 0U);
+  EXPECT_EQ(answers_of(shapes, left, right, 10), first);
+  shapes.keep(right);
+  right = shapes.add(columns(9, 8));  // others under the same number
+  const Answers others = answers_of(shapes, left, right, 10);
+  EXPECT_NE(others.faces, first.faces);
+  EXPECT_LT(others.arrived, 1);
+  right = shapes.add(columns(10, 8));
+  EXPECT_EQ(answers_of(shapes, left, right, 10), first);
+  const ShapeSurface anew(mesh, 0.01, context);
+  RegionShapes fresh(anew);
+  const int here = fresh.add(columns(0, 8));
+  const int there = fresh.add(columns(10, 8));
+  EXPECT_EQ(answers_of(fresh, here, there, 10), first);
+}
+
+TEST(Digest, TellsOrderLengthAndPlaceApart) {
+  const std::vector<int> numbers{3, 1, 4, 1, 5};
+  const auto of = [](std::vector<int> list) { return Digest().add(std::span<const int>(list)); };
+  EXPECT_EQ(of(numbers), of(numbers));
+  EXPECT_NE(of({3, 1, 4, 1}), of(numbers));
+  EXPECT_NE(of({1, 3, 4, 1, 5}), of(numbers));
+  EXPECT_NE(of({0}), of({}));
+  EXPECT_NE(of({0, 0}), of({0}));
+  EXPECT_NE(Digest().add(of({1})).add(of({2})), Digest().add(of({2})).add(of({1})));
+  EXPECT_NE(Digest().add(0.0), Digest().add(-0.0));
+}
+
+}  // namespace
+}  // namespace orbifit
