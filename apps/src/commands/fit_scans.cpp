@@ -1,11 +1,13 @@
 #include "fit_scans.h"
 
 #include <cstddef>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "orbifit/apps/scan_union.h"
 #include "orbifit/fitting/depth_image.h"
+#include "orbifit/fitting/fit.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/motion.h"
 #include "orbifit/model/scan_io.h"
@@ -101,8 +103,14 @@ std::vector<PointCloud> read_scans(const ScanArguments& arguments, bool one_fram
       context.run.message(file + ": left out " + count_of(scan.dropped, "point") + " that are not finite");
     }
   }
-  if (!one_frame && !arguments.one_frame && cameras.empty()) return scans;
-  return {scan_union(pointers_to(scans))};
+  const std::vector<std::string>& files = arguments.files;
+  if (!one_frame && !arguments.one_frame && cameras.empty()) {
+    for (std::size_t i = 0; i < scans.size(); ++i) check_scan(scans[i], files[i]);
+    return scans;
+  }
+  PointCloud all = scan_union(pointers_to(scans));
+  check_scan(all, files.size() == 1 ? files.front() : "");
+  return {std::move(all)};
 }
 
 PointCloud joined_scans(const std::vector<PointCloud>& scans, const FitResult& result) {

@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "orbifit/fitting/fit.h"
 #include "orbifit/model/errors.h"
 
 #include "base/random.h"
@@ -103,13 +104,19 @@ double median_spacing(const Points& points) {
   return *middle;
 }
 
-PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context) {
-  if (scan.points.rows() < kMinPoints) {
-    throw InputError("", "scan",
-                     "has " + std::to_string(scan.points.rows()) + " usable points; a fit needs at least " +
-                         std::to_string(kMinPoints));
+void check_scan(const PointCloud& scan, const std::string& file) {
+  const std::string where = file.empty() ? "scan" : "";
+  const Eigen::Index count = scan.points.rows();
+  if (count < kMinPoints) {
+    throw InputError(file, where,
+                     "has " + std::to_string(count) + (count == 1 ? " usable point" : " usable points") +
+                         "; a fit needs at least " + std::to_string(kMinPoints));
   }
-  if (!(diagonal(scan.points) > 0)) throw InputError("", "scan", "all its points are at one place");
+  if (!(diagonal(scan.points) > 0)) throw InputError(file, where, "all its points are at one place");
+}
+
+PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context) {
+  check_scan(scan);
   const int most = std::max(kScanPointsRead, options.most_points);
   if (scan.points.rows() > most) return prepare_scan(thinned(scan, most, context.seed), options, context);
   context.progress("scan", 0);

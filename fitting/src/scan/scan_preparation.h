@@ -27,7 +27,7 @@ double median_spacing(const Points& points);
 
 /// Keeps at most `most_points` (the first point of each cell of a grid whose width is searched, or random ones) less
 /// the strays among them, with normals from the file or from a plane through the nearest points of the whole scan,
-/// turned towards the viewpoint where one is known. \throw InputError when fewer than 10 points are given
+/// turned towards the viewpoint where one is known. \throw InputError as check_scan()
 PreparedScan prepare_scan(const PointCloud& scan, const ScanPreparationOptions& options, const RunContext& context);
 
 }  // namespace orbifit

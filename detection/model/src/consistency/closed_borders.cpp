@@ -20,10 +20,8 @@ namespace {
 
 // Places of which one is to give up its faces around a vertex; of one alone, both are the same.
 struct Conflict {
-  int vertex;
+  int vertex, image;  // by the motion of the place that makes it
   int place, other;
-
-  bool names(int either) const { return place == either || other == either; }
 };
 
 class BorderCheck {
@@ -50,11 +48,11 @@ class BorderCheck {
  private:
   int set_of(int vertex) const { return sets_[static_cast<std::size_t>(vertex)]; }
 
-  // The sets of the points that a place has at a position.
-  std::set<int> sets_at(const Eigen::Vector3d& position, int place) const {
-    std::set<int> result;
+  // The sets of the points that a place has at a position, with a vertex of each.
+  std::map<int, int> sets_at(const Eigen::Vector3d& position, int place) const {
+    std::map<int, int> result;
     grid_.visit(position, [&](int vertex) {
-      if (domains_.holds(set_of(vertex), place)) result.insert(set_of(vertex));
+      if (domains_.holds(set_of(vertex), place)) result.try_emplace(set_of(vertex), vertex);
     });
     return result;
   }
@@ -63,21 +61,24 @@ class BorderCheck {
     const Eigen::Vector3d position = mesh_.vertices.row(vertex).transpose();
     const int carried = domains_.carried_set(set_of(vertex), place, element);
     const int arrival = domains_.arrival(place, element);
-    const std::set<int> there = sets_at(domains_.elements(place)[static_cast<std::size_t>(element)](position), arrival);
+    const std::map<int, int> there =
+        sets_at(domains_.elements(place)[static_cast<std::size_t>(element)](position), arrival);
     if (there.size() != 1 || there.contains(carried)) return;  // of several, which is meant is not known
-    const int only = *there.begin();
+    const auto [only, image] = *there.begin();
     if (domains_.contains(only, carried)) {
       // Of parts that touch, the place has another here, whose image that is.
-      const bool others = std::ranges::any_of(sets_at(position, place), [&](int other) {
-        return other != set_of(vertex) && domains_.carried_set(other, place, element) == only;
+      const bool others = std::ranges::any_of(sets_at(position, place), [&](const auto& other) {
+        return other.first != set_of(vertex) &&
+               domains_.carried_set(other.first, place, element) == there.begin()->first;
       });
-      if (others) result_.push_back({vertex, place, place});
+      if (others) result_.push_back({vertex, image, place, place});
       return;
     }
     for (const int other : domains_.set_places(set_of(vertex))) {
       const std::vector<int> images = domains_.images_of(other, place, element);
-      if (std::ranges::all_of(images, [&](int image) { return domains_.holds(only, image); })) continue;
-      result_.push_back({vertex, place, other});
+      const int set = there.begin()->first;
+      if (std::ranges::all_of(images, [&](int each) { return domains_.holds(set, each); })) continue;
+      result_.push_back({vertex, image, place, other});
     }
   }
 
@@ -144,10 +145,16 @@ bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunCo
       std::vector<int> rest;
       std::ranges::set_difference(losing, loss->faces, std::back_inserter(rest));
       losing = std::move(rest);
-      std::erase_if(conflicts, [&](const Conflict& conflict) { return conflict.names(loss->place); });
+      // Whether others are still in conflict there, another look will tell.
+      const std::vector<int> around = vertices_of_faces(mesh, loss->faces);
+      std::erase_if(conflicts, [&](const Conflict& conflict) {
+        return conflict.place == loss->place || conflict.other == loss->place ||
+               std::ranges::binary_search(around, conflict.vertex) ||
+               std::ranges::binary_search(around, conflict.image);
+      });
     }
     if (!taken) return any;
-    any = true;  // what is left of the conflicts, and new ones, show once more
+    any = true;
   }
 }
 

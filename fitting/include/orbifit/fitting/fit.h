@@ -169,6 +169,10 @@ struct FitInput {
   }
 };
 
+/// Whether a scan can be fitted to at all, as fit() asks of each. \param file  its name, for the message
+/// \throw InputError where it has fewer than 10 points, or all of them at one place
+void check_scan(const PointCloud& scan, const std::string& file = "");
+
 /// Deforms a template to a scan within its symmetric subspace (docs/method.md 7): alternates correspondences and
 /// a co-rotated solve in which the pose takes part, from stiff to soft.
 /// The result's `converged` says whether it explains the scan; a fit that does not is still returned.
