@@ -59,13 +59,19 @@ Answers answers_of(const RegionShapes& shapes, int from, int to, double along) {
   return result;
 }
 
+// Two pieces of the strip, of which the one is the other shifted by 10.
+struct Pieces {
+  Mesh mesh = strip();
+  RunContext context;
+  ShapeSurface surface{mesh, 0.01, context};
+  RegionShapes shapes{surface};
+  int left = shapes.add(columns(0, 8));
+  int right = shapes.add(columns(10, 8));
+};
+
 TEST(RegionShapes, SayWhereAMotionTakesThem) {
-  const Mesh mesh = strip();
-  const RunContext context;
-  const ShapeSurface surface(mesh, 0.01, context);
-  RegionShapes shapes(surface);
-  const int left = shapes.add(columns(0, 8));
-  const int right = shapes.add(columns(10, 8));
+  Pieces pieces;
+  auto& [mesh, context, surface, shapes, left, right] = pieces;
   EXPECT_EQ(shapes.arrived(left, left, shift(10), right, right), 1);
   EXPECT_LT(shapes.arrived(left, left, shift(3), right, right), 0.5);
   EXPECT_LT(shapes.distance(left, left, shift(10), right, right), 1e-12);
@@ -76,12 +82,8 @@ TEST(RegionShapes, SayWhereAMotionTakesThem) {
 
 // Answers are known by the faces, not by the number, and cost as much work whether they were known or not.
 TEST(RegionShapes, RememberWhatWasAskedOfTheSameFaces) {
-  const Mesh mesh = strip();
-  const RunContext context;
-  const ShapeSurface surface(mesh, 0.01, context);
-  RegionShapes shapes(surface);
-  const int left = shapes.add(columns(0, 8));
-  int right = shapes.add(columns(10, 8));
+  Pieces pieces;
+  auto& [mesh, context, surface, shapes, left, right] = pieces;
   const Answers first = answers_of(shapes, left, right, 10);
   EXPECT_GT(first.work, 0U);
   EXPECT_EQ(answers_of(shapes, left, right, 10), first);
@@ -92,11 +94,8 @@ TEST(RegionShapes, RememberWhatWasAskedOfTheSameFaces) {
   EXPECT_LT(others.arrived, 1);
   right = shapes.add(columns(10, 8));
   EXPECT_EQ(answers_of(shapes, left, right, 10), first);
-  const ShapeSurface anew(mesh, 0.01, context);
-  RegionShapes fresh(anew);
-  const int here = fresh.add(columns(0, 8));
-  const int there = fresh.add(columns(10, 8));
-  EXPECT_EQ(answers_of(fresh, here, there, 10), first);
+  const Pieces fresh;
+  EXPECT_EQ(answers_of(fresh.shapes, fresh.left, fresh.right, 10), first);
 }
 
 TEST(Digest, TellsOrderLengthAndPlaceApart) {

@@ -64,20 +64,19 @@ class BorderCheck {
     const std::map<int, int> there =
         sets_at(domains_.elements(place)[static_cast<std::size_t>(element)](position), arrival);
     if (there.size() != 1 || there.contains(carried)) return;  // of several, which is meant is not known
-    const auto [only, image] = *there.begin();
+    const int only = there.begin()->first;
+    const int image = there.begin()->second;
     if (domains_.contains(only, carried)) {
       // Of parts that touch, the place has another here, whose image that is.
       const bool others = std::ranges::any_of(sets_at(position, place), [&](const auto& other) {
-        return other.first != set_of(vertex) &&
-               domains_.carried_set(other.first, place, element) == there.begin()->first;
+        return other.first != set_of(vertex) && domains_.carried_set(other.first, place, element) == only;
       });
       if (others) result_.push_back({vertex, image, place, place});
       return;
     }
     for (const int other : domains_.set_places(set_of(vertex))) {
       const std::vector<int> images = domains_.images_of(other, place, element);
-      const int set = there.begin()->first;
-      if (std::ranges::all_of(images, [&](int each) { return domains_.holds(set, each); })) continue;
+      if (std::ranges::all_of(images, [&](int each) { return domains_.holds(only, each); })) continue;
       result_.push_back({vertex, image, place, other});
     }
   }
