@@ -36,15 +36,15 @@ class Program {
   /// Interrupts the program as soon as it has installed its handler.
   ProgramResult run_and_interrupt(const std::vector<std::string>& arguments) const {
     const pid_t child = start(arguments);
-    while (!catches_interrupts(child)) std::this_thread::yield();
+    while (!catches(child, SIGINT)) std::this_thread::yield();
     ::kill(child, SIGINT);
     return finish(child);
   }
 
-  /// Sends a signal once the program has caught signals and used so much processor time, if it has not ended by then.
+  /// Sends a signal once the program catches it and has used so much processor time, if it has not ended by then.
   ProgramResult run_and_signal(const std::string& line, int signal, double seconds_used) const {
     const pid_t child = start(words(line));
-    while (!catches_interrupts(child) || (!ended(child) && processor_time(child) < seconds_used)) {
+    while (!catches(child, signal) || (!ended(child) && processor_time(child) < seconds_used)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     ::kill(child, signal);
@@ -68,12 +68,12 @@ class Program {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  static bool catches_interrupts(pid_t child) {
+  static bool catches(pid_t child, int signal) {
     const std::string status = content("/proc/" + std::to_string(child) + "/status");
     const std::size_t at = status.find("SigCgt:");
     // A zombie has no such line's bits left: stop waiting.
     if (at == std::string::npos || status.find("State:\tZ") != std::string::npos) return true;
-    return (std::stoull(status.substr(at + 7), nullptr, 16) & (1ULL << (SIGINT - 1))) != 0;
+    return (std::stoull(status.substr(at + 7), nullptr, 16) & (1ULL << (signal - 1))) != 0;
   }
 
   static bool ended(pid_t child) {
