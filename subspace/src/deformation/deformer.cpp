@@ -10,6 +10,7 @@
 #include "orbifit/model/errors.h"
 
 #include "basis/subspace_parts.h"
+#include "deformation/bounded_edit.h"
 #include "deformation/contact_energy.h"
 #include "deformation/deformation_energy.h"
 #include "deformation/handle_rows.h"
@@ -38,6 +39,12 @@ SparseMatrix lower(const SparseMatrix& symmetric) {
   return symmetric.triangularView<Eigen::Lower>();
 }
 
+SparseMatrix held(Eigen::Index freedom, double weight) {
+  return SparseMatrix(Eigen::VectorXd::Constant(freedom, weight).asDiagonal());
+}
+
+constexpr const char* kNotFactorised = "the handles' system could not be factorised";
+
 }  // namespace
 
 struct Deformer::Implementation {
@@ -50,6 +57,7 @@ struct Deformer::Implementation {
   double of_contacts = 0;  // mean of the diagonal that is the contacts'
   HandleRows handles;
   double alpha = 0;
+  SparseMatrix system;  // equation (4), left: lower half
   SymmetricFactor factor;
   std::optional<MovingSolve> moving;
   RunContext context;
@@ -78,6 +86,7 @@ struct Deformer::Implementation {
 
   Deformation solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start,
                     const RunContext& asked) const;
+  Eigen::VectorXd held_back(double weight, Eigen::VectorXd side) const;
 };
 
 Deformer::Deformer(const Subspace& subspace, const Mesh& mesh, const DeformerOptions& options,
@@ -101,13 +110,9 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   if (const double most = kMaxHandleWeight * energy; most > 0) {
     own.alpha = std::min(own.alpha, most / pulled.diagonal().sum());
   }
-  // Equation (4), left.
-  SparseMatrix system = own.stiffness + own.alpha * pulled;
-  if (freedom > 0) {
-    const double hold = kHold * (system.diagonal().mean() - own.of_contacts);
-    system += SparseMatrix(Eigen::VectorXd::Constant(freedom, hold).asDiagonal());
-  }
-  if (!own.factor.factorise(system)) throw NoResultError("the handles' system could not be factorised");
+  own.system = own.stiffness + own.alpha * pulled;
+  if (freedom > 0) own.system += held(freedom, kHold * (own.system.diagonal().mean() - own.of_contacts));
+  if (!own.factor.factorise(own.system)) throw NoResultError(kNotFactorised);
 }
 
 Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start,
@@ -124,6 +129,14 @@ Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, 
   return implementation_->solve(motions, iterations, start, asked);
 }
 
+// The solution where every coordinate is held by a weight besides.
+Eigen::VectorXd Deformer::Implementation::held_back(double weight, Eigen::VectorXd side) const {
+  SymmetricFactor firm;
+  if (!firm.factorise(system + held(system.rows(), weight))) throw NoResultError(kNotFactorised);
+  firm.solve(side);
+  return side;
+}
+
 Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, int iterations,
                                             const SubspaceState& start, const RunContext& asked) const {
   const Eigen::Index freedom = subspace.degrees_of_freedom();
@@ -137,13 +150,25 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
   Eigen::VectorXd previous = q;
   Eigen::VectorXd side(freedom);
   const auto turned = [&](int sample) { return quotient.rotation_of(sample, rotations); };
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    asked.check();
-    // Equation (4), right, with the Laplace coordinates turned.
+  // Equation (4), right, with the Laplace coordinates turned.
+  const auto pull_all = [&] {
     quotient.pull(rotations, side);
     side += handle_pull;
     contacts.add_pull(turned, side);
+  };
+  const auto energy_at = [&](const Eigen::VectorXd& at) {
+    return quotient.energy(at, rotations) + alpha * handles.squared_error(at, targets) + contacts.value(at, turned);
+  };
+  const BoundedEdit bound(subspace->diagonal, targets);
+  const SparseMatrix& columns = subspace->basis.columns;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    asked.check();
+    pull_all();
     factor.solve(side);
+    if (bound.exceeded(columns, side)) {
+      pull_all();
+      side = held_back(bound.weight(columns, energy_at(Eigen::VectorXd::Zero(freedom))), std::move(side));
+    }
     previous.swap(q);
     q.swap(side);
     if (iteration + 1 < iterations) quotient.rotate(q, rotations);
@@ -153,7 +178,7 @@ Deformation Deformer::Implementation::solve(const std::vector<Motion>& motions, 
   }
   const double squares = handles.squared_error(q, targets);
   result.handle_error = std::sqrt(squares / handles.total_weight());
-  result.energy = quotient.energy(q, rotations) + alpha * squares + contacts.value(q, turned);
+  result.energy = energy_at(q);
   return result;
 }
 

@@ -70,8 +70,8 @@ class MovingSolve::Run {
   const ConjugatedRegions& regions_;
   const HandleRows& handles_;
   const RunContext& context_;
-  SampleEnergy energy_;
   VectorXd targets_;
+  SampleEnergy energy_;
   Turning still_;     // no way of turning
   double share_ = 1;  // of the turns wanted, that the next iteration tries first
   Stand stand_;
@@ -87,8 +87,8 @@ MovingSolve::Run::Run(const MovingSolve& of, const HandleRows& handles, double a
       regions_(of.regions_),
       handles_(handles),
       context_(context),
-      energy_(corotation_, handles.weights(), alpha),
-      targets_(handles.targets(motions)) {
+      targets_(handles.targets(motions)),
+      energy_(corotation_, handles.weights(), alpha, BoundedEdit(subspace_->diagonal, targets_)) {
   const Eigen::Index coordinates = corotation_.rest.size();
   still_ = {MatrixXd(coordinates, 0), MatrixXd(coordinates, 0), MatrixXd(targets_.size(), 0)};
 }

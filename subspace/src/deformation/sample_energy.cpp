@@ -71,8 +71,9 @@ VectorXd left_over(const Parts& parts, const VectorXd& hold, const VectorXd& z) 
 
 }  // namespace
 
-SampleEnergy::SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha)
-    : laplacian_(thrice(corotation.laplacian)), weights_(3 * static_cast<Eigen::Index>(weights.size())) {
+SampleEnergy::SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha,
+                           const BoundedEdit& bound)
+    : bound_(bound), laplacian_(thrice(corotation.laplacian)), weights_(3 * static_cast<Eigen::Index>(weights.size())) {
   for (Eigen::Index i = 0; i < weights_.size(); ++i) {
     weights_[i] = std::sqrt(alpha * weights[static_cast<std::size_t>(i / 3)]);
   }
@@ -105,10 +106,21 @@ SampleEnergy::Solution SampleEnergy::solve(const Terms& terms, const Turning& tu
     hold.tail(turns) = kHoldTurns * (own.tail(turns).array() + own.tail(turns).maxCoeff() + 1e-300).matrix();
   }
   normal.diagonal() += hold;
-  const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
+  const auto solution_of = [&] {
+    const Eigen::LDLT<MatrixXd, Eigen::Lower> factor(normal);
+    const VectorXd z = factor.solve(side);
+    return VectorXd(z + factor.solve(left_over(parts, hold, z)));
+  };
   Solution solution;
-  solution.z = factor.solve(side);
-  solution.z += factor.solve(left_over(parts, hold, solution.z));
+  solution.z = solution_of();
+  if (bound_.exceeded(terms.basis.columns, solution.z.head(rest))) {
+    double energy = 0;
+    for (const Part& part : parts) energy += part.right.squaredNorm();
+    const double weight = bound_.weight(terms.basis.columns, energy);
+    hold.head(rest).array() += weight;
+    normal.diagonal().head(rest).array() += weight;
+    solution.z = solution_of();
+  }
   if (!solution.z.allFinite()) throw NoResultError("the handles' system could not be factorised");
   for (const Part& part : parts) {
     solution.energy +=

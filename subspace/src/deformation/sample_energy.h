@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 
 #include "basis/symmetric_basis.h"
+#include "deformation/bounded_edit.h"
 #include "deformation/contact_energy.h"
 #include "deformation/corotation.h"
 
@@ -30,7 +31,8 @@ class SampleEnergy {
   using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
   /// \param weights  W, of the handles' points
-  SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha);
+  SampleEnergy(const Corotation& corotation, const std::vector<double>& weights, double alpha,
+               const BoundedEdit& bound);
 
   struct Solution {
     Eigen::VectorXd z;  ///< the last unknowns are turns, radians
@@ -59,6 +61,7 @@ class SampleEnergy {
     Eigen::VectorXd right;
   };
 
+  BoundedEdit bound_;
   SparseRows laplacian_;     // by coordinates
   Eigen::VectorXd weights_;  // square roots of what the points' coordinates weigh
 };

@@ -46,7 +46,7 @@ class AnnotationReader {
 
   SymmetryAnnotation read(const std::string& text) {
     const Json root = parse_json(file_, text);
-    if (!(diagonal_ > 0)) throw InputError("", "mesh", "has no extent: all its vertices are at one place");
+    if (!(diagonal_ > 0)) json_.refuse("mesh", "has no extent: all its vertices are at one place");
     if (!root.is_object()) json_.refuse("", "must hold a JSON object");
     if (json_.string(root, "format", "") != "symmetry-annotation") {
       json_.refuse("format", "is " + in_quotes(json_.string(root, "format", "")) + ", not 'symmetry-annotation'");
