@@ -625,35 +625,5 @@ TEST(ConsistentAnnotation, ARegionAndAnInstanceThatAreTheSameButForASliverBecome
   expect_exact(model.mesh, result.annotation);
 }
 
-// Two lugs beside a wheel, each of which shares a mirror with it: the wheel's group holds both mirrors, at any angle;
-// but their product goes all around where the angle is no fraction of a turn.
-class MirrorsThroughAWheel : public testing::TestWithParam<double> {};
-
-TEST_P(MirrorsThroughAWheel, AreKeptWhereTheyClose) {
-  const double angle = GetParam();
-  Mesh mesh;
-  const std::vector<int> wheel = append(mesh, turned_part({{0, 0}, {1, 0}, {1, 0.3}, {0, 0.3}}, irregular_angles(40)));
-  const Motion out{Eigen::Matrix3d::Identity(), Vector3d(1.4, 0, 0)};
-  std::vector<Region> regions{make_region(PointGroup::parse("Cinfv").value(), Vector3d::Zero(),
-                                          frame_about(Vector3d::UnitZ()), wheel, "wheel")};
-  for (const double turn : {0.0, angle}) {
-    const Motion about = Motion::rotation(Vector3d::UnitZ(), turn, Vector3d::Zero());
-    std::vector<int> faces = append(mesh, placed(box({0.1, 0.05, 0.2}, 3), about * out));
-    faces.insert(faces.begin(), wheel.begin(), wheel.end());
-    regions.push_back(make_region(PointGroup::parse("Cs").value(), Vector3d::Zero(),
-                                  frame_about(about.linear * Vector3d::UnitY()), faces, "wheel and lug"));
-    regions.back().id = static_cast<int>(regions.size()) - 1;
-  }
-  SymmetryAnnotation annotation = empty_annotation(mesh, 1e-3);
-  annotation.regions = regions;
-  set_parents(annotation.regions);
-  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
-  const bool closes = std::abs(angle - std::numbers::pi / 3) < 1e-9;
-  EXPECT_EQ(result.annotation.regions.size(), closes ? 3U : 2U) << said(result);
-  expect_exact(mesh, result.annotation);
-}
-
-INSTANTIATE_TEST_SUITE_P(Angles, MirrorsThroughAWheel, testing::Values(std::numbers::pi / 3, 0.7, 1.3));
-
 }  // namespace
 }  // namespace orbifit

@@ -188,7 +188,6 @@ class ConsistencySearch {
   std::optional<std::size_t> nearest_image(std::size_t region, int domain, const Motion& motion, int arrival) const;
   std::vector<std::size_t> holding_both(std::size_t a, std::size_t b, bool placed) const;
   bool follows(std::size_t a, std::size_t b, bool placed) const;
-  bool close_within(std::size_t a, std::size_t b, std::size_t holder) const;
   std::vector<Eigen::Vector3d> exact_steps(std::size_t region) const;
   Verdict accept_family(const Family& family);
   void leave_out_region(std::size_t region, const std::string& reason);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "consistency/consistency_search.h"
-#include "consistency/motion_closure.h"
 
 namespace orbifit {
 
@@ -81,18 +80,7 @@ bool ConsistencySearch::follows(std::size_t a, std::size_t b, bool placed) const
   std::erase_if(common, [&](int face) {
     return std::ranges::none_of(holders, [&](std::size_t c) { return shapes_.holds(regions_[c].shape, face); });
   });
-  if (!(all > 0 && shapes_.area_of(common) >= policy_.kept * all)) return false;
-  return !placed || std::ranges::all_of(holders, [&](std::size_t c) { return close_within(a, b, c); });
-}
-
-// Whether the motions of two regions, among those of a third, make a finite group: two mirrors through an axis at any
-// angle are among a continuous one, and would carry a point all around.
-bool ConsistencySearch::close_within(std::size_t a, std::size_t b, std::size_t holder) const {
-  if (!regions_[holder].place->group.continuous()) return true;
-  std::vector<Motion> both = movers(*regions_[a].place);
-  const std::vector<Motion> other = movers(*regions_[b].place);
-  both.insert(both.end(), other.begin(), other.end());
-  return closure(both, extent(holder), 10 * rounding_).size() < kMaxStabilisers;
+  return all > 0 && shapes_.area_of(common) >= policy_.kept * all;
 }
 
 // The image of the family's member `at` is missing: it is added where the surface has it.
