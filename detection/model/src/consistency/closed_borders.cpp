@@ -38,6 +38,7 @@ class BorderCheck {
       if (vertex % 1024 == 0) context_.check();
       const std::vector<int> places = domains_.set_places(set_of(vertex));
       if (places.size() == 1 && domains_.whole(places.front())) continue;
+      for (const auto& [a, b] : unclosed(set_of(vertex))) result_.push_back({vertex, vertex, a, b});
       for (const int place : places) {
         for (int e = 0; e < static_cast<int>(domains_.elements(place).size()); ++e) follow(vertex, place, e);
       }
@@ -47,6 +48,12 @@ class BorderCheck {
 
  private:
   int set_of(int vertex) const { return sets_[static_cast<std::size_t>(vertex)]; }
+
+  const std::vector<std::pair<int, int>>& unclosed(int set) {
+    const auto [known, added] = unclosed_.try_emplace(set);
+    if (added) known->second = domains_.unclosed(set);
+    return known->second;
+  }
 
   // The sets of the points that a place has at a position, with a vertex of each.
   std::map<int, int> sets_at(const Eigen::Vector3d& position, int place) const {
@@ -86,6 +93,7 @@ class BorderCheck {
   const RunContext& context_;
   VertexGrid grid_;
   std::vector<int> sets_;
+  std::map<int, std::vector<std::pair<int, int>>> unclosed_;  // of each set seen
   std::vector<Conflict> result_;
 };
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "consistency/consistency_search.h"
-#include "consistency/motion_closure.h"
+#include "groups/motion_closure.h"
 
 namespace orbifit {
 

@@ -49,10 +49,6 @@ void add_difference(const Motion& a, const Motion& b, const Extent& extent, std:
   rows.insert(rows.end(), moved.data(), moved.data() + 3);
 }
 
-double distance(const Motion& a, const Motion& b, const Extent& extent) {
-  return motion_distance(a, b, extent.centre, extent.reach);
-}
-
 int nearest(const Motion& motion, const std::vector<Motion>& among, const Extent& extent, double& best) {
   int found = -1;
   best = kFar;

@@ -10,6 +10,8 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/point_group.h"
 
+#include "groups/motion_closure.h"
+
 namespace orbifit {
 
 /// Where a group stands: elements are frame * E * frame^T about the centre.
@@ -17,12 +19,6 @@ struct GroupPlace {
   PointGroup group;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   GroupFrame frame = GroupFrame::Identity();
-};
-
-/// The part of space on which motions are compared, mesh units.
-struct Extent {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double reach = 0;  ///< > 0
 };
 
 /// Nothing where the elements form no group of the symbol given.

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "consistency/consistency_search.h"
-#include "consistency/motion_closure.h"
+#include "groups/motion_closure.h"
 
 namespace orbifit {
 

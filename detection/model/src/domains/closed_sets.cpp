@@ -48,6 +48,7 @@ class Check {
       context_.check();
       const int set = queue_[head];
       const std::vector<int> places = domains_.set_places(set);
+      for (const auto& [a, b] : domains_.unclosed(set)) blame(a, b);
       for (const int place : places) {
         for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
           follow(set, places, place, element);

@@ -13,7 +13,6 @@ namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kSamePiece = 0.0125;  // of the diagonal: 2.5 usual tolerances, as consistency's `reach`
 constexpr Eigen::Index kMarks = 32;    // of a place's corners, spread over it, tell it from its twins
-constexpr double kSameGroup = 1e-6;  // radians, and of the diagonal: consistent annotations are a million times better
 
 // Places that have no image yet, and those that are no image.
 struct Unpaired {
@@ -122,86 +121,6 @@ bool DomainMap::around(int outer, int inner) const {
 // As the moments have it.
 Motion DomainMap::told_from_origin(const Motion& motion) const {
   return Motion{Eigen::Matrix3d::Identity(), -origin_} * motion * Motion{Eigen::Matrix3d::Identity(), origin_};
-}
-
-// Whether the motion takes the group of one region, placed, to that of another.
-bool DomainMap::group_goes_to(int from, const Motion& motion, int to) const {
-  const Place& a = at(from);
-  const Place& b = at(to);
-  if (a.motions.size() != b.motions.size() || a.continuum.has_value() != b.continuum.has_value()) return false;
-  if (a.continuum) {
-    if (a.continuum->spherical != b.continuum->spherical) return false;
-    const double off = b.continuum->distance(motion(a.continuum->foot(a.centre)));
-    if (off > kSameGroup * size_) return false;
-    return a.continuum->spherical || b.continuum->axis.cross(motion.linear * a.continuum->axis).norm() < kSameGroup;
-  }
-  return std::ranges::all_of(a.motions, [&](const Motion& element) {
-    const Motion image = conjugate(motion, element);
-    return std::ranges::any_of(b.motions, [&](const Motion& other) {
-      return (other.linear - image.linear).cwiseAbs().maxCoeff() < kSameGroup &&
-             (other(b.centre) - image(b.centre)).norm() < kSameGroup * size_;
-    });
-  });
-}
-
-// Whether each motion of the one region is one of the other's.
-bool DomainMap::group_within(int inner, int outer) const {
-  const Place& a = at(inner);
-  const Place& b = at(outer);
-  if (!b.continuum) {
-    return !a.continuum && std::ranges::all_of(a.motions, [&](const Motion& element) {
-      return std::ranges::any_of(b.motions, [&](const Motion& other) {
-        return (other.linear - element.linear).cwiseAbs().maxCoeff() < kSameGroup &&
-               (other(b.centre) - element(b.centre)).norm() < kSameGroup * size_;
-      });
-    });
-  }
-  const Continuum& turning = *b.continuum;
-  if (a.continuum && !turning.spherical &&
-      (a.continuum->spherical || a.continuum->axis.cross(turning.axis).norm() > kSameGroup)) {
-    return false;
-  }
-  if (a.continuum) {  // its axis, or centre, lies on the other's
-    const Eigen::Vector3d foot = turning.spherical ? a.continuum->foot(turning.centre) : turning.foot(a.centre);
-    const Eigen::Vector3d due = turning.spherical ? turning.centre : a.centre;
-    if ((foot - due).norm() > kSameGroup * size_) return false;
-  }
-  // Of a component: whether it turns space inside out, and the axis over.
-  const auto kind = [&](const Motion& motion) {
-    const double along = turning.spherical ? 1 : (motion.linear * turning.axis).dot(turning.axis);
-    return std::pair(motion.linear.determinant() > 0, along > 0);
-  };
-  return std::ranges::all_of(a.motions, [&](const Motion& element) {
-    const auto [proper, upright] = kind(element);
-    if (!turning.spherical && (element.linear * turning.axis).cross(turning.axis).norm() > kSameGroup) return false;
-    const Eigen::Vector3d moved = element(turning.centre) - turning.centre;
-    if (moved.norm() > kSameGroup * size_) return false;
-    return std::ranges::any_of(b.motions,
-                               [&, p = proper, u = upright](const Motion& m) { return kind(m) == std::pair(p, u); });
-  });
-}
-
-// \param sets  of all faces and vertices
-void DomainMap::find_followers(const std::vector<int>& sets) {
-  std::set<std::pair<int, int>> apart;
-  for (const int set : sets) {
-    const std::vector<int>& places = set_places(set);
-    for (const int a : places) {
-      for (const int b : places) {
-        if (a >= b || b >= count() || around(a, b) || around(b, a) || apart.contains({a, b})) continue;
-        const bool held = std::ranges::any_of(places, [&](int outer) {
-          return outer < count() && outer != a && outer != b && around(a, outer) && around(b, outer) &&
-                 group_within(a, outer) && group_within(b, outer);
-        });
-        if (held) {
-          following_.emplace(a, b);
-        } else {
-          apart.emplace(a, b);
-        }
-      }
-    }
-  }
-  std::erase_if(following_, [&](const auto& pair) { return apart.contains(pair); });
 }
 
 // Where a motion takes the places that meet its own: first to those of which it takes the group to the group, wherever

@@ -115,6 +115,13 @@ class DomainMap {
   /// and the mirror of the rest of a fan, which meet on the round hub.
   bool follows(int a, int b) const { return following_.contains(std::minmax(a, b)); }
 
+  /// Pairs of regions, the lesser first, whose motions take the points of a set that lies in both to ever more places,
+  /// by going by the one's and the other's in turn; rotations of continuous groups do not count. They do not where the
+  /// motions of the one take the other to regions with its group; where all motions of both make a finite group; and
+  /// where another region of the set has a group that holds both. Two mirrors at an angle that no multiple of which
+  /// closes the circle do, but for on a round part between them.
+  std::vector<std::pair<int, int>> unclosed(int set) const;
+
   std::size_t face_count(int place) const { return at(place).faces.size(); }
 
   /// Whether the place holds every face.
@@ -142,6 +149,9 @@ class DomainMap {
   };
   bool group_goes_to(int from, const Motion& motion, int to) const;
   bool group_within(int inner, int outer) const;
+  bool carries_group(int place, int other) const;
+  bool make_a_group(int a, int b) const;
+  bool close(int a, int b) const;
   void find_followers(const std::vector<int>& sets);
   int intern(const std::vector<int>& places) const;
   const PieceMoments& common_moments(int a, int b) const;
@@ -169,6 +179,7 @@ class DomainMap {
   std::vector<std::vector<int>> meeting_;                    // of each place, the places that share faces with it
   std::vector<std::vector<int>> around_;                     // of each place, the places that hold all faces of it
   std::set<std::pair<int, int>> following_;                  // see follows()
+  mutable std::map<std::pair<int, int>, bool> closing_;      // whether the groups of both do, see unclosed()
   std::vector<PieceMoments> moments_;                        // of the faces of each set
   std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
   struct Marks {

@@ -4,13 +4,19 @@
 #include <cstddef>
 #include <vector>
 
-#include "orbifit/model/motion.h"
+#include <Eigen/Core>
 
-#include "consistency/group_place.h"
+#include "orbifit/model/motion.h"
 
 namespace orbifit {
 
-/// Elements at most of the group that keeps a pattern's instance: one that has more does not close.
+/// The part of space on which motions are compared, mesh units.
+struct Extent {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double reach = 0;  ///< > 0
+};
+
+/// Elements at most of a group that motions make: one that has more does not close.
 inline constexpr std::size_t kMaxStabilisers = 120;
 
 /// How far two motions are apart on a shape, mesh units.
