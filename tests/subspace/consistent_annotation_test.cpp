@@ -625,5 +625,65 @@ TEST(ConsistentAnnotation, ARegionAndAnInstanceThatAreTheSameButForASliverBecome
   expect_exact(model.mesh, result.annotation);
 }
 
+// In the y-z plane: |y| <= half, 0 <= z <= 0.3, of cells x cells squares.
+Mesh grid_plate(double half, int cells) {
+  Mesh mesh;
+  mesh.vertices.resize((cells + 1) * (cells + 1), 3);
+  mesh.faces.resize(2 * cells * cells, 3);
+  int face = 0;
+  for (int i = 0; i <= cells; ++i) {
+    for (int j = 0; j <= cells; ++j) {
+      const int here = i * (cells + 1) + j;
+      mesh.vertices.row(here) << 0, half * (2.0 * i / cells - 1), 0.3 * j / cells;
+      if (i == cells || j == cells) continue;
+      mesh.faces.row(face++) << here, here + cells + 1, here + cells + 2;
+      mesh.faces.row(face++) << here, here + cells + 2, here + 1;
+    }
+  }
+  return mesh;
+}
+
+// Parts beside a wheel, each of which shares a mirror with it: the wheel's group holds all mirrors, at any angle. On
+// the wheel alone: where two parts meet beside it, the product of their mirrors goes all around.
+struct BesideAWheel {
+  double angle;  // between the two, radians
+  bool touch;    // in an edge
+};
+
+void PrintTo(const BesideAWheel& parts, std::ostream* to) {
+  *to << parts.angle << (parts.touch ? ", touching" : "");
+}
+
+class MirrorsThroughAWheel : public testing::TestWithParam<BesideAWheel> {};
+
+TEST_P(MirrorsThroughAWheel, AreKeptAtAnyAngle) {
+  const auto [angle, touch] = GetParam();
+  Mesh mesh;
+  const std::vector<int> wheel = append(mesh, turned_part({{0, 0}, {1, 0}, {1, 0.3}, {0, 0.3}}, irregular_angles(40)));
+  std::vector<Region> regions{make_region(PointGroup::parse("Cinfv").value(), Vector3d::Zero(),
+                                          frame_about(Vector3d::UnitZ()), wheel, "wheel")};
+  const double half = touch ? 1.4 * std::tan(angle / 2) : 0.05;
+  const Mesh plate = grid_plate(half, 6);
+  for (const double turn : {0.0, angle}) {
+    const Motion about = Motion::rotation(Vector3d::UnitZ(), turn, Vector3d::Zero());
+    std::vector<int> faces = append(mesh, placed(plate, about * Motion{Eigen::Matrix3d::Identity(), {1.4, 0, 0}}));
+    faces.insert(faces.begin(), wheel.begin(), wheel.end());
+    regions.push_back(make_region(PointGroup::parse("Cs").value(), Vector3d::Zero(),
+                                  frame_about(about.linear * Vector3d::UnitY()), faces, "wheel and plate"));
+    regions.back().id = static_cast<int>(regions.size()) - 1;
+  }
+  SymmetryAnnotation annotation = empty_annotation(mesh, 1e-3);
+  annotation.regions = regions;
+  set_parents(annotation.regions);
+  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+  EXPECT_EQ(result.annotation.regions.size(), 3U) << said(result);
+  expect_exact(mesh, result.annotation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Angles, MirrorsThroughAWheel,
+                         testing::Values(BesideAWheel{std::numbers::pi / 3, false}, BesideAWheel{0.7, false},
+                                         BesideAWheel{1.3, false}, BesideAWheel{std::numbers::pi / 3, true},
+                                         BesideAWheel{0.7, true}, BesideAWheel{1.3, true}));
+
 }  // namespace
 }  // namespace orbifit

@@ -1,9 +1,12 @@
 #include "domains/domain_map.h"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <ostream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -140,6 +143,46 @@ INSTANTIATE_TEST_SUITE_P(
                     Holder{"Cinf", Vector3d::UnitZ(), 3, 4, false}, Holder{"Cinfh", Vector3d::UnitZ(), 3, 4, false},
                     Holder{"Cinfv", Vector3d::UnitX(), 3, 4, false}, Holder{"C5", Vector3d::UnitZ(), 3, 4, false},
                     Holder{"Cinfv", Vector3d::UnitZ(), 3, 3, false}, Holder{"Cinfv", Vector3d::UnitZ(), 3, 5, false}));
+
+// Two regions of all ten faces, and what may lie around some of them.
+struct Meeting {
+  const char *first, *second;
+  double angle;  // from the first one's axis, z, to the second one's, about x
+  const char* holder;
+  bool closes;
+};
+
+void PrintTo(const Meeting& meeting, std::ostream* to) {
+  *to << meeting.first << " and " << meeting.second << " at " << meeting.angle << ", in " << meeting.holder;
+}
+
+class Meetings : public testing::TestWithParam<Meeting> {};
+
+TEST_P(Meetings, CloseOrAreNamed) {
+  const Meeting& meeting = GetParam();
+  const Vector3d axis(0, -std::sin(meeting.angle), std::cos(meeting.angle));
+  SymmetryAnnotation annotation;
+  annotation.regions = {region(meeting.first, Vector3d::UnitZ(), 0, 2 * kBlades),
+                        region(meeting.second, axis, 0, 2 * kBlades), region(meeting.holder, Vector3d::UnitX(), 0, 4)};
+  const DomainMap domains(pinwheels(Matrix3d::Identity()), annotation, {});
+  const std::vector<std::pair<int, int>> none;
+  const std::vector<std::pair<int, int>> both{{0, 1}};
+  EXPECT_EQ(domains.unclosed(domains.set_of_face(9)), meeting.closes ? none : both);
+  const bool round = std::string(meeting.holder) == "Cinfv";  // about x: holds mirrors through it
+  EXPECT_EQ(domains.unclosed(domains.set_of_face(0)), meeting.closes || round ? none : both);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Groups, Meetings,
+    testing::Values(Meeting{"Cs", "Cs", 0.7, "C1", false}, Meeting{"Cs", "Cs", 0.7, "Cinfv", false},
+                    Meeting{"Cs", "Cs", 0.04, "Cinfv", false}, Meeting{"Cs", "Cs", std::numbers::pi / 5, "C1", true},
+                    Meeting{"Cs", "Cs", std::numbers::pi / 2, "C1", true}, Meeting{"C4", "C4", 0.7, "C1", false},
+                    Meeting{"C4", "C4", std::numbers::pi / 2, "C1", true},
+                    Meeting{"C2", "C2", std::numbers::pi / 3, "C1", true},
+                    Meeting{"C3", "C2", std::numbers::pi / 2, "C1", true}, Meeting{"C3", "C2", 1.0, "C1", false},
+                    Meeting{"Dinfh", "Cs", 0.7, "C1", false}, Meeting{"Dinfh", "Cs", std::numbers::pi / 2, "C1", true},
+                    Meeting{"Kh", "Cs", 0.7, "C1", true}, Meeting{"Cinfv", "Dinfh", 0.7, "C1", false},
+                    Meeting{"Cinfv", "Dinfh", 0, "C1", true}));
 
 }  // namespace
 }  // namespace orbifit

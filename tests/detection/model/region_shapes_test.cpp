@@ -80,6 +80,31 @@ TEST(RegionShapes, SayWhereAMotionTakesThem) {
   EXPECT_EQ(shapes.image_faces(left, left, shift(4), left), columns(4, 4));
 }
 
+// Where an image lies on one surface, another one nearby is not the image, though it is near enough when it is alone.
+TEST(RegionShapes, TakeNoneForAnImageBesideTheImageItself) {
+  Mesh mesh = strip();
+  const Eigen::Index count = mesh.vertices.rows();
+  mesh.vertices.conservativeResize(2 * count, 3);
+  mesh.vertices.bottomRows(count) = mesh.vertices.topRows(count).rowwise() + Eigen::RowVector3d(0, 0, 0.005);
+  const int faces = static_cast<int>(mesh.faces.rows());
+  mesh.faces.conservativeResize(2 * faces, 3);
+  mesh.faces.bottomRows(faces) = mesh.faces.topRows(faces).array() + static_cast<int>(count);
+  const RunContext context;
+  const ShapeSurface surface(mesh, 0.01, context);
+  RegionShapes shapes(surface);
+  std::vector<int> every(static_cast<std::size_t>(2 * faces));
+  std::iota(every.begin(), every.end(), 0);
+  const int all = shapes.add(every);
+  const int left = shapes.add(columns(0, 8));
+  const int right = shapes.add(columns(10, 8));
+  std::vector<int> over = columns(10, 8);
+  for (int& face : over) face += faces;
+  const int above = shapes.add(over);
+  EXPECT_EQ(shapes.arrived(left, left, shift(10), above, above), 1);
+  EXPECT_EQ(shapes.arrived(left, all, shift(10), right, all), 1);
+  EXPECT_LT(shapes.arrived(left, all, shift(10), above, all), 0.5);
+}
+
 // Answers are known by the faces, not by the number, and cost as much work whether they were known or not.
 TEST(RegionShapes, RememberWhatWasAskedOfTheSameFaces) {
   Pieces pieces;

@@ -22,10 +22,11 @@ class Closure {
       : mesh_(mesh), given_(given), kept_(kept), context_(context), areas_(face_areas(mesh)) {}
 
   // What motions take to one another goes together: without one, the others would lose their image.
+  // \param named  disagreements() or unclosed_groups()
   // \return whether anything had to go
-  bool leave_out_disagreement() {
+  bool leave_out_one(decltype(disagreements)* named) {
     std::vector<ClaimFamily> families;
-    const Disagreements pairs = disagreements(mesh_, kept_.annotation, context_, &families);
+    const Disagreements pairs = named(mesh_, kept_.annotation, context_, &families);
     std::map<Claim, std::size_t> family_of;
     std::vector<double> savings(families.size(), 0);
     for (std::size_t f = 0; f < families.size(); ++f) {
@@ -137,8 +138,16 @@ class Closure {
 void leave_out_disagreements(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
                              const RunContext& context) {
   Closure closure(mesh, given, kept, context);
-  while (closure.leave_out_disagreement()) {
+  while (closure.leave_out_one(disagreements)) {
   }
+}
+
+bool leave_out_unclosed(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
+                        const RunContext& context) {
+  Closure closure(mesh, given, kept, context);
+  bool any = false;
+  while (closure.leave_out_one(unclosed_groups)) any = true;
+  return any;
 }
 
 }  // namespace orbifit

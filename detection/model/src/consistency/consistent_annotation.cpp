@@ -6,6 +6,7 @@
 
 #include "consistency/closed_borders.h"
 #include "consistency/consistency_choice.h"
+#include "consistency/consistency_closure.h"
 #include "consistency/consistency_search.h"
 
 namespace orbifit {
@@ -53,11 +54,17 @@ ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const Sy
     take(std::move(*chosen));
   }
   // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
-  while (close_borders(surface.mesh, result.annotation, context) || !settled) {
-    std::optional<ConsistentAnnotation> again = chosen_annotation(surface, result.annotation, context);
-    if (!again) break;  // all agree, and their borders are closed
-    settled = again->left_out.empty();
-    take(std::move(*again));
+  // Groups that do not close may do so once borders are given up, which costs less.
+  while (true) {
+    if (close_borders(surface.mesh, result.annotation, context) || !settled) {
+      if (std::optional<ConsistentAnnotation> again = chosen_annotation(surface, result.annotation, context)) {
+        settled = again->left_out.empty();
+        take(std::move(*again));
+        continue;
+      }
+    }
+    if (!leave_out_unclosed(surface.mesh, annotation, result, context)) break;
+    settled = false;
   }
   return result;
 }

@@ -259,8 +259,15 @@ double RegionShapes::arrived(int from, int domain, const Motion& motion, int to,
                     [&] { return share_arrived(from, domain, motion, to, arrival); });
 }
 
+// Of what lies near the target: whether something else is far nearer.
+bool RegionShapes::belongs_elsewhere(const Vector3d& image, int target, int arrival) const {
+  if (target == arrival) return false;
+  const double far_nearer = kFarNearer * index(target).nearest(image, surface_.near).distance;
+  return far_nearer > 1e-12 * surface_.diagonal && index(arrival).within(image, far_nearer);
+}
+
 double RegionShapes::share_arrived(int from, int domain, const Motion& motion, int to, int arrival) const {
-  const auto arriving = [&](int shape, int within, const Motion& way, int target) {
+  const auto arriving = [&](int shape, int within, const Motion& way, int target, int there) {
     const Shape& source = at(shape);
     const std::vector<char>& holds = at(within).holds;
     const auto taken = std::ranges::count_if(source.sample_faces,
@@ -268,17 +275,20 @@ double RegionShapes::share_arrived(int from, int domain, const Motion& motion, i
     if (taken == 0) return 0.0;
     work_ += static_cast<std::size_t>(taken);
     std::ptrdiff_t missed = 0;
+    std::ptrdiff_t elsewhere = 0;
     for (std::size_t k = 0; k < source.sample_faces.size() && 2 * missed <= taken; ++k) {
       if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
       const Vector3d image = way(source.samples.row(static_cast<Eigen::Index>(k)).transpose());
       const bool arrived =
           at(target).box.exteriorDistance(image) <= surface_.near && index(target).within(image, surface_.near);
       missed += arrived ? 0 : 1;
+      elsewhere += arrived && belongs_elsewhere(image, target, there) ? 1 : 0;
     }
+    if (2 * elsewhere > taken - missed) return 0.0;
     return 1 - static_cast<double>(missed) / static_cast<double>(taken);  // or hopeless
   };
-  const double there = arriving(from, domain, motion, to);
-  return there < 0.5 ? there : std::min(there, arriving(to, arrival, inverse(motion), from));
+  const double there = arriving(from, domain, motion, to, arrival);
+  return there < 0.5 ? there : std::min(there, arriving(to, arrival, inverse(motion), from, domain));
 }
 
 double RegionShapes::distance(int from, int domain, const Motion& motion, int to, int arrival) const {

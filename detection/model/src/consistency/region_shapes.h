@@ -66,6 +66,8 @@ class RegionShapes {
   int count() const { return static_cast<int>(shapes_.size()); }
 
   static constexpr double kSliver = 0.02;
+  /// What is at most this share of another distance is far nearer: errors of detection differ by less.
+  static constexpr double kFarNearer = 0.1;
 
   /// Faces and samples looked at so far: what time is measured by where the result must not depend on the machine.
   std::size_t work() const { return work_; }
@@ -101,7 +103,8 @@ class RegionShapes {
   bool same(int a, int b) const { return within(a, b) && within(b, a); }
 
   /// How well `motion` takes the part of `from` within `domain` to the part of `to` within `arrival`: the share of the
-  /// samples that arrive, there or back, whichever are fewer. Where less than a half does, it is not counted on.
+  /// samples that arrive, there or back, whichever are fewer. Where less than a half does, it is not counted on; and
+  /// none where most that arrive lie far nearer to what else there is: that is the image then.
   double arrived(int from, int domain, const Motion& motion, int to, int arrival) const;
 
   /// separation() of these two parts: of several to which a motion leads, the least is the image.
@@ -136,6 +139,7 @@ class RegionShapes {
     mutable std::unique_ptr<SurfaceIndex> index;
     mutable std::vector<double> common;  // with the shapes before it, -1: not known
   };
+  bool belongs_elsewhere(const Eigen::Vector3d& image, int target, int arrival) const;
   const Shape& at(int shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
   const SurfaceIndex& index(int shape) const;
   PieceMoments common_moments(int a, int b) const;

@@ -43,20 +43,22 @@ class Check {
     for (int face = 0; face < mesh.faces.rows(); ++face) reach(domains_.set_of_face(face));
   }
 
-  Disagreements run() {
+  void run() {
     for (std::size_t head = 0; head < queue_.size() && queue_.size() < kMaxSets; ++head) {
       context_.check();
       const int set = queue_[head];
       const std::vector<int> places = domains_.set_places(set);
-      for (const auto& [a, b] : domains_.unclosed(set)) blame(a, b);
+      for (const auto& [a, b] : domains_.unclosed(set)) blame(unclosed_, a, b);
       for (const int place : places) {
         for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
           follow(set, places, place, element);
         }
       }
     }
-    return std::move(result_);
   }
+
+  const Disagreements& disagreements() const { return disagreements_; }
+  const Disagreements& unclosed() const { return unclosed_; }
 
   std::vector<ClaimFamily> families() {
     std::map<int, std::set<Claim>> members;
@@ -85,7 +87,7 @@ class Check {
       // What holds all of it need not come along: of finite groups all elements are tried from wherever they act.
       if (domains_.around(other, place) && domains_.continuum(other) == nullptr) continue;
       const std::vector<int> images = domains_.images_of(other, place, element);
-      if (images.empty()) blame(other, place);
+      if (images.empty()) blame(disagreements_, other, place);
       if (!domains_.around(place, other)) continue;
       for (const int image : images) family_[static_cast<std::size_t>(root(image))] = root(other);
     }
@@ -128,16 +130,16 @@ class Check {
   void expect(int set, int due, int place) {
     if (set == due) return;
     for (const int other : domains_.set_places(set)) {
-      if (!domains_.holds(due, other)) blame(other, place);
+      if (!domains_.holds(due, other)) blame(disagreements_, other, place);
     }
     for (const int other : domains_.set_places(due)) {
-      if (!domains_.holds(set, other)) blame(other, place);
+      if (!domains_.holds(set, other)) blame(disagreements_, other, place);
     }
   }
 
-  void blame(int a, int b) {
+  void blame(Disagreements& pairs, int a, int b) const {
     const auto pair = std::minmax(claims_[static_cast<std::size_t>(a)], claims_[static_cast<std::size_t>(b)]);
-    ++result_[{pair.first, pair.second}];
+    ++pairs[{pair.first, pair.second}];
   }
 
   const SymmetryAnnotation& annotation_;
@@ -148,7 +150,7 @@ class Check {
   std::vector<std::vector<Product>> products_;
   std::set<int> reached_;
   std::vector<int> queue_;
-  Disagreements result_;
+  Disagreements disagreements_, unclosed_;
 };
 
 }  // namespace
@@ -165,9 +167,17 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
 Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                             std::vector<ClaimFamily>* families) {
   Check check(mesh, annotation, context);
-  Disagreements result = check.run();
+  check.run();
   if (families != nullptr) *families = check.families();
-  return result;
+  return check.disagreements();
+}
+
+Disagreements unclosed_groups(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+                              std::vector<ClaimFamily>* families) {
+  Check check(mesh, annotation, context);
+  check.run();
+  if (families != nullptr) *families = check.families();
+  return check.unclosed();
 }
 
 }  // namespace orbifit

@@ -38,4 +38,9 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
 Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                             std::vector<ClaimFamily>* families = nullptr);
 
+/// Pairs of regions whose motions take a face or a vertex, or what the motions take these to, to ever more places
+/// (DomainMap::unclosed()). Sets of places may go to sets of places all the same. As disagreements() else.
+Disagreements unclosed_groups(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+                              std::vector<ClaimFamily>* families = nullptr);
+
 }  // namespace orbifit
