@@ -21,6 +21,7 @@
 
 #include "../commands.h"
 #include "../named_parts.h"
+#include "../of_file.h"
 #include "../picture_options.h"
 #include "../region_colours.h"
 #include "../region_listing.h"
@@ -129,7 +130,7 @@ ExitCode detect_in_points(const DetectArguments& arguments, CommandContext& cont
   Explanation explanation;
   DetectOptions chosen = arguments.options;
   if (!arguments.explain.empty()) chosen.explanation = &explanation;
-  const SymmetryAnnotation found = detect_points(scan, chosen, context.run);
+  const SymmetryAnnotation found = of_file(arguments.mesh, [&] { return detect_points(scan, chosen, context.run); });
   if (!arguments.explain.empty()) write_explanation(arguments.explain, explanation);
   if (!arguments.output.empty()) write_annotation(arguments.output, found);
   print(context, context.json ? point_listing_json(found).dump(2) + "\n" : point_listing(found));
@@ -203,7 +204,7 @@ int run_detect(DetectArguments& arguments, CommandContext& context) {
   std::vector<BrokenByColours> broken;
   chosen.broken_by_colours = &broken;
   if (colours) chosen.colours = &*colours;
-  SymmetryAnnotation found = orbifit::detect(mesh, chosen, run);
+  SymmetryAnnotation found = of_file(arguments.mesh, [&] { return orbifit::detect(mesh, chosen, run); });
   if (!arguments.up.empty()) found.up = to_direction("--up", arguments.up);
   if (times) {
     write_explanation(arguments.explain, explanation);

@@ -15,6 +15,7 @@
 
 #include "../commands.h"
 #include "../editor_page.h"
+#include "../of_file.h"
 #include "../subspace_arguments.h"
 #include "files/file.h"
 
@@ -88,8 +89,10 @@ CommandBody edit(CLI::App& app) {
     check_output(arguments->output, {".html"}, {arguments->annotation, arguments->subspace.radius_field});
     const Mesh mesh = read_mesh(arguments->mesh);
     const SubspaceOptions options = subspace_options(arguments->subspace, mesh, context.run);
-    SymmetryAnnotation annotation = arguments->annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, context.run)
-                                                                  : read_annotation(arguments->annotation, mesh);
+    SymmetryAnnotation annotation =
+        arguments->annotation.empty()
+            ? of_file(arguments->mesh, [&] { return orbifit::detect(mesh, DetectOptions{}, context.run); })
+            : read_annotation(arguments->annotation, mesh);
     annotation = without(arguments->without, std::move(annotation));
     const Subspace subspace = build_consistent(mesh, annotation, options, context.run);
     context.run.progress("page", 0);

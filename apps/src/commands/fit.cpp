@@ -18,6 +18,7 @@
 #include "../commands.h"
 #include "../edit_warnings.h"
 #include "../fit_report.h"
+#include "../of_file.h"
 #include "../picture_options.h"
 #include "../subspace_arguments.h"
 #include "files/file.h"
@@ -144,8 +145,10 @@ void choose_options(const CLI::App& app, FitArguments& arguments) {
 }
 
 SymmetryAnnotation template_annotation(const FitArguments& arguments, const Mesh& mesh, RunContext& run) {
-  SymmetryAnnotation annotation = arguments.annotation.empty() ? orbifit::detect(mesh, DetectOptions{}, run)
-                                                               : read_annotation(arguments.annotation, mesh);
+  SymmetryAnnotation annotation =
+      arguments.annotation.empty()
+          ? of_file(arguments.mesh, [&] { return orbifit::detect(mesh, DetectOptions{}, run); })
+          : read_annotation(arguments.annotation, mesh);
   return arguments.without.empty() ? annotation : without(arguments.without, annotation);
 }
 

@@ -194,6 +194,19 @@ TEST_P(BadThreeMf, IsRefusedWithItsReason) {
 INSTANTIATE_TEST_SUITE_P(All, BadThreeMf, testing::ValuesIn(bad_models()),
                          [](const auto& test) { return test.param.name; });
 
+TEST_F(ThreeMf, OfAnExtensionThatIsRequiredAndUnknownIsRefused) {
+  const std::string model =
+      "<?xml version=\"1.0\"?><model requiredextensions=\"q\" xmlns:q=\"http://q.example\" unit=\"millimeter\" "
+      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\"><mesh>"
+      "<vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/>"
+      "</vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources>"
+      "<build><item objectid=\"1\"/></build></model>";
+  write_three_mf_of(file_, model);
+  expect_refused("requiredextensions: names an extension of 3MF that cannot be read");
+  write_three_mf_of(file_, replaced(model, "requiredextensions=\"q\" ", ""));
+  EXPECT_EQ(read_mesh(file_).faces.rows(), 1);
+}
+
 TEST_F(ThreeMf, OfDamagedBytesIsAMeshOrAnError) {
   furniture().write(file_);
   const std::string whole = read_file(file_);

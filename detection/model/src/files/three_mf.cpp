@@ -29,6 +29,7 @@ ThreeMfContent read_three_mf_content(const std::filesystem::path& file, std::str
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
 #pragma GCC diagnostic ignored "-Wold-style-cast"
+#include <Common/NMR_ErrorConst.h>
 #include <Model/COM/NMR_DLLInterfaces.h>
 #pragma GCC diagnostic pop
 
@@ -157,6 +158,9 @@ class ThreeMfReader {
       content_.warnings.push_back(text([&](LPSTR buffer, ULONG size, ULONG* needed) {
         return NMR::lib3mf_reader_getwarningutf8(reader, w, &code, buffer, size, needed);
       }));
+      if (code == NMR_ERROR_REQUIREDEXTENSIONNOTSUPPORTED) {  // the shape would lack what the extension says
+        refuse("requiredextensions", "names an extension of 3MF that cannot be read");
+      }
     }
   }
 
