@@ -84,6 +84,17 @@ double spread(int number, int base) {
   return result;
 }
 
+// A point of each face, near its centroid: where faces cross one another at their centroids, as mirror images do, which
+// is whose image shows beside them.
+Points points_of_faces(const Mesh& mesh) {
+  Points result(mesh.faces.rows(), 3);
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    const auto corner = [&](int k) { return mesh.vertices.row(mesh.faces(face, k)); };
+    result.row(face) = 0.41 * corner(0) + 0.33 * corner(1) + 0.26 * corner(2);
+  }
+  return result;
+}
+
 }  // namespace
 
 ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& running)
@@ -94,7 +105,8 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       origin(bounding_box_centre(of.vertices)),
       point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
-      centroids(face_centroids(of)) {}
+      centroids(face_centroids(of)),
+      inner_points(points_of_faces(of)) {}
 
 int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();
@@ -323,7 +335,7 @@ std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion&
   std::vector<char> asked(faces.size(), 0);
   const auto look = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d origin = back(surface_.centroids.row(faces[i]).transpose());
+      const Vector3d origin = back(surface_.inner_points.row(faces[i]).transpose());
       if (source.box.exteriorDistance(origin) > surface_.near ||
           (part != nullptr && !part->within(origin, surface_.near)))
         continue;

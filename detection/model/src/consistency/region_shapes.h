@@ -40,7 +40,8 @@ struct ShapeSurface {
   Eigen::Vector3d origin;            ///< of moments
   std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
   Eigen::VectorXd areas;
-  Points centroids;  ///< of faces
+  Points centroids;     ///< of faces
+  Points inner_points;  ///< one of each face, near its centroid
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;
@@ -110,8 +111,8 @@ class RegionShapes {
   /// separation() of these two parts: of several to which a motion leads, the least is the image.
   double distance(int from, int domain, const Motion& motion, int to, int arrival) const;
 
-  /// The faces of `arrival` that `motion` brings from faces of `from`: each whose centroid, taken back, has a face of
-  /// `from` as its nearest of `domain`.
+  /// The faces of `arrival` that `motion` brings from faces of `from`: each of which a point inside, taken back, has a
+  /// face of `from` as its nearest of `domain`.
   std::vector<int> image_faces(int from, int domain, const Motion& motion, int arrival) const;
 
   /// The faces of a shape that the group takes to none of `taken` (ascending): what is left keeps the group where the
