@@ -116,7 +116,7 @@ Line climbed(const Mirrored& mirrored, Line plane, double tolerance) {
 // The planes through an axis that mirror most of what does not turn about it: angles are tried one by one. A handle on
 // a cup has few samples of which two are mirror images, but the axis is known.
 std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const Mirrored& mirrored, const Line& axis,
-                                          double least_share) {
+                                          double least_share, const RunContext& context) {
   constexpr std::size_t kMaxLooks = 400;
   constexpr std::size_t kMaxOfAxis = 4;
   constexpr double kStep = 0.5;     // tolerances, at the farthest
@@ -145,13 +145,15 @@ std::vector<CandidateLine> planes_through(const ScreenedSurface& surface, const 
     return Line{axis.point, frame.col(0) * std::cos(angle) + frame.col(1) * std::sin(angle)};
   };
   std::vector<std::size_t> kept(steps, 0);
-  for (std::size_t step = 0; step < steps; ++step) {
-    const Line plane = plane_at(step);
-    for (std::size_t k = 0; k < looks; ++k) {
-      bool slides = false;
-      if (mirrored.keeps(open[k * open.size() / looks], plane, slides) && !slides) ++kept[step];
+  parallel_for(context, steps, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t step = begin; step < end; ++step) {
+      const Line plane = plane_at(step);
+      for (std::size_t k = 0; k < looks; ++k) {
+        bool slides = false;
+        if (mirrored.keeps(open[k * open.size() / looks], plane, slides) && !slides) ++kept[step];
+      }
     }
-  }
+  });
   std::vector<CandidateLine> result;
   while (steps > 0 && result.size() < kMaxOfAxis) {
     const auto best = static_cast<std::size_t>(std::ranges::max_element(kept) - kept.begin());
@@ -170,37 +172,55 @@ bool same_plane(const Line& a, const Line& b, double tolerance) {
          std::abs((a.point - b.point).dot(b.direction)) < kSamePlace * tolerance;
 }
 
-// Planes midway between pairs of samples that are mirror images, as far as they keep enough of the surface.
+// Planes midway between one of the samples that vote and later ones, where both are mirror images and the first samples
+// do not deny it.
+std::vector<Line> planes_of_voter(const ScreenedSurface& surface, const Mirrored& mirrored,
+                                  const std::vector<Line>& turning, double least_share, Eigen::Index a,
+                                  Eigen::Index voters) {
+  const Eigen::Index count = surface.samples.points.rows();
+  std::vector<Line> result;
+  const Vector3d p = surface.samples.points.row(a * count / voters);
+  const Vector3d m = surface.samples.normals.row(a * count / voters);
+  for (Eigen::Index b = a + 1; b < voters; ++b) {
+    const Vector3d apart = surface.samples.points.row(b * count / voters).transpose() - p;
+    const double distance = apart.norm();
+    if (distance < 10 * surface.tolerance) continue;
+    const Vector3d normal = apart / distance;
+    const double across = normal.dot(m);
+    if (std::abs(across) <= kSlides) continue;
+    const Vector3d other = surface.samples.normals.row(b * count / voters);
+    if ((m - 2 * across * normal - other).squaredNorm() > kNormals * kNormals) continue;
+    const Line plane{p + 0.5 * apart, normal};
+    if (mirrored.holds_ball_of(a * count / voters, plane)) continue;
+    // That a surface turned about an axis is mirrored in planes through it is no news.
+    if (std::ranges::any_of(
+            turning, [&](const Line& axis) { return holds(plane, axis, surface.tolerance) && meets(axis, p, m); })) {
+      continue;
+    }
+    if (mirrored.share(plane, kFirstLook, least_share) > 0) result.push_back(plane);
+  }
+  return result;
+}
+
+// Of all who vote, in their order, those planes that keep enough of the surface.
 std::vector<CandidateLine> voted_planes(const ScreenedSurface& surface, const Mirrored& mirrored,
                                         const std::vector<Line>& turning, double least_share,
                                         const RunContext& context) {
-  const Eigen::Index count = surface.samples.points.rows();
-  const Eigen::Index voters = std::min(kVoters, count);
+  const Eigen::Index voters = std::min(kVoters, surface.samples.points.rows());
+  std::vector<std::vector<Line>> votes(static_cast<std::size_t>(voters));
+  parallel_for(context, votes.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t a = begin; a < end; ++a) {
+      context.check();
+      votes[a] = planes_of_voter(surface, mirrored, turning, least_share, static_cast<Eigen::Index>(a), voters);
+    }
+  });
   std::vector<CandidateLine> found;
-  for (Eigen::Index a = 0; a < voters; ++a) {
+  for (const std::vector<Line>& planes : votes) {
     context.check();
-    const Vector3d p = surface.samples.points.row(a * count / voters);
-    const Vector3d m = surface.samples.normals.row(a * count / voters);
-    for (Eigen::Index b = a + 1; b < voters; ++b) {
-      const Vector3d apart = surface.samples.points.row(b * count / voters).transpose() - p;
-      const double distance = apart.norm();
-      if (distance < 10 * surface.tolerance) continue;
-      const Vector3d normal = apart / distance;
-      const double across = normal.dot(m);
-      if (std::abs(across) <= kSlides) continue;
-      const Vector3d other = surface.samples.normals.row(b * count / voters);
-      if ((m - 2 * across * normal - other).squaredNorm() > kNormals * kNormals) continue;
-      const Line plane{p + 0.5 * apart, normal};
-      if (mirrored.holds_ball_of(a * count / voters, plane)) continue;
-      // That a surface turned about an axis is mirrored in planes through it is no news.
+    for (const Line& plane : planes) {
+      if (found.size() >= kMaxFound) return found;
       if (std::ranges::any_of(
-              turning, [&](const Line& axis) { return holds(plane, axis, surface.tolerance) && meets(axis, p, m); })) {
-        continue;
-      }
-      if (mirrored.share(plane, kFirstLook, least_share) <= 0) continue;
-      if (found.size() >= kMaxFound || std::ranges::any_of(found, [&](const CandidateLine& known) {
-            return same_plane(plane, known.line, surface.tolerance);
-          })) {
+              found, [&](const CandidateLine& known) { return same_plane(plane, known.line, surface.tolerance); })) {
         continue;
       }
       const double share = mirrored.share(plane, kSecondLook, least_share);
@@ -212,13 +232,15 @@ std::vector<CandidateLine> voted_planes(const ScreenedSurface& surface, const Mi
 
 // Those of most weight, moved to where they keep most; by weight.
 std::vector<CandidateLine> climbed_planes(std::vector<CandidateLine> found, const ScreenedSurface& surface,
-                                          const Mirrored& mirrored) {
+                                          const Mirrored& mirrored, const RunContext& context) {
   std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
   if (found.size() > kMaxClimbed) found.resize(kMaxClimbed);
-  for (CandidateLine& plane : found) {
-    plane.line = climbed(mirrored, plane.line, surface.tolerance);
-    plane.weight = mirrored.share(plane.line, kSecondLook, 0) * surface.prepared.area;
-  }
+  parallel_for(context, found.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      found[k].line = climbed(mirrored, found[k].line, surface.tolerance);
+      found[k].weight = mirrored.share(found[k].line, kSecondLook, 0) * surface.prepared.area;
+    }
+  });
   std::ranges::stable_sort(found, std::greater<>(), &CandidateLine::weight);
   return found;
 }
@@ -229,7 +251,7 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
                                          double least_share, const RunContext& context) {
   const Mirrored mirrored(surface);
   const std::vector<CandidateLine> found =
-      climbed_planes(voted_planes(surface, mirrored, turning, least_share, context), surface, mirrored);
+      climbed_planes(voted_planes(surface, mirrored, turning, least_share, context), surface, mirrored, context);
   std::vector<CandidateLine> distinct;
   const auto is_known = [&](const CandidateLine& plane) {
     return std::ranges::any_of(distinct, [&](const CandidateLine& other) {
@@ -238,7 +260,7 @@ std::vector<CandidateLine> mirror_planes(const ScreenedSurface& surface, const s
   };
   for (const Line& axis : turning) {
     context.check();
-    for (const CandidateLine& plane : planes_through(surface, mirrored, axis, least_share)) {
+    for (const CandidateLine& plane : planes_through(surface, mirrored, axis, least_share, context)) {
       if (!is_known(plane)) distinct.push_back(plane);
     }
   }
