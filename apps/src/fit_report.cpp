@@ -197,6 +197,7 @@ nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, cons
           {"inlier_fraction", result.inlier_ratio},
           {"covered", result.visible_coverage},
           {"cut_off", result.cut_off},
+          {"own_size", result.own_size},
           {"open_stretches", open_stretches_json(result)},
           {"confidence", result.confidence},
           {"rms", result.rms},

@@ -56,6 +56,12 @@ TEST_F(Verdict, FallsWithTheConfidence) {
   EXPECT_EQ(verdict().front(), "The fit failed: only 25 % of the scan is explained.");
 }
 
+TEST_F(Verdict, SaysThatTheSizeIsTheTemplatesOwn) {
+  EXPECT_FALSE(tells(verdict(), "own size"));
+  result_.own_size = true;
+  EXPECT_TRUE(tells(verdict(), "The template has kept its own size: the scan asks for no other."));
+}
+
 TEST_F(Verdict, TellsWhatTheScanLeavesOpenOfTheSize) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   result_.open_stretches = {{Eigen::Matrix3d::Identity(), 0, 0.2},

@@ -73,6 +73,7 @@ TEST_P(SimplestFit, TakesNoSensorsErrorForShape) {
   const FitResult result = fitted(template_.mesh);
   ASSERT_TRUE(result.converged) << result.stopped_because;
   EXPECT_EQ(result.pose.scale, 1);
+  EXPECT_TRUE(result.own_size);
   EXPECT_LT(apart(result.fitted, template_.mesh), 0.001);
 }
 
@@ -81,6 +82,7 @@ TEST_P(SimplestFit, FollowsAShapeThatDiffersByMore) {
   const FitResult result = fitted(other);
   ASSERT_TRUE(result.converged) << result.stopped_because;
   EXPECT_LT(apart(result.fitted, other), 0.5 * apart(template_.mesh, other));
+  EXPECT_EQ(result.own_size, result.pose.scale == 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, SimplestFit,

@@ -21,6 +21,7 @@ py::dict figures_of(const FitResult& result) {
   figures["rms"] = result.rms;
   figures["visible_coverage"] = result.visible_coverage;
   figures["cut_off"] = result.cut_off;
+  figures["own_size"] = result.own_size;
   figures["open_stretch"] = result.open_stretch();
   figures["confidence"] = result.confidence;
   figures["landmark_rms"] = result.landmark_rms;

@@ -164,6 +164,7 @@ std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) 
     told.push_back(percent(result.hidden_fraction) +
                    " of the surface was not seen: there symmetry and the template's shape decide.");
   }
+  if (result.own_size) told.push_back("The template has kept its own size: the scan asks for no other.");
   add_open_size(result, told);
   if (result.converged) add_ties(mesh, result, told);
   for (const GroupAgreement& group : result.groups) {
