@@ -1,5 +1,7 @@
 #include "domains/closed_sets.h"
 
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -169,6 +171,32 @@ TEST(Disagreements, AreSettledForAWholeFamily) {
   EXPECT_EQ(kept.left_out[0].id, 3);
   EXPECT_EQ(kept.annotation.regions.size(), 3U);
 }
+
+// Two mirrors of one patch: sets of places go to sets, but points do not come back where no whole number of the angles
+// makes a turn.
+class UnclosedGroups : public testing::TestWithParam<double> {};
+
+TEST_P(UnclosedGroups, AreNamedAndTheLesserLeftOut) {
+  Region first = patch(0, 1, 1, 7, 7);
+  Region second =
+      make_region(first.group, first.centre, frame_about(Vector3d(std::sin(GetParam()), std::cos(GetParam()), 0)),
+                  patch(1, 1, 2, 7, 6).faces, "turned");
+  second.id = 1;
+  SymmetryAnnotation annotation;
+  annotation.regions = {first, second};
+  const bool closes = std::abs(std::remainder(GetParam(), std::numbers::pi / 6)) < 1e-9;
+  const Disagreements found = unclosed_groups(plate(), annotation, RunContext{});
+  if (!closes) expect_only(found, 0, 1);
+  EXPECT_EQ(found.empty(), closes);
+  ConsistentAnnotation kept{annotation, {}, 0, 0};
+  EXPECT_EQ(leave_out_unclosed(plate(), annotation, kept, RunContext{}), !closes);
+  ASSERT_EQ(kept.annotation.regions.size(), closes ? 2U : 1U);
+  EXPECT_EQ(kept.annotation.regions.front().id, 0);
+  EXPECT_EQ(kept.left_out.size(), closes ? 0U : 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Angles, UnclosedGroups,
+                         testing::Values(0.0, std::numbers::pi / 6, std::numbers::pi / 2, 0.04, 0.7));
 
 // What holds everything stays where it is: it is not the image of what holds but one of the copies as well.
 TEST(DomainMap, GivesEachPlaceOneImage) {

@@ -98,9 +98,9 @@ void DomainMap::find_followers(const std::vector<int>& sets) {
 bool DomainMap::carries_group(int place, int other) const {
   for (int element = 0; element < static_cast<int>(elements(place).size()); ++element) {
     const Motion& motion = elements(place)[static_cast<std::size_t>(element)];
-    for (const int image : images_of(other, place, element)) {
-      if (!group_goes_to(other, motion, image)) return false;
-    }
+    const std::vector<int> images = images_of(other, place, element);
+    if (images.empty()) return false;
+    if (!std::ranges::all_of(images, [&](int image) { return group_goes_to(other, motion, image); })) return false;
   }
   return true;
 }
