@@ -9,9 +9,9 @@
 
 #include "orbifit/model/consistent_annotation.h"
 
-#include "consistency/consistency_choice.h"
 #include "consistency/consistency_search.h"
 #include "consistency/group_place.h"
+#include "consistency/surface_consistency.h"
 #include "evidence/importance.h"
 #include "support/found_region.h"
 #include "support/trimmed_regions.h"

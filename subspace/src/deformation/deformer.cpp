@@ -7,8 +7,6 @@
 
 #include <Eigen/SparseCore>
 
-#include "orbifit/model/errors.h"
-
 #include "basis/subspace_parts.h"
 #include "deformation/bounded_edit.h"
 #include "deformation/contact_energy.h"
@@ -17,6 +15,7 @@
 #include "deformation/moving_solve.h"
 #include "deformation/quotient.h"
 #include "deformation/symmetric_factor.h"
+#include "deformation/unsolvable.h"
 
 namespace orbifit {
 
@@ -42,8 +41,6 @@ SparseMatrix lower(const SparseMatrix& symmetric) {
 SparseMatrix held(Eigen::Index freedom, double weight) {
   return SparseMatrix(Eigen::VectorXd::Constant(freedom, weight).asDiagonal());
 }
-
-constexpr const char* kNotFactorised = "the handles' system could not be factorised";
 
 }  // namespace
 
@@ -112,7 +109,7 @@ void Deformer::set_handles(const std::vector<Handle>& handles, double alpha) {
   }
   own.system = own.stiffness + own.alpha * pulled;
   if (freedom > 0) own.system += held(freedom, kHold * (own.system.diagonal().mean() - own.of_contacts));
-  if (!own.factor.factorise(own.system)) throw NoResultError(kNotFactorised);
+  if (!own.factor.factorise(own.system)) refuse_unsolvable();
 }
 
 Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, const SubspaceState& start,
@@ -132,7 +129,7 @@ Deformation Deformer::solve(const std::vector<Motion>& motions, int iterations, 
 // The solution where every coordinate is held by a weight besides.
 Eigen::VectorXd Deformer::Implementation::held_back(double weight, Eigen::VectorXd side) const {
   SymmetricFactor firm;
-  if (!firm.factorise(system + held(system.rows(), weight))) throw NoResultError(kNotFactorised);
+  if (!firm.factorise(system + held(system.rows(), weight))) refuse_unsolvable();
   firm.solve(side);
   return side;
 }

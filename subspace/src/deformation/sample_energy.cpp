@@ -6,9 +6,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "orbifit/model/errors.h"
-
 #include "deformation/precise_sum.h"
+#include "deformation/unsolvable.h"
 
 namespace orbifit {
 
@@ -121,7 +120,7 @@ SampleEnergy::Solution SampleEnergy::solve(const Terms& terms, const Turning& tu
     normal.diagonal().head(rest).array() += weight;
     solution.z = solution_of();
   }
-  if (!solution.z.allFinite()) throw NoResultError("the handles' system could not be factorised");
+  if (!solution.z.allFinite()) refuse_unsolvable();
   for (const Part& part : parts) {
     solution.energy +=
         (part.rows * solution.z.head(rest) + part.turns * solution.z.tail(turns) - part.right).squaredNorm();

@@ -20,8 +20,4 @@ namespace orbifit {
 std::optional<ConsistentAnnotation> chosen_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
                                                       const RunContext& context);
 
-/// The public function, for annotations of one mesh and tolerance one after another: what was answered is known.
-ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
-                                           const RunContext& context);
-
 }  // namespace orbifit

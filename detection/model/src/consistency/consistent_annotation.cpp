@@ -8,6 +8,7 @@
 #include "consistency/consistency_choice.h"
 #include "consistency/consistency_closure.h"
 #include "consistency/consistency_search.h"
+#include "consistency/surface_consistency.h"
 
 namespace orbifit {
 
