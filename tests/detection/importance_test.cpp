@@ -65,6 +65,18 @@ TEST(Importance, IsTheShareOfTheQuotientThatAGroupSaves) {
   }
 }
 
+// Borders are drawn face by face, here four sides too early: the motions of the whole take the legs to one another all the
+// same, and without one of them the rest would lack an image.
+TEST(Importance, WhatMotionsTakeToOneAnotherIsListedTogether) {
+  Table table;
+  table.add_whole();
+  table.add_legs();
+  table.annotation.regions[2].faces.resize(4);
+  const auto families = table.list();
+  ASSERT_EQ(families.size(), 2U);
+  EXPECT_EQ(families[1].size(), 4U);
+}
+
 TEST(Importance, ListsNothingTwiceUnlessAskedFor) {
   for (const bool all : {false, true}) {
     Table table;

@@ -241,12 +241,7 @@ ClaimAtoms::ClaimAtoms(const PreparedMesh& prepared, const std::vector<SymmetryC
 std::vector<std::vector<std::size_t>> families_of(const PreparedMesh& prepared,
                                                   const std::vector<SymmetryClaim>& claims, const ClaimAtoms& atoms,
                                                   double tolerance) {
-  DisjointSets sets = Images(prepared, claims, atoms, tolerance).families();
-  std::map<int, std::vector<std::size_t>> by_root;
-  for (std::size_t i = 0; i < claims.size(); ++i) by_root[sets.root(static_cast<int>(i))].push_back(i);
-  std::vector<std::vector<std::size_t>> families;
-  for (auto& [root, members] : by_root) families.push_back(std::move(members));
-  return families;
+  return Images(prepared, claims, atoms, tolerance).families().sets();
 }
 
 }  // namespace orbifit

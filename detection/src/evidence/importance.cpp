@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "consistency/halvings.h"
+#include "domains/closed_sets.h"
 #include "evidence/claim_quotient.h"
 #include "evidence/claims.h"
 #include "evidence/policy.h"
@@ -64,6 +66,23 @@ struct Weighed {
   ClaimQuotient quotient;
   Families families;
 };
+
+// Joins families of which motions take one to another: of what is consistent, they stand or fall together.
+void join_images(Weighed& weighed, const RunContext& context) {
+  const std::size_t regions = weighed.local.regions.size();
+  DisjointSets joined(weighed.claims.size());
+  const auto unite = [&](std::size_t a, std::size_t b) { joined.unite(static_cast<int>(a), static_cast<int>(b)); };
+  for (const std::vector<std::size_t>& family : weighed.families) {
+    for (const std::size_t claim : family) unite(family.front(), claim);
+  }
+  std::vector<ClaimFamily> images;
+  disagreements(weighed.prepared.mesh, weighed.local, context, &images);
+  const auto number = [&](const Claim& claim) { return claim.pattern ? regions + claim.number : claim.number; };
+  for (const ClaimFamily& family : images) {
+    for (const Claim& claim : family) unite(number(family.front()), number(claim));
+  }
+  weighed.families = joined.sets();
+}
 
 double halvings_of(const SymmetryClaim& claim) {
   return claim.region != nullptr ? halvings(claim.region->group) : halvings(claim.pieces.size());
@@ -170,7 +189,8 @@ std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& pre
                                                          bool all, Explanation* explanation,
                                                          const RunContext& context) {
   context.progress("importance", 0);
-  const Weighed weighed(prepared, annotation, context);
+  Weighed weighed(prepared, annotation, context);
+  join_images(weighed, context);
   Chosen chosen = chosen_families(weighed, context);
   std::vector<Listed> order = greedy_order(weighed.quotient, std::move(chosen.kept), context);
   for (std::vector<std::size_t>& family : chosen.left_out) {

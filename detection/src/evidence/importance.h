@@ -22,7 +22,8 @@ SymmetryAnnotation without_what_follows(const PreparedMesh& prepared, const Symm
 /// Orders regions and patterns by what they save, given those before them, of the quotient's area: the next is always
 /// the one that saves most. `importance` is that saving as a share of the area that was left. Images of one another are
 /// listed one after the other, with the saving of all. What follows from the rest (without_what_follows()) is left out,
-/// or last with importance 0 where all is asked for. Numbers and parents are set.
+/// or last with importance 0 where all is asked for; with it what motions of others take it to (disagreements()), so
+/// that what is listed of a consistent annotation is consistent. Numbers and parents are set.
 /// \return the families of regions listed, by their places in the list
 std::vector<std::vector<std::size_t>> list_by_importance(const PreparedMesh& prepared, SymmetryAnnotation& annotation,
                                                          bool all, Explanation* explanation, const RunContext& context);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace orbifit {
@@ -29,6 +31,15 @@ class DisjointSets {
   }
 
   std::size_t size() const { return parent_.size(); }
+
+  /// The members of each set, ascending, by the sets' roots.
+  std::vector<std::vector<std::size_t>> sets() {
+    std::map<int, std::vector<std::size_t>> by_root;
+    for (std::size_t i = 0; i < size(); ++i) by_root[root(static_cast<int>(i))].push_back(i);
+    std::vector<std::vector<std::size_t>> result;
+    for (auto& [root, members] : by_root) result.push_back(std::move(members));
+    return result;
+  }
 
  private:
   std::vector<int> parent_;
