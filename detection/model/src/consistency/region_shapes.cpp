@@ -84,17 +84,6 @@ double spread(int number, int base) {
   return result;
 }
 
-// A point of each face, near its centroid: where faces cross one another at their centroids, as mirror images do, which
-// is whose image shows beside them.
-Points points_of_faces(const Mesh& mesh) {
-  Points result(mesh.faces.rows(), 3);
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    const auto corner = [&](int k) { return mesh.vertices.row(mesh.faces(face, k)); };
-    result.row(face) = 0.41 * corner(0) + 0.33 * corner(1) + 0.26 * corner(2);
-  }
-  return result;
-}
-
 }  // namespace
 
 ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& running)
@@ -105,8 +94,7 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       origin(bounding_box_centre(of.vertices)),
       point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
-      centroids(face_centroids(of)),
-      inner_points(points_of_faces(of)) {}
+      centroids(face_centroids(of)) {}
 
 int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();
@@ -331,17 +319,37 @@ std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion&
   const SurfaceIndex& surface = index(domain);
   const SurfaceIndex* part = from == domain ? nullptr : &index(from);  // smaller: most faces lie near none of it
   const std::vector<int>& faces = at(arrival).faces;
+  std::vector<int> others;
+  std::ranges::copy_if(at(domain).faces, std::back_inserter(others),
+                       [&](int face) { return source.holds[static_cast<std::size_t>(face)] == 0; });
+  const SurfaceIndex rest = surface.part(others);
+  // Where both lie there alike, as plates that lie in one another, the face's corners tell.
+  const double alike = kFarNearer * surface_.near;
+  const auto as_near = [&](const Vector3d& place, double least) {
+    return part == nullptr || part->within(place, least + alike);
+  };
+  const auto all_brought = [&](int face) {
+    const Vector3d middle = surface_.centroids.row(face).transpose();
+    return std::ranges::all_of(surface_.mesh.faces.row(face), [&](int corner) {
+      const Vector3d place = back(0.1 * middle + 0.9 * surface_.mesh.vertices.row(corner).transpose());
+      return as_near(place, std::min(surface.nearest(place, surface_.near).distance, surface_.near));
+    });
+  };
   std::vector<char> brought(faces.size(), 0);
   std::vector<char> asked(faces.size(), 0);
   const auto look = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d origin = back(surface_.inner_points.row(faces[i]).transpose());
+      const Vector3d origin = back(surface_.centroids.row(faces[i]).transpose());
       if (source.box.exteriorDistance(origin) > surface_.near ||
           (part != nullptr && !part->within(origin, surface_.near)))
         continue;
       asked[i] = 1;
-      const int nearest = surface.nearest(origin, surface_.near).face;
-      brought[i] = nearest >= 0 && source.holds[static_cast<std::size_t>(nearest)] != 0 ? 1 : 0;
+      const SurfaceIndex::Nearest nearest = surface.nearest(origin, surface_.near);
+      if (nearest.face < 0) continue;
+      bool comes = source.holds[static_cast<std::size_t>(nearest.face)] != 0;
+      const double least = nearest.distance;
+      if (comes ? rest.within(origin, least + alike) : as_near(origin, least)) comes = all_brought(faces[i]);
+      brought[i] = comes ? 1 : 0;
     }
   };
   parallel_for(surface_.context, faces.size(), look, kWorthAThread);

@@ -40,8 +40,7 @@ struct ShapeSurface {
   Eigen::Vector3d origin;            ///< of moments
   std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
   Eigen::VectorXd areas;
-  Points centroids;     ///< of faces
-  Points inner_points;  ///< one of each face, near its centroid
+  Points centroids;  ///< of faces
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;
