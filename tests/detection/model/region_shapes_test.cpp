@@ -105,6 +105,30 @@ TEST(RegionShapes, TakeNoneForAnImageBesideTheImageItself) {
   EXPECT_LT(shapes.arrived(left, all, shift(10), above, all), 0.5);
 }
 
+// A long triangle and its mirror image cross in one plane, with one centroid: either lies where the other's centroid
+// goes. The same whichever has the lower number.
+class CrossingFaces : public testing::TestWithParam<bool> {};
+
+TEST_P(CrossingFaces, AreBroughtByTheirCorners) {
+  Mesh mesh;
+  mesh.vertices.resize(6, 3);
+  mesh.vertices << -1, -1, 0, 1, 0.8, 0, 0, 0.2, 0, 1, -1, 0, -1, 0.8, 0, 0, 0.2, 0;
+  mesh.faces.resize(2, 3);
+  mesh.faces << 0, 1, 2, 3, 4, 5;
+  if (GetParam()) mesh.faces.row(0).swap(mesh.faces.row(1));
+  const RunContext context;
+  const ShapeSurface surface(mesh, 0.02, context);
+  RegionShapes shapes(surface);
+  const int all = shapes.add({0, 1});
+  const int one = shapes.add({0});
+  const Motion mirror = Motion::reflection(Vector3d::UnitX(), Vector3d::Zero());
+  EXPECT_EQ(shapes.image_faces(one, all, mirror, all), std::vector{1});
+  EXPECT_EQ(shapes.image_faces(shapes.add({1}), all, mirror, all), std::vector{0});
+  EXPECT_EQ(shapes.image_faces(one, all, Motion{}, all), std::vector{0});
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, CrossingFaces, testing::Bool());
+
 // Answers are known by the faces, not by the number, and cost as much work whether they were known or not.
 TEST(RegionShapes, RememberWhatWasAskedOfTheSameFaces) {
   Pieces pieces;
