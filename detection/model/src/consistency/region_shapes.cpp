@@ -19,7 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSamples = 64;  // of a shape: shares to two per cent
+constexpr int kSamples = 64;     // of a shape: shares to two per cent
+constexpr double kAlike = 1e-9;  // of the diagonal: rounding, where motions and copies are exact
 
 // A number for each vertex; the same for those at one position whose faces meet in an edge of two faces.
 std::vector<int> numbered_points(const Mesh& mesh) {
@@ -324,7 +325,7 @@ std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion&
                        [&](int face) { return source.holds[static_cast<std::size_t>(face)] == 0; });
   const SurfaceIndex rest = surface.part(others);
   // Where both lie there alike, as plates that lie in one another, the face's corners tell.
-  const double alike = kFarNearer * surface_.near;
+  const double alike = kAlike * surface_.diagonal;
   const auto as_near = [&](const Vector3d& place, double least) {
     return part == nullptr || part->within(place, least + alike);
   };
