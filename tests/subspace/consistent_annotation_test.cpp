@@ -685,5 +685,31 @@ INSTANTIATE_TEST_SUITE_P(Angles, MirrorsThroughAWheel,
                                          BesideAWheel{1.3, false}, BesideAWheel{std::numbers::pi / 3, true},
                                          BesideAWheel{0.7, true}, BesideAWheel{1.3, true}));
 
+// Wheels of one axle that nothing else relates, each with a lug: they lie on nearly one line, and each turns about its
+// own, or its mirror would not keep it.
+TEST(ConsistentAnnotation, WheelsOfOneAxleTurnEachAboutItsOwn) {
+  Mesh mesh;
+  SymmetryAnnotation annotation;
+  for (const double along : {-1.0, 1.0}) {
+    const Motion place = Motion{axis_rotation(Vector3d::UnitX(), 2e-8 * along), Vector3d(2e-8 * along, 0, along)};
+    const Motion beside{Eigen::Matrix3d::Identity(), Vector3d(1.4, 0, 0)};
+    const std::vector<int> wheel =
+        append(mesh, placed(turned_part({{0, 0}, {1, 0}, {1, 0.3}, {0, 0.3}}, irregular_angles(40)), place));
+    std::vector<int> both = append(mesh, placed(grid_plate(0.05, 6), place * beside));
+    both.insert(both.begin(), wheel.begin(), wheel.end());
+    annotation.regions.push_back(make_region(PointGroup::parse("Cinfv").value(), place.translation,
+                                             frame_about(place.linear * Vector3d::UnitZ()), wheel, "wheel"));
+    annotation.regions.push_back(make_region(PointGroup::parse("Cs").value(), place.translation,
+                                             frame_about(place.linear * Vector3d::UnitY()), both, "wheel and lug"));
+  }
+  SymmetryAnnotation given = empty_annotation(mesh, 1e-3);
+  given.regions = annotation.regions;
+  for (int i = 0; i < 4; ++i) given.regions[static_cast<std::size_t>(i)].id = i;
+  set_parents(given.regions);
+  const ConsistentAnnotation result = consistent_annotation(mesh, given, RunContext{});
+  EXPECT_EQ(result.annotation.regions.size(), 4U) << said(result);
+  expect_exact(mesh, result.annotation);
+}
+
 }  // namespace
 }  // namespace orbifit

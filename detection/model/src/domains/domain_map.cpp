@@ -21,7 +21,9 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
 constexpr double kSameLine = 1e-7;  // of the diagonal, and radians
-constexpr double kOnAxis = 1e-12;   // of a point's offset
+// Likewise, but for rounding: wheels of one axle, placed each for itself, differ by more.
+constexpr double kOneLine = 1e-11;
+constexpr double kOnAxis = 1e-12;  // of a point's offset
 constexpr int kMaxFold = 120;
 constexpr double kPoint = 1e-4;  // of the diagonal: side of the square that a vertex counts as
 
@@ -48,7 +50,7 @@ std::vector<Motion> components(const PointGroup& group, const Continuum& continu
 }
 
 bool same_line(const Continuum& a, const Vector3d& axis, const Vector3d& point, double size) {
-  return a.axis.cross(axis).norm() < kSameLine && a.axis.cross(point - a.centre).norm() < kSameLine * size;
+  return a.axis.cross(axis).norm() < kOneLine && a.axis.cross(point - a.centre).norm() < kOneLine * size;
 }
 
 }  // namespace
