@@ -16,8 +16,8 @@ struct EvidencePolicy {
   /// another holds it, since it tells how others stand to one another.
   double main_part = 0.2;
   /// Share of a region's area that may be taken from its border: a region that loses more ends within a surface whose
-  /// faces are too large for its group, and loses on with each face that goes. With half in place of a tenth 3 % fewer of
-  /// a remesh's groups are found.
+  /// faces are too large for its group, and loses on with each face that goes. With half in place of a tenth 3 % fewer
+  /// of a remesh's groups are found.
   double trimmed = 0.1;
   /// Tolerances by which the facets of a round region may lie inside what they stand for: with more of it they
   /// themselves, not faces that belong to something else, are what misses.
