@@ -6,7 +6,8 @@
 
 namespace orbifit {
 
-/// What `call()` returns, which was given what a file holds, but not its name: of what it refuses the file is named.
+/// What `call()` returns, which knows what a file holds but not its name.
+/// \throw InputError  as `call` does, with the file named
 template <class Call>
 auto of_file(const std::string& file, const Call& call) {
   try {

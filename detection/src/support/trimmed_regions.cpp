@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -81,29 +80,27 @@ class Trimmer {
   // Of those that are asked, and around those that go, the faces that some element takes away from the rest; some of
   // them where their area is more than `spare`.
   std::vector<int> leaving(const SurfaceIndex& rest, std::vector<int> asked, double spare) const {
-    constexpr std::size_t kAtATime = 1024;  // enough for all threads, few where too many go
     std::vector<char> seen(in_.size(), 0);
     std::vector<int> gone;
     while (!asked.empty()) {
       std::erase_if(asked, [&](int face) {
         return in_[static_cast<std::size_t>(face)] == 0 || std::exchange(seen[static_cast<std::size_t>(face)], 1) != 0;
       });
-      std::vector<int> around;
-      for (std::size_t first = 0; first < asked.size(); first += kAtATime) {
-        const std::span<const int> some = std::span(asked).subspan(first, std::min(kAtATime, asked.size() - first));
-        std::vector<char> kept(some.size(), 0);
-        parallel_for(context_, some.size(), [&](std::size_t begin, std::size_t end) {
-          context_.check();
-          for (std::size_t i = begin; i < end; ++i) kept[i] = stays(rest, some[i]) ? 1 : 0;
-        });
-        for (std::size_t i = 0; i < some.size(); ++i) {
-          if (kept[i] != 0) continue;
-          gone.push_back(some[i]);
-          spare -= prepared_.areas[some[i]];
-          for_neighbours(some[i], [&](int other) { around.push_back(other); });
+      std::vector<char> kept(asked.size(), 0);
+      parallel_for(context_, asked.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (i % 256 == 0) context_.check();
+          kept[i] = stays(rest, asked[i]) ? 1 : 0;
         }
-        if (spare < 0) return gone;
+      });
+      std::vector<int> around;
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        if (kept[i] != 0) continue;
+        gone.push_back(asked[i]);
+        spare -= prepared_.areas[asked[i]];
+        for_neighbours(asked[i], [&](int other) { around.push_back(other); });
       }
+      if (spare < 0) return gone;
       asked = std::move(around);
     }
     return gone;

@@ -23,10 +23,15 @@ int element_like(const std::vector<Motion>& elements, const Motion& motion) {
   return found == elements.end() ? -1 : static_cast<int>(found - elements.begin());
 }
 
+enum class Question { images, groups };  // where motions take sets, or whether groups close there
+
 class Check {
  public:
-  Check(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
-      : annotation_(annotation), context_(context), domains_(mesh, annotation, instance_motions(annotation)) {
+  Check(Question question, const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+      : question_(question),
+        annotation_(annotation),
+        context_(context),
+        domains_(mesh, annotation, instance_motions(annotation)) {
     for (std::size_t r = 0; r < annotation.regions.size(); ++r) claims_.push_back({false, r});
     for (std::size_t p = 0; p < annotation.patterns.size(); ++p) {
       claims_.insert(claims_.end(), annotation.patterns[p].instances.size(), {true, p});
@@ -43,22 +48,22 @@ class Check {
     for (int face = 0; face < mesh.faces.rows(); ++face) reach(domains_.set_of_face(face));
   }
 
-  void run() {
+  Disagreements run() {
     for (std::size_t head = 0; head < queue_.size() && queue_.size() < kMaxSets; ++head) {
       context_.check();
       const int set = queue_[head];
       const std::vector<int> places = domains_.set_places(set);
-      for (const auto& [a, b] : domains_.unclosed(set)) blame(unclosed_, a, b);
+      if (question_ == Question::groups) {
+        for (const auto& [a, b] : domains_.unclosed(set)) blame(Question::groups, a, b);
+      }
       for (const int place : places) {
         for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
           follow(set, places, place, element);
         }
       }
     }
+    return std::move(result_);
   }
-
-  const Disagreements& disagreements() const { return disagreements_; }
-  const Disagreements& unclosed() const { return unclosed_; }
 
   std::vector<ClaimFamily> families() {
     std::map<int, std::set<Claim>> members;
@@ -66,6 +71,7 @@ class Check {
       members[root(static_cast<int>(place))].insert(claims_[place]);
     }
     std::vector<ClaimFamily> result;
+    result.reserve(members.size());
     for (const auto& [first, claims] : members) result.emplace_back(claims.begin(), claims.end());
     std::ranges::sort(result);
     return result;
@@ -87,7 +93,7 @@ class Check {
       // What holds all of it need not come along: of finite groups all elements are tried from wherever they act.
       if (domains_.around(other, place) && domains_.continuum(other) == nullptr) continue;
       const std::vector<int> images = domains_.images_of(other, place, element);
-      if (images.empty()) blame(disagreements_, other, place);
+      if (images.empty()) blame(Question::images, other, place);
       if (!domains_.around(place, other)) continue;
       for (const int image : images) family_[static_cast<std::size_t>(root(image))] = root(other);
     }
@@ -130,18 +136,20 @@ class Check {
   void expect(int set, int due, int place) {
     if (set == due) return;
     for (const int other : domains_.set_places(set)) {
-      if (!domains_.holds(due, other)) blame(disagreements_, other, place);
+      if (!domains_.holds(due, other)) blame(Question::images, other, place);
     }
     for (const int other : domains_.set_places(due)) {
-      if (!domains_.holds(set, other)) blame(disagreements_, other, place);
+      if (!domains_.holds(set, other)) blame(Question::images, other, place);
     }
   }
 
-  void blame(Disagreements& pairs, int a, int b) const {
+  void blame(Question by, int a, int b) {
+    if (by != question_) return;
     const auto pair = std::minmax(claims_[static_cast<std::size_t>(a)], claims_[static_cast<std::size_t>(b)]);
-    ++pairs[{pair.first, pair.second}];
+    ++result_[{pair.first, pair.second}];
   }
 
+  Question question_;
   const SymmetryAnnotation& annotation_;
   const RunContext& context_;
   DomainMap domains_;
@@ -150,8 +158,16 @@ class Check {
   std::vector<std::vector<Product>> products_;
   std::set<int> reached_;
   std::vector<int> queue_;
-  Disagreements disagreements_, unclosed_;
+  Disagreements result_;
 };
+
+Disagreements answer(Question question, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                     const RunContext& context, std::vector<ClaimFamily>* families) {
+  Check check(question, mesh, annotation, context);
+  Disagreements result = check.run();
+  if (families != nullptr) *families = check.families();
+  return result;
+}
 
 }  // namespace
 
@@ -166,18 +182,12 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
 
 Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                             std::vector<ClaimFamily>* families) {
-  Check check(mesh, annotation, context);
-  check.run();
-  if (families != nullptr) *families = check.families();
-  return check.disagreements();
+  return answer(Question::images, mesh, annotation, context, families);
 }
 
 Disagreements unclosed_groups(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                               std::vector<ClaimFamily>* families) {
-  Check check(mesh, annotation, context);
-  check.run();
-  if (families != nullptr) *families = check.families();
-  return check.unclosed();
+  return answer(Question::groups, mesh, annotation, context, families);
 }
 
 }  // namespace orbifit

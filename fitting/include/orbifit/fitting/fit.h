@@ -112,7 +112,7 @@ struct FitResult {
   /// is, or the coarsest fit failed.
   std::vector<ResolutionLevel> levels;
   std::vector<FitIteration> iterations;
-  /// Whether the pose has the template's own size, of all that would do, since the scan asks for no other.
+  /// Whether any size was allowed and the template has kept its own, since the scan asks for no other.
   bool own_size = false;
   int iterations_in_all = 0;  ///< with those of fits that were not kept
   bool converged = false;
