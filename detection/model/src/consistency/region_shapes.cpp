@@ -329,7 +329,7 @@ std::vector<int> RegionShapes::faces_brought(int from, int domain, const Motion&
   const auto as_near = [&](const Vector3d& place, double least) {
     return part == nullptr || part->within(place, least + alike);
   };
-  const auto all_brought = [&](int face) {
+  const auto all_brought = [&](int face) {  // asked just inside the corners, which neighbours share
     const Vector3d middle = surface_.centroids.row(face).transpose();
     return std::ranges::all_of(surface_.mesh.faces.row(face), [&](int corner) {
       const Vector3d place = back(0.1 * middle + 0.9 * surface_.mesh.vertices.row(corner).transpose());

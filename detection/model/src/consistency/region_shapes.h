@@ -110,8 +110,9 @@ class RegionShapes {
   /// separation() of these two parts: of several to which a motion leads, the least is the image.
   double distance(int from, int domain, const Motion& motion, int to, int arrival) const;
 
-  /// The faces of `arrival` that `motion` brings from faces of `from`: each of which a point inside, taken back, has a
-  /// face of `from` as its nearest of `domain`.
+  /// The faces of `arrival` that `motion` brings from faces of `from`: each whose centroid, taken back, has a face of
+  /// `from` as its nearest of `domain`. Where others lie there alike to rounding, as plates that cross in one plane,
+  /// each whose corners have it besides.
   std::vector<int> image_faces(int from, int domain, const Motion& motion, int arrival) const;
 
   /// The faces of a shape that the group takes to none of `taken` (ascending): what is left keeps the group where the

@@ -118,7 +118,8 @@ bool DomainMap::make_a_group(int a, int b) const {
   return closure(generators, {at(a).centre, size_}, kSameGroup * size_).size() < kMaxStabilisers;
 }
 
-bool DomainMap::close(int a, int b) const {
+// Whether they do by themselves, without a third.
+bool DomainMap::groups_close(int a, int b) const {
   const auto [known, added] = closing_.try_emplace({a, b}, false);
   if (added) known->second = carries_group(a, b) || carries_group(b, a) || make_a_group(a, b);
   return known->second;
@@ -130,7 +131,7 @@ std::vector<std::pair<int, int>> DomainMap::unclosed(int set) const {
   std::erase_if(regions, [&](int place) { return place >= count(); });
   for (const int b : regions) {
     for (const int a : regions) {
-      if (a >= b || close(a, b)) continue;
+      if (a >= b || groups_close(a, b)) continue;
       const bool held = std::ranges::any_of(regions, [&](int outer) {
         return outer != a && outer != b && group_within(a, outer) && group_within(b, outer);
       });

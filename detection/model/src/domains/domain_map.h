@@ -115,11 +115,11 @@ class DomainMap {
   /// and the mirror of the rest of a fan, which meet on the round hub.
   bool follows(int a, int b) const { return following_.contains(std::minmax(a, b)); }
 
-  /// Pairs of regions, the lesser first, whose motions take the points of a set that lies in both to ever more places,
-  /// by going by the one's and the other's in turn; rotations of continuous groups do not count. They do not where the
-  /// motions of the one take the other to regions with its group; where all motions of both make a finite group; and
-  /// where another region of the set has a group that holds both. Two mirrors at an angle that no multiple of which
-  /// closes the circle do, but for on a round part between them.
+  /// Pairs of regions of a set, the lesser first, whose groups do not close: going by motions of the one and of the
+  /// other in turn takes a point that lies in both to ever more places, rotations of continuous groups not counted.
+  /// Groups close where the motions of one region take the other to regions with its group, where all motions of both
+  /// make a finite group, and where a third region of the set has a group that holds both. Two mirrors whose angle is
+  /// no fraction of a turn do not, except on a round part that both go through. Not for use by several threads.
   std::vector<std::pair<int, int>> unclosed(int set) const;
 
   std::size_t face_count(int place) const { return at(place).faces.size(); }
@@ -151,7 +151,7 @@ class DomainMap {
   bool group_within(int inner, int outer) const;
   bool carries_group(int place, int other) const;
   bool make_a_group(int a, int b) const;
-  bool close(int a, int b) const;
+  bool groups_close(int a, int b) const;
   void find_followers(const std::vector<int>& sets);
   int intern(const std::vector<int>& places) const;
   const PieceMoments& common_moments(int a, int b) const;
