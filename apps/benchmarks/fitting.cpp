@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -49,7 +50,7 @@ constexpr Level kLevels[] = {{"3views", FitLevel::three_views},
                              {"several", FitLevel::several}};
 
 constexpr double kSoftWeight = 100;  // of the symmetry's penalty against the data
-constexpr const char* kMethods[] = {"ours", "landmarks", "rigid", "free", "soft", "copied", "pcl"};
+constexpr const char* kMethods[] = {"ours", "detail", "landmarks", "rigid", "free", "soft", "copied", "pcl"};
 
 bool pose_is_unknown(FitLevel level) {
   return level == FitLevel::anywhere || level == FitLevel::several;
@@ -57,7 +58,7 @@ bool pose_is_unknown(FitLevel level) {
 
 // Those of fit(), which also finds the pose.
 bool takes_several_scans(const std::string& method) {
-  return method == "ours" || method == "landmarks" || method == "free";
+  return method == "ours" || method == "detail" || method == "landmarks" || method == "free";
 }
 
 // The scan without what is far from the template as it was found.
@@ -138,7 +139,8 @@ FittingRow measure(const FitCase& each, const char* level, const std::string& me
   FitOptions chosen;
   chosen.align = false;
   const bool by_landmarks = method == "landmarks";
-  const bool symmetric = method == "ours" || by_landmarks || method == "soft";
+  chosen.detail = method == "detail";
+  const bool symmetric = method == "ours" || chosen.detail || by_landmarks || method == "soft";
   const SymmetryAnnotation annotation = symmetric ? each.model.truth : without_symmetry(each.model);
   const double start = seconds_now();
   try {
@@ -239,7 +241,7 @@ CommandBody fitting(CLI::App& app) {
       ->type_name("LEVEL,...");
   app.add_option("--methods", options->methods, "Only these methods")
       ->delimiter(',')
-      ->check(CLI::IsMember({"ours", "landmarks", "rigid", "free", "soft", "copied", "pcl"}))
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kMethods), std::end(kMethods))))
       ->type_name("METHOD,...");
   add_stage_run(app, options->stages, "poses, noise and the fit");
   app.add_option("--write", options->folder, "Write templates, scans, truths and fits into this folder")

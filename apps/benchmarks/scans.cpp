@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 struct ScansOptions {
   std::string pairs, match, annotations, csv;
   bool fixed_scale = false;
+  bool detail = false;
   StageRun stages;
 };
 
@@ -116,6 +117,7 @@ PairRow measure(const Pair& pair, const ScansOptions& options, RunContext contex
     FitOptions chosen;
     chosen.place = true;
     chosen.fixed_scale = options.fixed_scale;
+    chosen.detail = options.detail;
     const double start = seconds_now();
     const FitResult result = fit({mesh, annotation, scan, Similarity{}}, chosen, context);
     row.seconds = seconds_now() - start;
@@ -238,6 +240,8 @@ CommandBody scans(CLI::App& app) {
                  "Folder of annotations: those that are there are read in place of detecting, the others are detected "
                  "and written there")
       ->type_name("DIR");
+  app.add_flag("--detail", options->detail,
+               "Then displace the vertices along their normals, as `orbifit fit --detail`");
   app.add_flag("--fixed-scale", options->fixed_scale, "The templates have the size of their files");
   add_stage_run(app, options->stages, "the fits");
   app.add_option("--csv", options->csv, "Write a line for each pair to a file")->type_name("FILE");

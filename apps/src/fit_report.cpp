@@ -82,6 +82,16 @@ ReportTable level_table(const FitResult& result) {
   return table;
 }
 
+ReportTable detail_table(const FitResult& result) {
+  ReportTable table{{"heights alike over", "rms distance of points held out, before", "with this detail", "verdict"},
+                    {}};
+  for (const DetailLevel& level : result.detail_levels) {
+    table.rows.push_back({percent(level.length), percent(level.held_out_before), percent(level.held_out),
+                          level.kept ? "kept" : "not nearer by more than chance: dropped"});
+  }
+  return table;
+}
+
 ReportTable placement_table(const FitResult& result) {
   ReportTable table{{"placement", "scale", "inlier ratio", "visible coverage", "score, from 0 to 1"}, {}};
   for (std::size_t i = 0; i < result.placements.size(); ++i) {
@@ -177,6 +187,17 @@ nlohmann::ordered_json levels_json(const FitResult& result) {
   return levels;
 }
 
+nlohmann::ordered_json detail_json(const FitResult& result) {
+  nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+  for (const DetailLevel& level : result.detail_levels) {
+    levels.push_back({{"length", level.length},
+                      {"held_out_rms_before", level.held_out_before},
+                      {"held_out_rms", level.held_out},
+                      {"kept", level.kept}});
+  }
+  return {{"rms", result.detail_rms}, {"levels", levels}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, const FitResult& result,
@@ -190,6 +211,7 @@ nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, cons
           {"samples", result.samples},
           {"degrees_of_freedom", result.degrees_of_freedom},
           {"resolutions", levels_json(result)},
+          {"detail", detail_json(result)},
           {"used_fraction", result.overlap},
           {"torn_off", result.torn_off},
           {"unexplained_part", result.unexplained_part},
@@ -239,6 +261,16 @@ std::string fit_to_html(const Mesh& mesh, const PointCloud& scan, const FitResul
          "with the one before, by points of its own. Distances are in percent of the diagonal.",
          {},
          {level_table(result)},
+         {}});
+  }
+  if (!result.detail_levels.empty()) {
+    report.sections.push_back(
+        {"Detail",
+         "Heights along the normals, one for vertices that are images of one another, ever finer as long as points of "
+         "the scan that were held out come nearer. They move the vertices by " +
+             percent(result.detail_rms) + " (rms). Distances are in percent of the diagonal.",
+         {},
+         {detail_table(result)},
          {}});
   }
   if (!result.placements.empty()) {

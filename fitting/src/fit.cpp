@@ -283,7 +283,7 @@ FitResult fit(const FitInput& given, const FitOptions& options, const RunContext
   tell_open_size(trial.best.start, options, context, result);
   tell_landmarks(input, context, result);
   result.field_residual =
-      worst_field_residual(result.subspace, input.mesh, result.rest_annotation, {result.q, result.basis}, context);
+      worst_field_residual(result.subspace, input.mesh, result.rest_annotation, result.state(), context);
   clock.finished("assessment");
   result.times = std::move(times);
   return result;

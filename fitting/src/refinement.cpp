@@ -1,20 +1,17 @@
 #include "refinement.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "orbifit/model/errors.h"
 
-#include "base/random.h"
 #include "basis/subspace_parts.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
+#include "resolution/detail.h"
 #include "resolution/fit_residuals.h"
+#include "resolution/held_out.h"
 #include "resolution/simplest_fit.h"
 #include "resolution/transfer.h"
 #include "solver/fit_system.h"
@@ -23,36 +20,8 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kFiner = 3;             // times the degrees of freedom, a level
-constexpr double kHeldOut = 0.1;         // of the scan
-constexpr double kSure = 2;              // standard errors of what held-out points gain
-constexpr int kMaxSamples = 10000;       // of which three times as many are taken
-constexpr double kWorthRefining = 0.05;  // of the squared residuals: what a finer fit could gain at most
-
-std::vector<double> held_out(const std::vector<double>& of_points, const std::vector<char>& chosen) {
-  std::vector<double> result;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i] != 0) result.push_back(of_points[i]);
-  }
-  return result;
-}
-
-double root_mean(const std::vector<double>& squares) {
-  return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size()));
-}
-
-// Whether the second of two paired samples is smaller in the mean, by more than chance.
-bool smaller(const std::vector<double>& before, const std::vector<double>& after) {
-  const auto count = static_cast<double>(before.size());
-  double sum = 0, squares = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const double gain = before[i] - after[i];
-    sum += gain;
-    squares += gain * gain;
-  }
-  const double mean = sum / count;
-  return mean > kSure * std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
-}
+constexpr double kFiner = 3;        // times the degrees of freedom, a level
+constexpr int kMaxSamples = 10000;  // of which three times as many are taken
 
 double finer_radius(const FitResult& coarse) {
   return coarse.subspace.radius() / std::sqrt(kFiner);
@@ -77,21 +46,6 @@ std::optional<FitResult> finer_fit(const FitInput& input, const PlacedScan& star
   return fit_from({coarse.pose, std::move(q), coarse.others}, options.levels, input, start, system, options, context);
 }
 
-// Every tenth patch of the scan, each of a width: depth cameras err alike at neighbouring points, so a point's own
-// neighbours do not tell shape from noise. As wide as finer samples are apart, such a fit can bridge it.
-std::vector<char> some_patches(const Points& points, double width, std::uint64_t seed) {
-  std::map<std::array<double, 3>, char> chosen;  // by cell
-  Random random(seed, "held out");
-  std::vector<char> result;
-  for (const auto& point : points.rowwise()) {
-    const auto cell = [&](int c) { return std::floor(point[c] / width); };
-    const auto [entry, added] = chosen.try_emplace({cell(0), cell(1), cell(2)}, char{0});
-    if (added) entry->second = random.uniform(0, 1) < kHeldOut ? 1 : 0;
-    result.push_back(entry->second);
-  }
-  return result;
-}
-
 void refine_from_start(const FitInput& input, const PlacedScan& start, const FitOptions& options,
                        const RunContext& context, FitResult& result) {
   FitResiduals now = fit_residuals(input, start, result, context);
@@ -102,13 +56,13 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
        ++level) {
     const double width = finer_radius(result) * result.pose.scale;
     most.held_out = some_patches(start.scan.points, width, context.seed);
-    const std::vector<double> before = held_out(now.squared, most.held_out);
+    const std::vector<double> before = of_chosen(now.squared, most.held_out);
     if (before.empty()) return;
     std::optional<FitResult> finer = finer_fit(input, most, options, context, result);
     if (!finer) return;
     FitResult found = std::move(*finer);
     now = fit_residuals(input, start, found, context);
-    const std::vector<double> after = held_out(now.squared, most.held_out);
+    const std::vector<double> after = of_chosen(now.squared, most.held_out);
     const bool better = smaller(before, after);
     result.levels.push_back({found.samples, found.degrees_of_freedom, root_mean(before), root_mean(after), better});
     if (!better) {
@@ -131,6 +85,7 @@ void refine(const FitInput& input, const PlacedScan& start, const FitOptions& op
     result.levels = {{result.samples, result.degrees_of_freedom, 0, 0, true}};
     if (!stiffer) refine_from_start(input, start, options, context, result);
   }
+  if (options.detail) add_detail(input, start, options, context, result);
   result.own_size = options.place && !options.fixed_scale && result.pose.scale == input.pose.scale;
   for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * start.others[k];
 }

@@ -68,6 +68,19 @@ TEST_F(OrbifitFit, SaysWhichResolutionsWereTried) {
   EXPECT_EQ(json::parse(read_file(file("report.json")))["resolutions"].size(), 0U);
 }
 
+TEST_F(OrbifitFit, SaysWhatDetailItHasAdded) {
+  run(fit_ + "-o fitted.ply --report report.json");
+  EXPECT_EQ(json::parse(read_file(file("report.json")))["detail"]["levels"].size(), 0U);
+  run(fit_ + "-o detailed.ply --report report.json --html report.html --refinements 0 --samples 60 --detail");
+  const json report = json::parse(read_file(file("report.json")));
+  ASSERT_GT(report["detail"]["levels"].size(), 0U);
+  EXPECT_EQ(report["detail"]["levels"][0]["kept"], true);
+  EXPECT_GT(report["detail"]["levels"][0]["held_out_rms_before"], report["detail"]["levels"][0]["held_out_rms"]);
+  EXPECT_GT(report["detail"]["rms"], 0);
+  EXPECT_LT(report["symmetry"]["field_residual"], 1e-12);
+  EXPECT_NE(read_file(file("report.html")).find("Detail"), std::string::npos);
+}
+
 TEST_F(OrbifitFit, LeavesOutTheGroupsThatAreNamed) {
   const SymmetryAnnotation before = read_annotation(file("table.annotation.json"), read_mesh(file("table.ply")));
   const int whole = before.regions.front().id;

@@ -63,6 +63,24 @@ def test_scale(mesh, annotation, views):
         orbifit.fit(mesh, large, annotation, scale="half")
 
 
+def test_detail_is_added_on_request(mesh, annotation, views):
+    plain = orbifit.fit(mesh, views[0], annotation, aligned=True)
+    assert plain.detail_levels == [] and plain.figures["detail_rms"] == 0
+    dents = orbifit.scan(orbifit.Mesh(dented(mesh), mesh.faces), views=3)
+    fit = orbifit.fit(mesh, dents, annotation, aligned=True, refinements=0, detail=True)
+    assert fit.detail_levels[0]["kept"] and fit.figures["detail_rms"] > 0
+    assert fit.symmetry_residual < 1e-12
+    assert fit.rms < orbifit.fit(mesh, dents, annotation, aligned=True, refinements=0).rms
+
+
+def dented(mesh):
+    """Waves in height, as symmetric as the stool, which stands upright."""
+    vertices = np.array(mesh.vertices)
+    size = np.linalg.norm(np.ptp(vertices, axis=0))
+    out = vertices * [1, 1, 0] / np.maximum(np.linalg.norm(vertices[:, :2], axis=1), 1e-9 * size)[:, None]
+    return vertices + 0.004 * size * np.sin(vertices[:, 2:] * (100 / size)) * out
+
+
 def test_levels_say_how_fine(mesh, annotation, subspace, views):
     levels = orbifit.fit(mesh, views[0], annotation).levels
     assert levels[0]["kept"] and levels[0]["degrees_of_freedom"] > 0

@@ -25,6 +25,7 @@ py::dict figures_of(const FitResult& result) {
   figures["open_stretch"] = result.open_stretch();
   figures["confidence"] = result.confidence;
   figures["landmark_rms"] = result.landmark_rms;
+  figures["detail_rms"] = result.detail_rms;
   figures["hidden_fraction"] = result.hidden_fraction;
   figures["symmetry_residual"] = result.field_residual;
   for (const StageTime& time : result.times) figures[py::str("seconds_" + time.stage)] = time.seconds;
@@ -73,6 +74,19 @@ py::list levels_of(const FitResult& result) {
     py::dict entry;
     entry["samples"] = level.samples;
     entry["degrees_of_freedom"] = level.degrees_of_freedom;
+    entry["held_out_before"] = level.held_out_before;
+    entry["held_out"] = level.held_out;
+    entry["kept"] = level.kept;
+    levels.append(entry);
+  }
+  return levels;
+}
+
+py::list detail_levels_of(const FitResult& result) {
+  py::list levels;
+  for (const DetailLevel& level : result.detail_levels) {
+    py::dict entry;
+    entry["length"] = level.length;
     entry["held_out_before"] = level.held_out_before;
     entry["held_out"] = level.held_out;
     entry["kept"] = level.kept;
@@ -174,6 +188,11 @@ void define_fit_result(py::module_& module) {
           "mean square distances, fractions of the diagonal. One at most where `radius`, `samples` or `subspace` say "
           "how\n"
           "fine it is.")
+      .def_property_readonly(
+          "detail_levels", [](const KeptFit& kept) { return detail_levels_of(kept.result); },
+          "The same of what `detail` has added: heights along the normals that are alike over `length`, a fraction of "
+          "the\n"
+          "diagonal.")
       .def_property_readonly(
           "groups", [](const KeptFit& kept) { return groups_of(kept.result); },
           "What the scan says of each region's group, where `judge_groups` asked for it.")

@@ -80,6 +80,8 @@ constexpr const char* kFitDoc =
     "    stiffness: of the last iterations; less follows the scan more closely.\n"
     "    refinements: how often the basis may be made finer, by three times the degrees of freedom, where the scan\n"
     "        asks for it; not where `subspace`, `radius` or `samples` say how fine it is.\n"
+    "    detail: then displace the vertices along their normals by what all points of the scan show beyond the basis,\n"
+    "        exactly as symmetric.\n"
     "    scan_points: how many of the scan's points are used.\n"
     "    inlier_distance: a point nearer than this fraction of the diagonal is explained.\n"
     "    contacts: parts of the template that touch stay in touch.\n"
@@ -104,7 +106,7 @@ void define_fit(py::module_& module) {
          const SubspacePointer& subspace, const std::optional<ArrayLike>& pose,
          const std::optional<LandmarkList>& landmarks, const std::optional<py::iterable>& handles,
          const std::string& mode, std::optional<double> radius, std::optional<int> samples, double stiffness,
-         int refinements, int scan_points, double inlier_distance, bool contacts, bool judge_groups,
+         int refinements, bool detail, int scan_points, double inlier_distance, bool contacts, bool judge_groups,
          bool drop_unsupported, bool one_frame, bool aligned, const std::string& scale, std::uint64_t seed,
          std::optional<int> threads, std::optional<double> timeout, const Progress& progress) {
         Given given{mesh_from(mesh_like), scans_from(scans), annotation, subspace, {}, {}, {}};
@@ -123,6 +125,7 @@ void define_fit(py::module_& module) {
         options.fixed_scale = scale == "fixed";
         options.last_stiffness = stiffness;
         options.refinements = subspace ? 0 : refinements;
+        options.detail = detail;
         options.scan_points = scan_points;
         options.inlier_distance = inlier_distance;
         options.contacts = contacts;
@@ -136,11 +139,11 @@ void define_fit(py::module_& module) {
       py::arg("subspace") = py::none(), py::arg("pose") = py::none(), py::arg("landmarks") = py::none(),
       py::arg("handles") = py::none(), py::arg("mode") = "floating", py::arg("radius") = py::none(),
       py::arg("samples") = py::none(), py::arg("stiffness") = defaults.last_stiffness,
-      py::arg("refinements") = defaults.refinements, py::arg("scan_points") = defaults.scan_points,
-      py::arg("inlier_distance") = defaults.inlier_distance, py::arg("contacts") = true,
-      py::arg("judge_groups") = false, py::arg("drop_unsupported") = false, py::arg("one_frame") = false,
-      py::arg("aligned") = false, py::arg("scale") = "any", seed_argument(), threads_argument(), timeout_argument(),
-      progress_argument(), kFitDoc);
+      py::arg("refinements") = defaults.refinements, py::arg("detail") = false,
+      py::arg("scan_points") = defaults.scan_points, py::arg("inlier_distance") = defaults.inlier_distance,
+      py::arg("contacts") = true, py::arg("judge_groups") = false, py::arg("drop_unsupported") = false,
+      py::arg("one_frame") = false, py::arg("aligned") = false, py::arg("scale") = "any", seed_argument(),
+      threads_argument(), timeout_argument(), progress_argument(), kFitDoc);
 }
 
 }  // namespace

@@ -125,6 +125,9 @@ void add_fit_options(CLI::App& app, FitArguments& arguments) {
                  "for it; not where --samples or --radius say how fine it is")
       ->capture_default_str()
       ->check(CLI::Range(0, 4));
+  app.add_flag(
+      "--detail", arguments.options.detail,
+      "Then displace the vertices along their normals by what all points of the scan show beyond the subspace");
   app.add_option("--scan-points", arguments.options.scan_points, "Number of scan points used")->capture_default_str();
   add_up_option(app, arguments.up, "Upward direction of the pictures");
   add_subspace_options(app, arguments.subspace);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "geometry/exposure.h"
 #include "geometry/point_index.h"
 #include "geometry/sampling.h"
 #include "geometry/surface_index.h"
@@ -38,31 +39,6 @@ std::vector<std::vector<int>> vertex_maps(const Mesh& mesh, const SymmetryAnnota
   }
   return maps;
 }
-
-// Whether a ray from the point leaves the mesh: what lies within it, or in a gap, no scanner could ever see.
-class Exposure {
- public:
-  explicit Exposure(const Mesh& mesh) : surface_(mesh), size_(diagonal(mesh.vertices)) {
-    constexpr int kDirections = 64;
-    for (int i = 0; i < kDirections; ++i) {  // a Fibonacci spiral
-      const double z = (2 * i + 1.0) / kDirections - 1;
-      const double angle = 2 * std::numbers::pi * i / std::numbers::phi;
-      const double radius = std::sqrt(1 - z * z);
-      directions_.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
-    }
-  }
-
-  bool operator()(const Eigen::Vector3d& point) const {
-    return std::ranges::any_of(directions_, [&](const Eigen::Vector3d& direction) {
-      return !surface_.occluded(point, direction, 1e-4 * size_, 10 * size_);
-    });
-  }
-
- private:
-  SurfaceIndex surface_;
-  double size_;
-  std::vector<Eigen::Vector3d> directions_;
-};
 
 double share_near(const SurfaceSamples& samples, const SurfaceIndex& surface, double distance) {
   Eigen::Index near = 0;

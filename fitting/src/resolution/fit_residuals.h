@@ -9,6 +9,9 @@
 
 namespace orbifit {
 
+/// Of the squared residuals: what a finer fit could gain at most, for one to be worth while.
+inline constexpr double kWorthRefining = 0.05;
+
 /// How far the points of a scan lie from a fitted surface: what another fit could still gain, and whether it did.
 struct FitResiduals {
   std::vector<double> squared;  ///< of each point, robust: what is far counts as at kLastRobust; squared diagonals

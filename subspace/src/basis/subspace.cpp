@@ -9,6 +9,7 @@
 
 #include "basis/conjugated_regions.h"
 #include "basis/subspace_parts.h"
+#include "deformation/surface_detail.h"
 #include "kernels/kernels.h"
 
 namespace orbifit {
@@ -206,9 +207,10 @@ Points vertex_displacements(const Subspace& subspace, const SubspaceState& state
         const std::size_t last = std::min(end * kLanes, orbits.bound.size());
         for (std::size_t r = begin * kLanes; r < last; ++r) {
           const int bound = orbits.bound[r];
-          if (bound < 0 && !turned) continue;
+          if (bound < 0 && !turned && !state.detail) continue;
           Eigen::Map<Vector3d> source(sources.get() + 4 * r);
           Vector3d u = source;
+          if (state.detail) u += state.detail->of_representatives.row(static_cast<Eigen::Index>(r)).transpose();
           if (turned) add_turned_rest(subspace, basis, static_cast<int>(r), u);
           if (bound >= 0) {
             bind(basis.bindings[static_cast<std::size_t>(bound)],

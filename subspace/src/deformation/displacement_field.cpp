@@ -13,6 +13,7 @@
 
 #include "basis/plain_lift.h"
 #include "basis/subspace_parts.h"
+#include "deformation/surface_detail.h"
 #include "domains/vertex_sets.h"
 #include "geometry/vertex_grid.h"
 
@@ -33,7 +34,8 @@ class FieldEvaluator {
         basis_(basis_of(subspace, state)),
         words_(*subspace->words),
         plain_(subspace->sampling, *subspace->regions, subspace->lift_kind == LiftKind::orbit),
-        samples_(sample_displacements(subspace, state)) {
+        samples_(sample_displacements(subspace, state)),
+        detail_(state.detail) {
     carriers_ = basis_.carried * state.q;
     if (carriers_.size() > 0) carriers_ += basis_.carried_offset;
     closure_.doublet = kDoublet * subspace->diagonal;
@@ -52,6 +54,10 @@ class FieldEvaluator {
     const Vector3d start = orbit.points.front().position;
     Vector3d u = Vector3d::Zero();
     for (const OrbitPoint& place : orbit.points) {
+      if (detail_) {
+        u += transports_.words[static_cast<std::size_t>(place.word)].frame.transpose() * detail(place.position) /
+             static_cast<double>(orbit.points.size());
+      }
       plain_.terms(place.position, place.set, scratch_);
       for (const LiftTerm& term : scratch_.terms) {
         const Seen& seen = look(term, place.word);
@@ -109,9 +115,16 @@ class FieldEvaluator {
 
   Vector3d paper(const Vector3d& point) {
     plain_.terms(point, 0, scratch_);
-    Vector3d u = Vector3d::Zero();
+    Vector3d u = detail_ ? detail(point) : Vector3d::Zero();
     for (const LiftTerm& term : scratch_.terms) u += term.weight * samples_.row(term.sample).transpose();
     return u;
+  }
+
+  Vector3d detail(const Vector3d& point) {
+    detail_->surface->parts_at(point, parts_);
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& [vertex, weight] : parts_) sum += weight * detail_->vectors.row(vertex).transpose();
+    return sum;
   }
 
   void add_carried(const Carried& carried, Vector3d& u) const {
@@ -157,6 +170,8 @@ class FieldEvaluator {
   std::size_t points_seen_ = 0;
   PlainLift::Scratch scratch_;
   std::map<std::array<int, 4>, Seen> seen_;
+  std::shared_ptr<const SurfaceDetail> detail_;  // null: none
+  std::vector<SurfaceVectors::Part> parts_;      // of one point
 };
 
 // A mesh's vertices in a state, for any number of threads.

@@ -186,6 +186,27 @@ TEST_P(Placed, WithinSaysWhetherThereIsANearest) {
   EXPECT_GT(faced, 100);
 }
 
+TEST_P(Placed, AllWithinAreThoseOfBruteForce) {
+  const SurfaceIndex index(mesh_);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d p = query(0.7);
+    const double distance = index.nearest(p).distance * random_.uniform(1, 2);
+    const std::vector<SurfaceIndex::Nearest> found = index.all_within(p, distance);
+    std::vector<int> expected;
+    for (int f = 0; f < static_cast<int>(mesh_.faces.rows()); ++f) {
+      if (index.part({f}).nearest(p).distance <= distance) expected.push_back(f);
+    }
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].face, expected[k]);
+      const SurfaceIndex::Nearest same = index.part({expected[k]}).nearest(p);
+      EXPECT_EQ(found[k].distance, same.distance);
+      EXPECT_EQ(found[k].barycentric, same.barycentric);
+    }
+    EXPECT_TRUE(index.all_within(p, std::nextafter(index.nearest(p).distance, 0)).empty());
+  }
+}
+
 TEST_P(Placed, FacingFilterIsTheBruteForceOne) {
   const SurfaceIndex index(mesh_);
   const Points normals = face_normals(mesh_);

@@ -313,7 +313,7 @@ bool measure(void* state, unsigned face, float& radius) {
 }
 
 // Finds the nearest through the tree, which has the faces about `centre`.
-void walk(const FaceTree& tree, const Eigen::Vector3d& centre, Search& search) {
+void walk(const FaceTree& tree, const Eigen::Vector3d& centre, Search& search, MeasureFace look = measure) {
   const Eigen::Vector3d local = search.point - centre;
   const double offset = local.cwiseAbs().maxCoeff();
   Eigen::Vector3f point = Eigen::Vector3f::Zero();
@@ -325,7 +325,27 @@ void walk(const FaceTree& tree, const Eigen::Vector3d& centre, Search& search) {
   }
   const double radius = search.face < 0 ? search.max_distance : std::sqrt(search.squared_distance);
   const float reach = radius < 2 * kFarAway ? search.reach(radius) : std::numeric_limits<float>::infinity();
-  tree.search(point, reach, measure, &search);
+  tree.search(point, reach, look, &search);
+}
+
+// All faces within the search's distance.
+struct Gathering : Search {
+  struct Found {
+    unsigned position;
+    double distance;  // scaled units
+    Eigen::Vector3d barycentric;
+  };
+  std::vector<Found> found;
+};
+
+bool gather(void* state, unsigned face, float& /*radius*/) {
+  Gathering& search = *static_cast<Gathering*>(static_cast<Search*>(state));
+  if (search.only != nullptr && !(*search.only)[face]) return false;
+  const Corners& corners = search.corners[face];
+  const Eigen::Vector3d barycentric = nearest_weights(search.point, corners);
+  const double distance = corners.from(search.point, barycentric).norm();
+  if (distance <= search.max_distance) search.found.push_back({face, distance, barycentric});
+  return false;
 }
 
 }  // namespace
@@ -495,6 +515,24 @@ SurfaceIndex::Nearest SurfaceIndex::nearest_facing(const Eigen::Vector3d& point,
                                                    int likely) const {
   return implementation_->nearest(point, max_distance, &normal, min_cosine, unsigned_normal, only_.get(), false,
                                   likely);
+}
+
+std::vector<SurfaceIndex::Nearest> SurfaceIndex::all_within(const Eigen::Vector3d& point, double distance) const {
+  const Implementation& data = *implementation_;
+  std::vector<Nearest> result;
+  if (data.corners.empty() || !(distance >= 0)) return result;
+  Gathering search;
+  search.corners = data.corners.data();
+  search.point = data.scale * point;
+  search.max_distance = data.scale * distance;
+  search.only = only_.get();
+  walk(*data.tree, data.centre, search, gather);
+  for (const Gathering::Found& each : search.found) {
+    result.push_back({each.distance / data.scale, data.face_numbers[each.position], static_cast<int>(each.position),
+                      data.corners[each.position].at(each.barycentric) / data.scale, each.barycentric});
+  }
+  std::ranges::sort(result, {}, &Nearest::face);
+  return result;
 }
 
 bool SurfaceIndex::within(const Eigen::Vector3d& point, double max_distance) const {

@@ -45,6 +45,9 @@ class SurfaceIndex {
                          double max_distance = std::numeric_limits<double>::infinity(), bool unsigned_normal = false,
                          int likely = -1) const;
 
+  /// All faces within `distance`, ascending numbers. O(log F + what is found)
+  std::vector<Nearest> all_within(const Eigen::Vector3d& point, double distance) const;
+
   /// Whether any face is within `max_distance`: nearest(...).face >= 0, for several times less.
   bool within(const Eigen::Vector3d& point, double max_distance) const;
 

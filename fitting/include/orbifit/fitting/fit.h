@@ -47,6 +47,9 @@ struct FitOptions {
   /// How often the subspace may be made finer, by three times the degrees of freedom, where the scan asks for it; not
   /// where `subspace` says how fine it is. >= 0
   int refinements = 2;
+  /// Then displace the vertices along their normals by what all points of the scan show beyond the subspace, one height
+  /// for the vertices that are images of one another; as far as points that are held out come nearer.
+  bool detail = false;
   /// Refine the rough pose by rigid ICP first; not where it is found or landmarks give it. Without this and `place` the
   /// pose is known, and landmarks do not change it.
   bool align = true;
@@ -62,6 +65,14 @@ struct ResolutionLevel {
   double held_out_before = 0;  ///< from the coarser fit
   double held_out = 0;         ///< from this one
   bool kept = false;           ///< nearer by more than chance, or the coarsest
+};
+
+/// Detail that was tried, each finer than the one before: heights alike over a length. As in ResolutionLevel.
+struct DetailLevel {
+  double length = 0;           ///< fraction of the template's diagonal
+  double held_out_before = 0;  ///< with the detail before, or none
+  double held_out = 0;
+  bool kept = false;
 };
 
 struct FitIteration {
@@ -106,6 +117,11 @@ struct FitResult {
   Eigen::VectorXd q;                   ///< coordinates of the deformation in that subspace
   /// The basis of q where groups have turned (mode moving); null: the subspace's own, at rest.
   std::shared_ptr<const ConjugatedBasis> basis;
+  /// What has been added to it along the normals, where FitOptions::detail asked for it; null: nothing.
+  std::shared_ptr<const SurfaceDetail> detail;
+  std::vector<DetailLevel> detail_levels;  ///< from coarse to fine; the last one that was kept is the result's
+  double detail_rms = 0;  ///< of the vertices' displacements by it, fraction of the template's diagonal
+  SubspaceState state() const { return {q, basis, detail}; }
   int samples = 0, degrees_of_freedom = 0;
   double condition = 0;  ///< of the last linear system, where FitOptions::condition asked for it
   /// From coarse to fine; the last one that was kept is the result's. None where FitOptions::subspace says how fine it

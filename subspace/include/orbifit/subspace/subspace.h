@@ -48,6 +48,7 @@ struct SubspaceOptions {
 
 struct ConjugatedBasis;
 struct SubspaceParts;
+struct SurfaceDetail;
 
 /// The symmetric, low-frequency displacements of a mesh (paper, section 5): coordinates q -> samples -> vertices. A
 /// handle: copies are cheap and share what it holds, which does not change.
@@ -81,6 +82,8 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
 struct SubspaceState {
   Eigen::VectorXd q;
   std::shared_ptr<const ConjugatedBasis> basis;  ///< null: the subspace's, at rest
+  /// Of the vertices, finer than the samples tell; as symmetric. Null: none.
+  std::shared_ptr<const SurfaceDetail> detail = nullptr;
 };
 
 /// U q as #S by 3.
