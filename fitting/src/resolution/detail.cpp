@@ -36,6 +36,7 @@ using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 struct DetailPolicy {
   int rounds = 2;             // of matching and solving: the second sees which face is nearest to what has moved
+  double beyond = 3;          // times the noise: a point that is less beyond an edge may be there by noise
   double halved = 0.5;        // of a level's length
   double least_noise = 1e-3;  // of the heights: what has less is known as well as rounding lets it be
   double solved = 1e-6;       // of the right hand side: far less than noise
@@ -176,7 +177,8 @@ class DetailFit {
     for (int round = 0; round < kDetailPolicy.rounds; ++round) {
       std::vector<Correspondence> pairs = matched(heights);
       std::erase_if(pairs, [&](const Correspondence& pair) {
-        const bool beyond_an_edge = pair.barycentric.minCoeff() <= 0;
+        // Noise takes points beyond an edge, and none within it: what it takes there would ever widen the shape.
+        const bool beyond_an_edge = pair.barycentric.minCoeff() <= 0 && pair.distance < kDetailPolicy.beyond * noise_;
         return beyond_an_edge || (!left_out.empty() && left_out[static_cast<std::size_t>(pair.scan_point)] != 0);
       });
       heights = step(pairs, prior, heights);
@@ -188,7 +190,7 @@ class DetailFit {
   std::vector<double> errors(const VectorXd& heights) {
     std::vector<double> result(static_cast<std::size_t>(scan_.points.rows()), kLastRobust * kLastRobust);
     for (const Correspondence& pair : matched(heights)) {
-      result[static_cast<std::size_t>(pair.scan_point)] = robust_error(height_above(pair) / size_, kLastRobust);
+      result[static_cast<std::size_t>(pair.scan_point)] = robust_error(pair.distance / size_, kLastRobust);
     }
     return result;
   }
@@ -230,12 +232,6 @@ class DetailFit {
     return pairs;
   }
 
-  // Along the face's normal: what noise takes beyond an edge does not widen the face.
-  double height_above(const Correspondence& pair) const {
-    const Vector3d corner = mesh_.vertices.row(mesh_.faces(pair.face, 0)).transpose();
-    return surface_.normal(pair.face).dot(scan_.points.row(pair.scan_point).transpose() - corner);
-  }
-
   // Least squares by conjugate gradients.
   VectorXd step(const std::vector<Correspondence>& pairs, const Prior& prior, const VectorXd& heights) const {
     std::vector<Eigen::Triplet<double>> entries;
@@ -244,14 +240,15 @@ class DetailFit {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const Correspondence& pair = pairs[i];
       const auto row = static_cast<Index>(i);
-      const Vector3d normal = surface_.normal(pair.face);
+      Vector3d foot = Vector3d::Zero();
       for (int k = 0; k < 3; ++k) {
         const auto vertex = static_cast<std::size_t>(mesh_.faces(pair.face, k));
-        const Vector3d along = pair.barycentric[k] * (along_[vertex].transpose() * normal);
+        foot += pair.barycentric[k] * mesh_.vertices.row(mesh_.faces(pair.face, k)).transpose();
+        const Vector3d along = pair.barycentric[k] * (along_[vertex].transpose() * pair.normal);
         const int r = subspace_->orbits.followers[vertex].representative;
         for (int c = 0; c < 3; ++c) entries.emplace_back(static_cast<int>(i), 3 * r + c, along[c]);
       }
-      offsets[row] = height_above(pair);
+      offsets[row] = pair.normal.dot(scan_.points.row(pair.scan_point).transpose() - foot);
       weights[row] = pair.weight / (noise_ * noise_);
     }
     Sparse rows(offsets.size(), moves_.rows());
