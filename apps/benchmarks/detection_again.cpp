@@ -67,9 +67,12 @@ double found_again(const Mesh& mesh, const SymmetryAnnotation& detected, const D
   for (int time = 0; time < 2 * kTimes; ++time) {
     std::vector<int> face_of(static_cast<std::size_t>(mesh.faces.rows()));
     std::iota(face_of.begin(), face_of.end(), 0);
-    const Mesh other =
-        time < kTimes ? reordered(mesh, random, face_of) : transformed(mesh, random_pose(mesh, {}, random.next()));
-    SymmetryAnnotation again = detect(other, options, context);
+    const Similarity pose = time < kTimes ? Similarity{} : random_pose(mesh, {}, random.next());
+    const Mesh other = time < kTimes ? reordered(mesh, random, face_of) : transformed(mesh, pose);
+    // As far on the shape: the box about a turned mesh has another diagonal.
+    DetectOptions as_far = options;
+    as_far.tolerance *= pose.scale * diagonal(mesh.vertices) / diagonal(other.vertices);
+    SymmetryAnnotation again = detect(other, as_far, context);
     for (Region& region : again.regions) {
       for (int& face : region.faces) face = face_of[static_cast<std::size_t>(face)];
       std::ranges::sort(region.faces);

@@ -45,6 +45,7 @@
 #include "support/found_region.h"
 #include "support/own_group.h"
 #include "support/trimmed_regions.h"
+#include "surface/canonical_order.h"
 #include "surface/components.h"
 #include "surface/repeated_parts.h"
 #include "surface/segments.h"
@@ -483,8 +484,12 @@ void DetectOptions::validate() const {
   if (!(up.norm() > 0)) refuse("up", "zero or not a number", "|up| > 0");
 }
 
-SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
-  options.validate();
+namespace {
+
+// Of the mesh in canonical order. \param coloured  the same as the colours have it
+SymmetryAnnotation detected(const Mesh& coloured, const CanonicalOrder& order, const DetectOptions& options,
+                            RunContext& context) {
+  const Mesh& mesh = order.mesh;
   const auto start = Clock::now();
   PreparedMesh prepared = prepare(mesh);
   SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
@@ -530,7 +535,8 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
     return listed(prepared, mesh, std::move(annotation), options, context);
   }
   context.progress("colours", 0);
-  const ColourSamples samples(mesh, *options.colours, options.tolerance * diagonal(mesh.vertices), context);
+  const ColourSamples samples(mesh, *options.colours, coloured, order.face_of,
+                              options.tolerance * diagonal(mesh.vertices), context);
   if (options.broken_by_colours != nullptr) {
     DetectOptions by_shape = options;
     by_shape.explanation = nullptr;
@@ -538,6 +544,21 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
         kept_by_colours(mesh, listed(prepared, mesh, annotation, by_shape, context), samples, context).broken;
   }
   return listed(prepared, mesh, kept_by_colours(mesh, annotation, samples, context).annotation, options, context);
+}
+
+}  // namespace
+
+SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
+  options.validate();
+  require_finite(mesh);
+  const CanonicalOrder order(mesh);
+  DetectOptions in_order = options;
+  std::vector<int>& parts = in_order.named_parts.part_of_face;
+  if (!parts.empty()) {
+    std::ranges::transform(order.face_of, parts.begin(),
+                           [&](int face) { return options.named_parts.part_of_face[static_cast<std::size_t>(face)]; });
+  }
+  return order.in_given_order(detected(mesh, order, in_order, context));
 }
 
 }  // namespace orbifit

@@ -55,6 +55,9 @@ void FitOptions::validate() const {
   require(trim > 0 && trim <= 1, "trim", trim, "in (0, 1]");
   require(scan_points >= 10, "scan_points", scan_points, "at least 10");
   require(refinements >= 0, "refinements", refinements, "0 or more");
+#ifdef ORBIFIT_PORTABLE
+  require(!detail, "detail", 1, "false: there is none in the editor's core");
+#endif
   require(landmark_weight > 0, "landmark_weight", landmark_weight, "positive");
   require(inlier_distance > 0, "inlier_distance", inlier_distance, "positive");
   require(min_inlier_ratio >= 0 && min_inlier_ratio <= 1, "min_inlier_ratio", min_inlier_ratio, "in [0, 1]");

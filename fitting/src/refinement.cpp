@@ -85,7 +85,9 @@ void refine(const FitInput& input, const PlacedScan& start, const FitOptions& op
     result.levels = {{result.samples, result.degrees_of_freedom, 0, 0, true}};
     if (!stiffer) refine_from_start(input, start, options, context, result);
   }
+#ifndef ORBIFIT_PORTABLE
   if (options.detail) add_detail(input, start, options, context, result);
+#endif
   result.own_size = options.place && !options.fixed_scale && result.pose.scale == input.pose.scale;
   for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * start.others[k];
 }

@@ -685,6 +685,26 @@ INSTANTIATE_TEST_SUITE_P(Angles, MirrorsThroughAWheel,
                                          BesideAWheel{1.3, false}, BesideAWheel{std::numbers::pi / 3, true},
                                          BesideAWheel{0.7, true}, BesideAWheel{1.3, true}));
 
+// Two groups of a cube, which only a larger one holds both: the one of more elements stays, but for one that most of
+// the surface has not.
+TEST(ConsistentAnnotation, RegionsBeyondTheToleranceGiveWay) {
+  for (const double residual : {0.0, 0.02}) {
+    Mesh mesh;
+    const std::vector<int> cube = append(mesh, box(Vector3d::Constant(0.5), 6));
+    append(mesh, placed(wedge(1.5), {Eigen::Matrix3d::Identity(), Vector3d(4, 0, 0)}));
+    SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+    annotation.regions = {
+        make_region(PointGroup::parse("C2v").value(), Vector3d::Zero(), frame_about(Vector3d::UnitZ()), cube, "few"),
+        make_region(PointGroup::parse("C4v").value(), Vector3d::Zero(), frame_about(Vector3d::UnitX()), cube, "many")};
+    annotation.regions[1].id = 1;
+    annotation.regions[1].residual.max = residual;
+    set_parents(annotation.regions);
+    const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+    ASSERT_EQ(result.annotation.regions.size(), 1U) << residual;
+    EXPECT_EQ(result.annotation.regions.front().name, residual > 0 ? "few" : "many");
+  }
+}
+
 // Wheels of one axle that nothing else relates, each with a lug: they lie on nearly one line, and each turns about its
 // own, or its mirror would not keep it.
 TEST(ConsistentAnnotation, WheelsOfOneAxleTurnEachAboutItsOwn) {

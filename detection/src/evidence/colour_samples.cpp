@@ -26,12 +26,13 @@ SurfaceSamples spread(const Mesh& mesh, double reach, const RunContext& context)
 
 }  // namespace
 
-ColourSamples::ColourSamples(const Mesh& mesh, const SurfaceColours& colours, double reach, const RunContext& context)
+ColourSamples::ColourSamples(const Mesh& mesh, const SurfaceColours& colours, const Mesh& coloured,
+                             const std::vector<int>& face_of, double reach, const RunContext& context)
     : reach_(reach), samples_(spread(mesh, reach, context)), index_(samples_.points) {
   std::vector<Vector3d> own;
   for (std::size_t i = 0; i < samples_.faces.size(); ++i) {
-    const int f = samples_.faces[i];
-    const auto corner = [&](int k) -> Vector3d { return mesh.vertices.row(mesh.faces(f, k)).transpose(); };
+    const int f = face_of[static_cast<std::size_t>(samples_.faces[i])];
+    const auto corner = [&](int k) -> Vector3d { return coloured.vertices.row(coloured.faces(f, k)).transpose(); };
     own.push_back(colours.at(f, nearest_on_triangle(samples_.points.row(static_cast<Index>(i)).transpose(), corner(0),
                                                     corner(1), corner(2))));
   }

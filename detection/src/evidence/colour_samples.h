@@ -17,8 +17,10 @@ namespace orbifit {
 /// colours of faces that look the other way, as those of a sheet's back, are none of its own.
 class ColourSamples {
  public:
+  /// \param coloured  the mesh of the colours, in its own order \param face_of  by face of `mesh`, its number there
   /// \param reach  mesh units, > 0: what is finer is averaged, and how far an image may be from the place that it means
-  ColourSamples(const Mesh& mesh, const SurfaceColours& colours, double reach, const RunContext& context);
+  ColourSamples(const Mesh& mesh, const SurfaceColours& colours, const Mesh& coloured, const std::vector<int>& face_of,
+                double reach, const RunContext& context);
 
   /// Those on faces of which `on_face` is 1; at most `count`, evenly spread.
   std::vector<int> chosen(const std::vector<char>& on_face, int count) const;

@@ -70,8 +70,31 @@ class PatternSearch {
       const bool itself = first == table_.classes()[number].members.front();
       own = itself ? *of_class : carried(*of_class, motion_to(number, first));
     }
-    return arrange(kind.motions, own ? &*own : nullptr, table_.moments(first).centroid, table_.moments(first).radius,
-                   table_.tolerance_of(first));
+    const SurfaceMoments& moments = table_.moments(first);
+    const double tolerance = table_.tolerance_of(first);
+    Arrangement found = arrange(kind.motions, own ? &*own : nullptr, moments.centroid, moments.radius, tolerance);
+    if (found.kind != Pattern::Kind::congruent) return found;
+    // A copy may be turned and lie as if it were not, by more than the own group that was found of it.
+    std::vector<Motion> shifts;
+    for (const int c : kind.members) {
+      shifts.push_back({Eigen::Matrix3d::Identity(), table_.moments(c).centroid - moments.centroid});
+    }
+    Arrangement shifted = arrange(shifts, nullptr, moments.centroid, moments.radius, tolerance);
+    return shifted.kind != Pattern::Kind::congruent && are_copies(kind.members, shifted.motions) ? shifted : found;
+  }
+
+  bool are_copies(const std::vector<int>& members, const std::vector<Motion>& motions) const {
+    const SurfacePatch patch = patch_of({members.front()});
+    for (std::size_t i = 1; i < members.size(); ++i) {
+      context_.check();
+      if (fit_of_copy(patch, motions[i], table_.faces_of({members[i]})).kept < kKeptOfCopy) return false;
+    }
+    return true;
+  }
+
+  SurfacePatch patch_of(const std::vector<int>& parts) const {
+    constexpr int kSamples = 200;
+    return make_patch(prepared_, table_.faces_of(parts), kSamples, options_.tolerance, context_, "pattern");
   }
 
   const Motion& motion_to(std::size_t number, int member) const {
@@ -131,8 +154,7 @@ class PatternSearch {
     for (const Motion& step : instances.arrangement.generators) {
       pattern.generators.push_back(conjugate(prepared_.input_of_normalised, step));
     }
-    const SurfacePatch patch =
-        make_patch(prepared_, table_.faces_of(instances.parts.front()), 200, options_.tolerance, context_, "pattern");
+    const SurfacePatch patch = patch_of(instances.parts.front());
     double square = 0;
     int count = 0;
     for (std::size_t i = 0; i < instances.parts.size(); ++i) {

@@ -25,8 +25,8 @@ Vector3d pixel(const DecodedImage& image, long long x, long long y) {
 
 // Bilinear between the middles of pixels; (0, 0) is the lower left corner of the image.
 Vector3d texel(const DecodedImage& image, const Eigen::Vector2d& uv) {
-  constexpr double kFarthest = 1e9;  // repeats, beyond which pixels cannot be told apart
-  if (!(uv.cwiseAbs().maxCoeff() < kFarthest)) return Vector3d::Ones();
+  constexpr double kMostRepeats = 1e9;  // of the image, beyond which pixels cannot be told apart
+  if (!(uv.cwiseAbs().maxCoeff() < kMostRepeats)) return Vector3d::Ones();
   const double x = (uv.x() - std::floor(uv.x())) * image.width - 0.5;
   const double y = (1 - (uv.y() - std::floor(uv.y()))) * image.height - 0.5;
   const auto left = static_cast<long long>(std::floor(x));

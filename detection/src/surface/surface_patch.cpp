@@ -82,8 +82,12 @@ SurfaceSamples samples_of_parts(const PreparedMesh& prepared, const std::vector<
 
 }  // namespace
 
-PreparedMesh prepare(const Mesh& mesh) {
+void require_finite(const Mesh& mesh) {
   if (!mesh.vertices.allFinite()) throw InputError("", "vertices", "a coordinate is not finite");
+}
+
+PreparedMesh prepare(const Mesh& mesh) {
+  require_finite(mesh);
   PreparedMesh result;
   const double size = diagonal(mesh.vertices);
   if (!(size > 0)) throw InputError("", "", "the mesh has no extent");

@@ -30,6 +30,9 @@ struct PreparedMesh {
   std::shared_ptr<const SurfaceIndex> index;  ///< of all faces
 };
 
+/// \throw InputError when a coordinate is not finite
+void require_finite(const Mesh& mesh);
+
 /// \throw InputError when the mesh has no area or a coordinate is not finite
 PreparedMesh prepare(const Mesh& mesh);
 

@@ -138,7 +138,14 @@ bool ConsistencySearch::is_everything(const Claim& claim) const {
 
 double ConsistencySearch::saving(std::size_t region) const {
   const KnownRegion& known = regions_[region];
-  return shapes_.area(known.shape) * halvings(known.region.group);
+  return shapes_.area(known.shape) * halvings(known.region.group) * credit(known.region);
+}
+
+// Where a region's surface is farther from its image than the tolerance, some of its faces are not the group's, and may
+// keep others from theirs. Of continuous groups it is facets that make it so.
+double ConsistencySearch::credit(const Region& region) const {
+  const double off = region.residual.max * diagonal_;
+  return region.group.continuous() || off <= tolerance_ ? 1 : tolerance_ / off;
 }
 
 double ConsistencySearch::saving(const Claim& claim) const {
@@ -180,7 +187,7 @@ double ConsistencySearch::own_saving(std::size_t region) const {
     const auto most = std::ranges::find_if(common, [&](const auto& each) { return shapes_.holds(each.second, face); });
     sum += shapes_.area_of(face) * (all - (most == common.end() ? 0 : most->first));
   }
-  return sum;
+  return sum * credit(known.region);
 }
 
 double ConsistencySearch::total_saving() const {

@@ -195,6 +195,7 @@ class ConsistencySearch {
   std::vector<Claim> family_of(const Claim& claim) const;
   std::vector<std::vector<Claim>> against(const std::vector<Claim>& claims) const;
   bool is_everything(const Claim& claim) const;
+  double credit(const Region& region) const;
   double saving(std::size_t region) const;
   double own_saving(std::size_t region) const;
   double common_halvings(std::size_t a, std::size_t b) const;
