@@ -41,11 +41,6 @@ void take_out(SymmetryAnnotation& annotation, const std::vector<LeftOut>& left_o
   std::erase_if(annotation.patterns, [&](const Pattern& pattern) { return gone(true, pattern.id); });
 }
 
-bool same_claims(const SymmetryAnnotation& a, const SymmetryAnnotation& b) {
-  return std::ranges::equal(a.regions, b.regions, {}, &Region::id, &Region::id) &&
-         std::ranges::equal(a.patterns, b.patterns, {}, &Pattern::id, &Pattern::id);
-}
-
 // Largest regions first. \param left_out  how many were, told in a message
 SymmetryAnnotation sorted(const Mesh& mesh, SymmetryAnnotation annotation, std::size_t left_out,
                           const RunContext& context) {
@@ -135,12 +130,10 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
     ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
     note_left_out(kept.left_out, explanation);
     gone += kept.left_out.size();
-    for (SymmetryAnnotation* annotation : {&found, &listed}) take_out(*annotation, kept.left_out);
-    SymmetryAnnotation again = kept.left_out.empty() ? listed : without_what_follows(prepared, found, context);
-    if (same_claims(again, listed)) {
-      return finished(prepared, surface, found, std::move(kept), gone, explanation, context);
-    }
-    listed = std::move(again);  // what was left out had implied something
+    if (kept.left_out.empty()) return finished(prepared, surface, found, std::move(kept), gone, explanation, context);
+    // What was left out may have implied something, moved something, and taken faces from it.
+    take_out(found, kept.left_out);
+    listed = without_what_follows(prepared, found, context);
   }
 }
 

@@ -1,28 +1,23 @@
 #include "resolution/detail.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
-#include "orbifit/model/errors.h"
-
 #include "assessment/fit_assessment.h"
 #include "basis/subspace_parts.h"
-#include "deformation/mesh_laplacian.h"
 #include "deformation/surface_detail.h"
 #include "geometry/exposure.h"
 #include "registration/alignment.h"
 #include "registration/correspondences.h"
 #include "resolution/detail_points.h"
 #include "resolution/fit_residuals.h"
+#include "resolution/height_prior.h"
 #include "resolution/held_out.h"
-#include "solver/normal_solver.h"
 #include "symmetry/moving_surface.h"
 
 namespace orbifit {
@@ -32,92 +27,15 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Sparse = HeightPrior::Sparse;
 
 struct DetailPolicy {
   int rounds = 2;             // of matching and solving: the second sees which face is nearest to what has moved
   double beyond = 3;          // times the noise: a point that is less beyond an edge may be there by noise
   double halved = 0.5;        // of a level's length
   double least_noise = 1e-3;  // of the heights: what has less is known as well as rounding lets it be
-  double solved = 1e-6;       // of the right hand side: far less than noise
-  int most_steps = 300;       // of conjugate gradients: some ten times what they take
 };
 constexpr DetailPolicy kDetailPolicy;
-
-// The quotient surface: one place for each orbit of vertices.
-struct Quotient {
-  Sparse stiffness;  // #R by #R
-  VectorXd areas;    // #R: of all vertices of the orbit
-  VectorXd images;   // #R: at how many places it has vertices
-
-  Quotient(const Subspace& subspace, const Mesh& mesh) {
-    const auto& followers = subspace->orbits.followers;
-    const Index count = subspace->orbits.representatives();
-    std::vector<Eigen::Triplet<double>> entries;
-    const Eigen::SparseMatrix<double> each = cotangent_laplacian(mesh);
-    for (Index column = 0; column < each.outerSize(); ++column) {
-      const int to = followers[static_cast<std::size_t>(column)].representative;
-      for (Eigen::SparseMatrix<double>::InnerIterator it(each, column); it; ++it) {
-        entries.emplace_back(followers[static_cast<std::size_t>(it.row())].representative, to, it.value());
-      }
-    }
-    stiffness.resize(count, count);
-    stiffness.setFromTriplets(entries.begin(), entries.end());
-    areas = VectorXd::Zero(count);
-    images = VectorXd::Zero(count);
-    const VectorXd of_vertices = vertex_areas(mesh);
-    std::map<std::array<double, 3>, int> known;  // vertices of seams are at one place
-    for (Index v = 0; v < mesh.vertices.rows(); ++v) {
-      const int r = followers[static_cast<std::size_t>(v)].representative;
-      areas[r] += of_vertices[v];
-      const auto added = known.try_emplace({mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)}, r).second;
-      if (added) images[r] += 1;
-    }
-    const double least = kDetailPolicy.least_noise * areas.mean();  // vertices of no face have none
-    areas = areas.cwiseMax(least);
-    images = images.cwiseMax(1);
-  }
-};
-
-// Gaussian heights of a standard deviation, alike over a length (Whittle 1963; Lindgren, Rue, Lindstroem 2011).
-struct Prior {
-  Sparse root;       // its transpose times the weights times itself is the precision
-  VectorXd weights;  // #R
-
-  Prior(const Quotient& quotient, double deviation, double length) {
-    const double curvature = 1 / (length * length);
-    Sparse mass(quotient.areas.size(), quotient.areas.size());
-    mass.setIdentity();
-    mass.diagonal() = curvature * quotient.areas;
-    root = mass + quotient.stiffness;
-    weights = (quotient.areas.cwiseProduct(quotient.images) * 4 * std::numbers::pi * curvature * deviation * deviation)
-                  .cwiseInverse();
-  }
-
-  VectorXd precision_times(const VectorXd& heights) const {
-    return root.transpose() * weights.cwiseProduct(root * heights);
-  }
-};
-
-// An inverse of P + D, P the prior's precision and D a diagonal matrix, up to a factor near 1 (Pearson and Wathen
-// 2012): that of (S + (D / W)^1/2)^T W (S + (D / W)^1/2), S the root and W the weights, as sparse as the surface.
-class Preconditioner {
- public:
-  Preconditioner(const Prior& prior, const VectorXd& known) : weights_(prior.weights) {
-    Sparse sum = prior.root;
-    sum.diagonal() += known.cwiseQuotient(weights_).cwiseSqrt();
-    const Eigen::SparseMatrix<double> lower = Eigen::SparseMatrix<double>(sum).triangularView<Eigen::Lower>();
-    if (!solver_.compute(lower, Eigen::MatrixXd(sum.cols(), 0))) {
-      throw NoResultError("the detail of the fit could not be solved for");
-    }
-  }
-
-  VectorXd solve(const VectorXd& side) const { return solver_.solve(solver_.solve(side).cwiseQuotient(weights_)); }
-
- private:
-  const VectorXd& weights_;
-  NormalSolver solver_;
-};
 
 // The surface as heights make it, and the scan's points matched to it.
 class DetailFit {
@@ -173,7 +91,7 @@ class DetailFit {
 
   /// The likeliest heights, from those. \param left_out  of the points
   VectorXd solved(VectorXd heights, double length, const std::vector<char>& left_out) {
-    const Prior prior(quotient_, deviation_, length);
+    const HeightPrior prior(quotient_, deviation_, length);
     for (int round = 0; round < kDetailPolicy.rounds; ++round) {
       std::vector<Correspondence> pairs = matched(heights);
       std::erase_if(pairs, [&](const Correspondence& pair) {
@@ -232,8 +150,8 @@ class DetailFit {
     return pairs;
   }
 
-  // Least squares by conjugate gradients.
-  VectorXd step(const std::vector<Correspondence>& pairs, const Prior& prior, const VectorXd& heights) const {
+  // Least squares.
+  VectorXd step(const std::vector<Correspondence>& pairs, const HeightPrior& prior, const VectorXd& heights) const {
     std::vector<Eigen::Triplet<double>> entries;
     VectorXd offsets(static_cast<Index>(pairs.size()));
     VectorXd weights(offsets.size());
@@ -264,27 +182,9 @@ class DetailFit {
       for (Sparse::InnerIterator it(rows, row); it; ++it) sum += std::abs(it.value());
       for (Sparse::InnerIterator it(rows, row); it; ++it) known[it.col()] += weights[row] * sum * std::abs(it.value());
     }
-    const Preconditioner near(prior, known);
-
-    const VectorXd side = rows.transpose() * weights.cwiseProduct(offsets + rows * heights);
-    VectorXd x = heights;
-    VectorXd rest = side - normal_times(x);
-    VectorXd better = near.solve(rest);
-    VectorXd way = better;
-    double product = rest.dot(better);
-    const double enough = kDetailPolicy.solved * kDetailPolicy.solved * side.dot(near.solve(side));
-    for (int i = 0; i < kDetailPolicy.most_steps && product > enough; ++i) {
-      context_.check();
-      const VectorXd image = normal_times(way);
-      const double far = product / way.dot(image);
-      x += far * way;
-      rest -= far * image;
-      better = near.solve(rest);
-      const double next = rest.dot(better);
-      way = better + (next / product) * way;
-      product = next;
-    }
-    return x;
+    return heights + solve_with_prior(prior, known, normal_times,
+                                      rows.transpose() * weights.cwiseProduct(offsets) - prior.precision_times(heights),
+                                      context_);
   }
 
   const FitInput& input_;
@@ -295,7 +195,7 @@ class DetailFit {
   double deviation_, noise_, size_;  // template units
   Mesh mesh_;                        // as last matched
   const Points directions_;
-  const Quotient quotient_;
+  const QuotientSurface quotient_;
   std::shared_ptr<const SurfaceVectors> on_surface_;
   const DetailMap map_;
   Sparse moves_;                        // 3#R by #R
