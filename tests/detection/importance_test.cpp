@@ -65,8 +65,8 @@ TEST(Importance, IsTheShareOfTheQuotientThatAGroupSaves) {
   }
 }
 
-// Borders are drawn face by face, here four sides too early: the motions of the whole take the legs to one another all the
-// same, and without one of them the rest would lack an image.
+// Borders are drawn face by face, here four sides too early: the motions of the whole take the legs to one another all
+// the same, and without one of them the rest would lack an image.
 TEST(Importance, WhatMotionsTakeToOneAnotherIsListedTogether) {
   Table table;
   table.add_whole();

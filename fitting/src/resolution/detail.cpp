@@ -231,6 +231,10 @@ void add_detail(const FitInput& input, const PlacedScan& start, const FitOptions
   const double deviation = std::sqrt(residuals.shared_squared) * size;
   DetailFit fit(input, result, detail_points(input, start, result, context), deviation,
                 std::max(noise, kDetailPolicy.least_noise * deviation), context);
+  if (result.subspace.radius() < fit.side()) {
+    context.message("no detail: the template's triangles are larger than what the subspace shows");
+    return;
+  }
   VectorXd heights = fit.flat();
   double kept = 0;
   for (double length = result.subspace.radius(); length >= fit.side(); length *= kDetailPolicy.halved) {
