@@ -1,7 +1,9 @@
 #include "basis/vertex_orbits.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "domains/vertex_sets.h"
@@ -81,9 +83,11 @@ class OrbitBuilder {
   VertexOrbits run(const RunContext& context) {
     closure_.context = &context;
     if (continuous_) find_canonical_places();
-    for (std::size_t v = 0; v < sets_.size(); ++v) {
-      if (v % 4096 == 0) context.progress("vertex orbits", double(v) / double(sets_.size()));
-      if (result_.followers[v].representative < 0) add_orbit(static_cast<int>(v));
+    std::size_t done = 0;
+    for (const int v : in_order()) {
+      if (done % 4096 == 0) context.progress("vertex orbits", double(done) / double(sets_.size()));
+      if (result_.followers[static_cast<std::size_t>(v)].representative < 0) add_orbit(v);
+      ++done;
     }
     add_bound_points();
     result_.first_point.push_back(static_cast<std::int64_t>(result_.point_words.size()));
@@ -94,6 +98,18 @@ class OrbitBuilder {
   }
 
  private:
+  // Vertices of one circle may lie in more places and in fewer: those in more come first, since what they keep keeps
+  // the others' groups as well.
+  std::vector<int> in_order() const {
+    std::vector<int> order(sets_.size());
+    std::iota(order.begin(), order.end(), 0);
+    if (continuous_) {
+      std::ranges::stable_sort(order, std::greater<>(),
+                               [&](int v) { return regions_.set_places(sets_[static_cast<std::size_t>(v)]).size(); });
+    }
+    return order;
+  }
+
   int continuum_of(int set) const {
     int chosen = -1;
     for (const int place : regions_.set_places(set)) {
