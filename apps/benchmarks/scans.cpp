@@ -240,8 +240,7 @@ CommandBody scans(CLI::App& app) {
                  "Folder of annotations: those that are there are read in place of detecting, the others are detected "
                  "and written there")
       ->type_name("DIR");
-  app.add_flag("--detail", options->detail,
-               "Then displace the vertices along their normals, as `orbifit fit --detail`");
+  app.add_flag("--detail", options->detail, "Fit detail as well, as `orbifit fit --detail` does");
   app.add_flag("--fixed-scale", options->fixed_scale, "The templates have the size of their files");
   add_stage_run(app, options->stages, "the fits");
   app.add_option("--csv", options->csv, "Write a line for each pair to a file")->type_name("FILE");

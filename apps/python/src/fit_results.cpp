@@ -68,15 +68,21 @@ py::list groups_of(const FitResult& result) {
   return groups;
 }
 
+// What points that were held out say of a level.
+template <class Level>
+void add_held_out(const Level& level, py::dict& entry) {
+  entry["held_out_before"] = level.held_out_before;
+  entry["held_out"] = level.held_out;
+  entry["kept"] = level.kept;
+}
+
 py::list levels_of(const FitResult& result) {
   py::list levels;
   for (const ResolutionLevel& level : result.levels) {
     py::dict entry;
     entry["samples"] = level.samples;
     entry["degrees_of_freedom"] = level.degrees_of_freedom;
-    entry["held_out_before"] = level.held_out_before;
-    entry["held_out"] = level.held_out;
-    entry["kept"] = level.kept;
+    add_held_out(level, entry);
     levels.append(entry);
   }
   return levels;
@@ -87,9 +93,7 @@ py::list detail_levels_of(const FitResult& result) {
   for (const DetailLevel& level : result.detail_levels) {
     py::dict entry;
     entry["length"] = level.length;
-    entry["held_out_before"] = level.held_out_before;
-    entry["held_out"] = level.held_out;
-    entry["kept"] = level.kept;
+    add_held_out(level, entry);
     levels.append(entry);
   }
   return levels;

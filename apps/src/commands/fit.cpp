@@ -127,7 +127,7 @@ void add_fit_options(CLI::App& app, FitArguments& arguments) {
       ->check(CLI::Range(0, 4));
   app.add_flag(
       "--detail", arguments.options.detail,
-      "Then displace the vertices along their normals by what all points of the scan show beyond the subspace");
+      "At last move the vertices along their normals, as symmetrically, to detail that is too fine for the subspace");
   app.add_option("--scan-points", arguments.options.scan_points, "Number of scan points used")->capture_default_str();
   add_up_option(app, arguments.up, "Upward direction of the pictures");
   add_subspace_options(app, arguments.subspace);

@@ -131,8 +131,7 @@ class DetailFit {
 
   // To surface that a scanner can see.
   std::vector<Correspondence> matched(const VectorXd& heights) {
-    Points displaced = input_.mesh.vertices + vertex_displacements(subspace_, state_of(heights), context_);
-    mesh_.vertices = std::move(displaced);
+    mesh_.vertices = input_.mesh.vertices + vertex_displacements(subspace_, state_of(heights), context_);
     surface_.move(mesh_, context_);
     CorrespondenceOptions options;
     options.max_distance = kLastReach * size_;
@@ -222,15 +221,14 @@ void add_detail(const FitInput& input, const PlacedScan& start, const FitOptions
                 FitResult& result) {
   const FitResiduals residuals = fit_residuals(input, start, result, context);
   const double size = diagonal(input.mesh.vertices);
-  const double noise = start.scan.noise / result.pose.scale;
   if (residuals.shared <= kWorthRefining) {
     context.message("no detail: neighbouring points have next to nothing in common that the fit leaves");
     return;
   }
   context.progress("detail", 0);
   const double deviation = std::sqrt(residuals.shared_squared) * size;
-  DetailFit fit(input, result, detail_points(input, start, result, context), deviation,
-                std::max(noise, kDetailPolicy.least_noise * deviation), context);
+  const double noise = std::max(start.scan.noise / result.pose.scale, kDetailPolicy.least_noise * deviation);
+  DetailFit fit(input, result, detail_points(input, start, result, context), deviation, noise, context);
   if (result.subspace.radius() < fit.side()) {
     context.message("no detail: the template's triangles are larger than what the subspace shows");
     return;

@@ -9,16 +9,6 @@
 
 namespace orbifit {
 
-namespace {
-
-Points stacked_on(const Points& upper, const Points& lower) {
-  Points result(upper.rows() + lower.rows(), 3);
-  result << upper, lower;
-  return result;
-}
-
-}  // namespace
-
 DetailPoints detail_points(const FitInput& input, const PlacedScan& start, const FitResult& result,
                            const RunContext& context) {
   constexpr double kBeside = 2;  // spacings of the points that were used
@@ -26,6 +16,10 @@ DetailPoints detail_points(const FitInput& input, const PlacedScan& start, const
   DetailPoints all{Points(0, 3), Points(0, 3), start.views->signed_normals};
   ScanPreparationOptions preparation;
   preparation.most_points = kScanPointsRead;
+  const auto append = [](Points& to, const Points& more) {
+    to.conservativeResize(to.rows() + more.rows(), 3);
+    to.bottomRows(more.rows()) = more;
+  };
   const auto add = [&](const PointCloud& cloud, const Motion& into) {
     PreparedScan scan = prepare_scan(cloud, preparation, context);
     scan.points = (scan.points * into.linear.transpose()).rowwise() + into.translation.transpose();
@@ -35,8 +29,8 @@ DetailPoints detail_points(const FitInput& input, const PlacedScan& start, const
       const Eigen::Vector3d point = scan.points.row(i).transpose();
       if (used.nearest(point, 1).front().distance <= kBeside * start.scan.spacing) kept.push_back(i);
     }
-    all.points = stacked_on(all.points, to_template(result.pose, scan.points(kept, Eigen::all)));
-    all.normals = stacked_on(all.normals, normals_to_template(result.pose, scan.normals(kept, Eigen::all)));
+    append(all.points, to_template(result.pose, scan.points(kept, Eigen::all)));
+    append(all.normals, normals_to_template(result.pose, scan.normals(kept, Eigen::all)));
   };
   add(input.scan, Motion{});
   for (std::size_t k = 0; k < start.others.size(); ++k) {
