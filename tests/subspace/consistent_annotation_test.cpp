@@ -346,6 +346,41 @@ TEST(ConsistentAnnotation, CopiesOnRoundPostsKeepTheirAxes) {
   expect_exact(mesh, result.annotation);
 }
 
+// Four cones that stand on the mirrors of a square: the motion from one to another is known but for the mirror through
+// it, of which no region of its own need tell.
+class CopiesOnMirrors : public testing::TestWithParam<int> {};
+
+TEST_P(CopiesOnMirrors, ComeBackAsTheyAre) {
+  std::vector<double> angles;
+  for (int k = 0; k < 8; ++k) angles.push_back(2 * std::numbers::pi * k / 8);
+  const Mesh cone = turned_part({{0, 0}, {0.2, 0}, {0, 1}}, angles);
+  Mesh mesh;
+  Pattern cones;
+  cones.kind = Pattern::Kind::congruent;
+  const Motion there{Eigen::Matrix3d::Identity(), Vector3d(1, 0, 0)};
+  for (int k = 0; k < 4; ++k) {
+    const Motion turn = Motion::rotation(Vector3d::UnitZ(), k * std::numbers::pi / 2, Vector3d::Zero());
+    cones.instances.push_back({turn, append(mesh, cone, turn * there)});
+    const Motion mirror = Motion::about(
+        Eigen::Matrix3d::Identity() - 2 * Vector3d::UnitY() * Vector3d::UnitY().transpose(), Vector3d::Zero());
+    if ((GetParam() >> k & 1) != 0) cones.instances.back().motion = turn * mirror;
+  }
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  annotation.regions = {
+      make_region(*PointGroup::parse("C4v"), Vector3d::Zero(), GroupFrame::Identity(), all_faces(mesh), "whole")};
+  annotation.patterns = {cones};
+  const ConsistentAnnotation result = consistent_annotation(mesh, annotation, RunContext{});
+  EXPECT_TRUE(result.left_out.empty()) << said(result);
+  ASSERT_EQ(result.annotation.patterns.size(), 1U);
+  for (std::size_t t = 0; t < 4; ++t) {
+    EXPECT_EQ(result.annotation.patterns[0].instances[t].motion.linear, cones.instances[t].motion.linear) << t;
+  }
+  expect_exact(mesh, result.annotation);
+}
+
+// By bit: of which copies the motion has the mirror as well. Never of the first, to which it is the identity.
+INSTANTIATE_TEST_SUITE_P(Each, CopiesOnMirrors, testing::Values(0, 2, 4, 10, 14));
+
 // Blades that turn about a hub, and arms that mirrors of the hub keep: neither takes the other along, and on the hub a
 // group that holds both says all.
 struct Overlap {

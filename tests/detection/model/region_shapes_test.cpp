@@ -81,6 +81,20 @@ TEST(RegionShapes, SayWhereAMotionTakesThem) {
 }
 
 // Where an image lies on one surface, another one nearby is not the image, though it is near enough when it is alone.
+// What is asked of a part of a shape is asked of that part, however small a share of the shape it is.
+TEST(RegionShapes, SayItOfASmallPart) {
+  const Mesh mesh = strip();
+  const RunContext context;
+  const ShapeSurface surface{mesh, 0.01, context};
+  RegionShapes shapes(surface);
+  const int all = shapes.add(columns(0, kColumns));
+  for (const int face : {0, 7, 100}) {
+    const int one = shapes.add({face});
+    EXPECT_EQ(shapes.arrived(all, one, shift(0), all, one), 1) << face;
+    EXPECT_LT(shapes.arrived(all, one, shift(kColumns), all, one), 0.5) << face;
+  }
+}
+
 TEST(RegionShapes, TakeNoneForAnImageBesideTheImageItself) {
   Mesh mesh = strip();
   const Eigen::Index count = mesh.vertices.rows();

@@ -217,7 +217,7 @@ class ConsistencySearch {
   std::optional<std::string> fit_copies(KnownPattern& known, const InstanceOrbits& orbits) const;
   std::optional<std::string> fit_lattice(KnownPattern& known, const InstanceOrbits& orbits) const;
   Motion with_told_directions(const KnownPattern& known, const Motion& motion) const;
-  bool symmetry_of_instance(const KnownPattern& known, const Motion& motion) const;
+  bool symmetry_of_instance(const KnownPattern& known, const std::vector<Motion>& kept_by, const Motion& motion) const;
   void leave_out_pattern(std::size_t number, const std::string& reason);
   bool stands(const KnownPattern& known) const;
 

@@ -167,10 +167,16 @@ std::optional<std::vector<StepImage>> images_of_steps(const std::vector<Motion>&
 
 }  // namespace
 
-// Whether it is, to rounding, an element of a region that holds the first instance.
-bool ConsistencySearch::symmetry_of_instance(const KnownPattern& known, const Motion& motion) const {
+// Whether it is, to rounding, an element of a region on the first instance, or one of those by which the groups around
+// keep it.
+bool ConsistencySearch::symmetry_of_instance(const KnownPattern& known, const std::vector<Motion>& kept_by,
+                                             const Motion& motion) const {
   const Extent& extent = shapes_.extent(known.shapes[0]);
   if (distance(motion, Motion{}, extent) <= rounding_) return true;
+  if (std::ranges::any_of(kept_by,
+                          [&](const Motion& element) { return distance(motion, element, extent) <= rounding_; })) {
+    return true;
+  }
   return std::ranges::any_of(regions_, [&](const KnownRegion& region) {
     return region.state != State::out && shapes_.same(known.shapes[0], region.shape) &&
            std::ranges::any_of(region.region.elements,
@@ -209,7 +215,7 @@ std::optional<std::string> ConsistencySearch::fit_copies(KnownPattern& known, co
     const auto root = static_cast<std::size_t>(orbits.roots[t]);
     if (root != t) {
       const Motion due = orbits.ways[t] * known.pattern.instances[root].motion;
-      if (!symmetry_of_instance(known, inverse(due) * motion)) motion = due;
+      if (!symmetry_of_instance(known, own, inverse(due) * motion)) motion = due;
       continue;
     }
     motion = with_told_directions(known, motion);

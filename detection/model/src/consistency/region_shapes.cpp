@@ -95,7 +95,8 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       origin(bounding_box_centre(of.vertices)),
       point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
-      centroids(face_centroids(of)) {}
+      centroids(face_centroids(of)),
+      index(of) {}
 
 int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();
@@ -104,17 +105,19 @@ int RegionShapes::add(const std::vector<int>& faces) {
   shape.digest.add(std::span<const int>(faces));
   shape.holds.assign(static_cast<std::size_t>(surface_.mesh.faces.rows()), 0);
   Vector3d sum = Vector3d::Zero();
+  std::vector<char> has_point(surface_.point_of_vertex.size(), 0);
   for (const int face : faces) {
     shape.holds[static_cast<std::size_t>(face)] = 1;
     shape.area += surface_.areas[face];
     sum += surface_.areas[face] * surface_.centroids.row(face).transpose();
     for (const int vertex : surface_.mesh.faces.row(face)) {
       shape.box.extend(surface_.mesh.vertices.row(vertex).transpose());
-      shape.points.push_back(surface_.point_of_vertex[static_cast<std::size_t>(vertex)]);
+      has_point[static_cast<std::size_t>(surface_.point_of_vertex[static_cast<std::size_t>(vertex)])] = 1;
     }
   }
-  std::ranges::sort(shape.points);
-  shape.points.erase(std::unique(shape.points.begin(), shape.points.end()), shape.points.end());
+  for (std::size_t point = 0; point < has_point.size(); ++point) {
+    if (has_point[point] != 0) shape.points.push_back(static_cast<int>(point));
+  }
   if (faces.empty()) {
     shape.extent = {Vector3d::Zero(), surface_.diagonal};
   } else {
@@ -128,36 +131,32 @@ int RegionShapes::add(const std::vector<int>& faces) {
     shape.extent.reach = std::max(shape.extent.reach, 1e-9 * surface_.diagonal);
   }
   shape.moments = moments_of_faces(surface_.mesh, faces, surface_.origin);
-  sample(shape);
+  shape.samples = sampled(shape.faces, shape.area);
   shapes_.push_back(std::move(shape));
   return count() - 1;
 }
 
 // One sample in each of as many parts of equal area.
-void RegionShapes::sample(Shape& shape) const {
-  if (!(shape.area > 0)) return;
-  shape.samples.resize(kSamples, 3);
+Points RegionShapes::sampled(const std::vector<int>& faces, double area) const {
+  Points result(area > 0 ? kSamples : 0, 3);
   double before = 0;
   std::size_t at = 0;
-  for (int k = 0; k < kSamples; ++k) {
-    const double due = (k + 0.5) / kSamples * shape.area;
-    while (at + 1 < shape.faces.size() && before + surface_.areas[shape.faces[at]] < due)
-      before += surface_.areas[shape.faces[at++]];
-    const int face = shape.faces[at];
+  for (int k = 0; k < result.rows(); ++k) {
+    const double due = (k + 0.5) / kSamples * area;
+    while (at + 1 < faces.size() && before + surface_.areas[faces[at]] < due) before += surface_.areas[faces[at++]];
     const double root = std::sqrt(spread(k + 1, 2));
     const double side = spread(k + 1, 3);
     const auto corner = [&](int c) {
-      return Vector3d(surface_.mesh.vertices.row(surface_.mesh.faces(face, c)).transpose());
+      return Vector3d(surface_.mesh.vertices.row(surface_.mesh.faces(faces[at], c)).transpose());
     };
-    shape.samples.row(k) =
-        ((1 - root) * corner(0) + root * (1 - side) * corner(1) + root * side * corner(2)).transpose();
-    shape.sample_faces.push_back(face);
+    result.row(k) = ((1 - root) * corner(0) + root * (1 - side) * corner(1) + root * side * corner(2)).transpose();
   }
+  return result;
 }
 
 const SurfaceIndex& RegionShapes::index(int shape) const {
   const Shape& known = at(shape);
-  if (!known.index) known.index = std::make_unique<SurfaceIndex>(surface_.mesh, known.faces);
+  if (!known.index) known.index = std::make_unique<SurfaceIndex>(surface_.index.part(known.faces));
   return *known.index;
 }
 
@@ -190,6 +189,11 @@ PieceMoments RegionShapes::common_moments(int a, int b) const {
   });
 }
 
+Points RegionShapes::common_samples(int a, int b) const {
+  const double common = common_area(a, b);
+  return common < area(a) ? sampled(common_faces(a, b), common) : at(a).samples;
+}
+
 std::vector<int> RegionShapes::common_faces(int a, int b) const {
   std::vector<int> result;
   std::ranges::set_intersection(faces(a), faces(b), std::back_inserter(result));
@@ -202,6 +206,15 @@ bool RegionShapes::meet(int a, int b) const {
 
 bool RegionShapes::touch(int a, int b) const {
   if (meet(a, b)) return true;
+  std::vector<signed char>& later = at(std::max(a, b)).touching;
+  const auto other = static_cast<std::size_t>(std::min(a, b));
+  if (later.size() <= other) later.resize(static_cast<std::size_t>(std::max(a, b)) + 1, -1);
+  signed char& known = later[other];
+  if (known < 0) known = share_a_point(a, b) ? 1 : 0;
+  return known != 0;
+}
+
+bool RegionShapes::share_a_point(int a, int b) const {
   const std::vector<int>& here = at(a).points;
   const std::vector<int>& there = at(b).points;
   auto i = here.begin();
@@ -269,17 +282,14 @@ bool RegionShapes::belongs_elsewhere(const Vector3d& image, int target, int arri
 
 double RegionShapes::share_arrived(int from, int domain, const Motion& motion, int to, int arrival) const {
   const auto arriving = [&](int shape, int within, const Motion& way, int target, int there) {
-    const Shape& source = at(shape);
-    const std::vector<char>& holds = at(within).holds;
-    const auto taken = std::ranges::count_if(source.sample_faces,
-                                             [&](int face) { return holds[static_cast<std::size_t>(face)] != 0; });
+    const Points samples = common_samples(shape, within);
+    const Eigen::Index taken = samples.rows();
     if (taken == 0) return 0.0;
     work_ += static_cast<std::size_t>(taken);
-    std::ptrdiff_t missed = 0;
-    std::ptrdiff_t elsewhere = 0;
-    for (std::size_t k = 0; k < source.sample_faces.size() && 2 * missed <= taken; ++k) {
-      if (holds[static_cast<std::size_t>(source.sample_faces[k])] == 0) continue;
-      const Vector3d image = way(source.samples.row(static_cast<Eigen::Index>(k)).transpose());
+    Eigen::Index missed = 0;
+    Eigen::Index elsewhere = 0;
+    for (Eigen::Index k = 0; k < taken && 2 * missed <= taken; ++k) {
+      const Vector3d image = way(samples.row(k).transpose());
       const bool arrived =
           at(target).box.exteriorDistance(image) <= surface_.near && index(target).within(image, surface_.near);
       missed += arrived ? 0 : 1;
@@ -405,8 +415,8 @@ std::vector<int> RegionShapes::without_orbit(int shape, const std::vector<int>& 
 
 double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double near) const {
   const Shape& known = at(shape);
-  if (known.sample_faces.empty()) return 0;
-  work_ += known.sample_faces.size() * motions.size();
+  if (known.samples.rows() == 0) return 0;
+  work_ += static_cast<std::size_t>(known.samples.rows()) * motions.size();
   int all = 0;
   for (Eigen::Index k = 0; k < known.samples.rows(); ++k) {
     const Vector3d sample = known.samples.row(k).transpose();
@@ -418,7 +428,7 @@ double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double 
 
 Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) const {
   Residual result;
-  work_ += at(shape).sample_faces.size() * motions.size();
+  work_ += static_cast<std::size_t>(at(shape).samples.rows()) * motions.size();
   double count = 0;
   for (const Motion& motion : motions) {
     for (Eigen::Index k = 0; k < at(shape).samples.rows(); ++k) {

@@ -41,6 +41,7 @@ struct ShapeSurface {
   std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
   Eigen::VectorXd areas;
   Points centroids;  ///< of faces
+  SurfaceIndex index;
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;
@@ -136,14 +137,15 @@ class RegionShapes {
     Eigen::AlignedBox3d box;
     PieceMoments moments;
     Points samples;
-    std::vector<int> sample_faces;
     mutable std::unique_ptr<SurfaceIndex> index;
-    mutable std::vector<double> common;  // with the shapes before it, -1: not known
+    mutable std::vector<double> common;         // with the shapes before it, -1: not known
+    mutable std::vector<signed char> touching;  // whether those before it share a point with it, likewise
   };
   bool belongs_elsewhere(const Eigen::Vector3d& image, int target, int arrival) const;
   const Shape& at(int shape) const { return shapes_[static_cast<std::size_t>(shape)]; }
   const SurfaceIndex& index(int shape) const;
   PieceMoments common_moments(int a, int b) const;
+  bool share_a_point(int a, int b) const;
   bool ends_at(int inner, int outer) const;
   Digest question(int from, int domain, const Motion& motion, int to, int arrival) const;
   double share_arrived(int from, int domain, const Motion& motion, int to, int arrival) const;
@@ -159,7 +161,8 @@ class RegionShapes {
     Answer answer = ask();
     return answers.emplace(question, std::pair(std::move(answer), work_ - before)).first->second.first;
   }
-  void sample(Shape& shape) const;
+  Points sampled(const std::vector<int>& faces, double area) const;
+  Points common_samples(int a, int b) const;
 
   const ShapeSurface& surface_;
   std::vector<Shape> shapes_;
