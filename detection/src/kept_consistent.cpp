@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,6 +42,12 @@ void take_out(SymmetryAnnotation& annotation, const std::vector<LeftOut>& left_o
   std::erase_if(annotation.patterns, [&](const Pattern& pattern) { return gone(true, pattern.id); });
 }
 
+// Whether what was left out is none of those listed but an image that was added to them.
+bool is_image(const LeftOut& left_out, const SymmetryAnnotation& listed) {
+  return !left_out.pattern &&
+         std::ranges::none_of(listed.regions, [&](const Region& region) { return region.id == left_out.id; });
+}
+
 // Largest regions first. \param left_out  how many were, told in a message
 SymmetryAnnotation sorted(const Mesh& mesh, SymmetryAnnotation annotation, std::size_t left_out,
                           const RunContext& context) {
@@ -78,30 +85,38 @@ bool trim_changed(const PreparedMesh& prepared, std::vector<Region>& measured, S
     const std::optional<GroupPlace> place = place_of(local.regions[i]);
     if (!place || is_measured(region)) continue;
     std::vector<FoundRegion> changed{{{place->group, place->frame, place->centre}, region.faces, 0, region.name}};
-    trim_regions(prepared, kept.tolerance, context, changed, explanation);
-    if (changed.front().residual) {
+    trim_regions(prepared, kept.tolerance, BorderMoves::inwards, context, changed, explanation);
+    any = any || changed.front().faces != region.faces;
+    region.faces = std::move(changed.front().faces);
+    if (changed.front().residual) {  // else another pass measures it, without those that go
       region.residual = *changed.front().residual;
       measured.push_back(region);
-    } else {  // without those that go another pass measures it
-      region.faces = std::move(changed.front().faces);
-      any = true;
     }
   }
   return any;
 }
 
-// Trimmed and measured where consistency changed it. \param gone  how many were left out before
-SymmetryAnnotation finished(const PreparedMesh& prepared, const ShapeSurface& surface, const SymmetryAnnotation& found,
-                            ConsistentAnnotation kept, std::size_t gone, Explanation* explanation,
-                            const RunContext& context) {
-  std::vector<Region> measured = found.regions;
+// Trimmed and measured where consistency changed it, with all that had to be left out.
+ConsistentAnnotation trimmed(const PreparedMesh& prepared, const ShapeSurface& surface, std::vector<Region>& measured,
+                             ConsistentAnnotation kept, Explanation* explanation, const RunContext& context) {
   while (trim_changed(prepared, measured, kept.annotation, explanation, context)) {
-    kept = consistent_annotation(surface, kept.annotation, context);
-    note_left_out(kept.left_out, explanation);
-    gone += kept.left_out.size();
+    ConsistentAnnotation again = consistent_annotation(surface, kept.annotation, context);
+    kept.annotation = std::move(again.annotation);
+    std::ranges::move(again.left_out, std::back_inserter(kept.left_out));
   }
-  return sorted(surface.mesh, std::move(kept.annotation), gone, context);
+  return kept;
 }
+
+// What was found, without what was left out of it.
+struct Remaining {
+  SymmetryAnnotation found;
+  std::vector<LeftOut> left_out;
+
+  void leave_out(const std::vector<LeftOut>& more) {
+    take_out(found, more);
+    left_out.insert(left_out.end(), more.begin(), more.end());
+  }
+};
 
 }  // namespace
 
@@ -115,25 +130,38 @@ SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& f
 SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mesh, const SymmetryAnnotation& found,
                                    Explanation* explanation, const RunContext& context) {
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
+  std::vector<Region> measured = found.regions;
   ConsistentAnnotation kept = consistent_annotation(surface, found, context);
+  kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
   note_left_out(kept.left_out, explanation);
-  const std::size_t gone = kept.left_out.size();
-  return finished(prepared, surface, found, std::move(kept), gone, explanation, context);
+  return sorted(mesh, std::move(kept.annotation), kept.left_out.size(), context);
 }
 
 SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
                                              Explanation* explanation, const RunContext& context) {
   number(found);
-  SymmetryAnnotation listed = without_what_follows(prepared, found, context);
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
-  for (std::size_t gone = 0;;) {
+  std::vector<Region> measured = found.regions;
+  Remaining possible{std::move(found), {}};
+  Remaining now = possible;
+  for (bool first = true;; first = !first) {
+    const SymmetryAnnotation listed = without_what_follows(prepared, now.found, context);
     ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
-    note_left_out(kept.left_out, explanation);
-    gone += kept.left_out.size();
-    if (kept.left_out.empty()) return finished(prepared, surface, found, std::move(kept), gone, explanation, context);
-    // What was left out may have implied something, moved something, and taken faces from it.
-    take_out(found, kept.left_out);
-    listed = without_what_follows(prepared, found, context);
+    if (kept.left_out.empty()) {
+      kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
+      first = false;
+    }
+    std::erase_if(kept.left_out, [&](const LeftOut& each) { return is_image(each, listed); });
+    if (kept.left_out.empty()) {
+      note_left_out(now.left_out, explanation);
+      return sorted(mesh, std::move(kept.annotation), now.left_out.size(), context);
+    }
+    if (first) {  // it may have implied something
+      now.leave_out(kept.left_out);
+    } else {  // it was kept until now, and something may have been left out for it
+      possible.leave_out(kept.left_out);
+      now = possible;
+    }
   }
 }
 
