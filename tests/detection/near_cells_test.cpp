@@ -19,13 +19,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct Case {
+struct CellCase {
   std::string name;
   Mesh mesh;
   double reach;
 };
 
-class NearCellsOf : public testing::TestWithParam<Case> {
+class NearCellsOf : public testing::TestWithParam<CellCase> {
  protected:
   NearCellsOf()
       : prepared_(prepare(GetParam().mesh)),
@@ -66,11 +66,11 @@ TEST_P(NearCellsOf, ReachNothingOutsideTheBox) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, NearCellsOf,
-                         testing::Values(Case{"box", test::box(1, 2, 3), 0.02},
-                                         Case{"coarse", test::box(1, 1, 1), 0.05},
-                                         Case{"fine", test::prism(7, 1, 2), 1e-6},
-                                         Case{"scalene", test::scalene(), 0.03}),
-                         [](const testing::TestParamInfo<Case>& of) { return of.param.name; });
+                         testing::Values(CellCase{"box", test::box(1, 2, 3), 0.02},
+                                         CellCase{"coarse", test::box(1, 1, 1), 0.05},
+                                         CellCase{"fine", test::prism(7, 1, 2), 1e-6},
+                                         CellCase{"scalene", test::scalene(), 0.03}),
+                         [](const testing::TestParamInfo<CellCase>& of) { return of.param.name; });
 
 TEST(NearCells, OfNoFacesReachNothing) {
   const PreparedMesh prepared = prepare(test::box(1, 1, 1));

@@ -45,7 +45,7 @@ TEST_P(TrimmedRegions, LoseWhatHasNoImageAndNoMore) {
   regions[0].placement.centre = centre;
   const std::vector<Motion> motions =
       judged_motions(regions[0].placement.group, regions[0].placement.frame, regions[0].placement.centre);
-  trim_regions(prepared, kTolerance, RunContext{}, regions);
+  trim_regions(prepared, kTolerance, BorderMoves::both_ways, RunContext{}, regions);
   const std::vector<int>& left = regions[0].faces;
   ASSERT_LT(left.size(), static_cast<std::size_t>(mesh.faces.rows()));
   EXPECT_FALSE(regions[0].residual);
@@ -76,7 +76,7 @@ TEST(TrimRegions, LeaveAloneWhatIsExact) {
   const Mesh mesh = test::sheet(kCells, [](double, double) { return 0.0; });
   const PreparedMesh prepared = prepare(mesh);
   std::vector<FoundRegion> regions{region_of(prepared, "C4v", test::all_faces(mesh))};
-  trim_regions(prepared, kTolerance, RunContext{}, regions);
+  trim_regions(prepared, kTolerance, BorderMoves::both_ways, RunContext{}, regions);
   EXPECT_EQ(regions[0].faces, test::all_faces(mesh));
   ASSERT_TRUE(regions[0].residual);
   EXPECT_LT(regions[0].residual->max, 1e-12);
@@ -88,7 +88,7 @@ TEST(TrimRegions, LeaveAloneWhatWouldLoseMoreThanATenth) {
   const PreparedMesh prepared = prepare(mesh);
   std::vector<FoundRegion> regions{region_of(prepared, "C4", test::all_faces(mesh))};
   Explanation explanation;
-  trim_regions(prepared, kTolerance, RunContext{}, regions, &explanation);
+  trim_regions(prepared, kTolerance, BorderMoves::both_ways, RunContext{}, regions, &explanation);
   EXPECT_EQ(regions[0].faces, test::all_faces(mesh));
   ASSERT_EQ(explanation.notes.size(), 1U);
 }
@@ -99,7 +99,8 @@ TEST(TrimRegions, LeaveAloneWhatThereIsNoTimeFor) {
   std::vector<FoundRegion> regions(2, region_of(prepared, "C2", test::all_faces(mesh)));
   for (FoundRegion& region : regions) region.placement.centre = inverse(prepared.input_of_normalised)(Vector3d::Zero());
   int asked = 0;
-  trim_regions(prepared, kTolerance, RunContext{}, regions, nullptr, [&] { return ++asked > 1; });
+  trim_regions(prepared, kTolerance, BorderMoves::both_ways, RunContext{}, regions, nullptr,
+               [&] { return ++asked > 1; });
   EXPECT_LT(regions[0].faces.size(), regions[1].faces.size());
   EXPECT_EQ(regions[1].faces, test::all_faces(mesh));
 }
@@ -111,8 +112,8 @@ TEST(TrimRegions, SameForAnyNumberOfThreads) {
   three.threads = 3;
   std::vector<FoundRegion> one{region_of(prepared, "C4v", test::all_faces(mesh))};
   std::vector<FoundRegion> other = one;
-  trim_regions(prepared, kTolerance, RunContext{}, one);
-  trim_regions(prepared, kTolerance, three, other);
+  trim_regions(prepared, kTolerance, BorderMoves::both_ways, RunContext{}, one);
+  trim_regions(prepared, kTolerance, BorderMoves::both_ways, three, other);
   EXPECT_EQ(one[0].faces, other[0].faces);
 }
 

@@ -158,31 +158,56 @@ double largest_sagitta(const PreparedMesh& prepared, const GroupPlacement& place
 
 }  // namespace
 
-void trim_regions(const PreparedMesh& prepared, double tolerance, const RunContext& context,
+namespace {
+
+void note(Explanation* explanation, const FoundRegion& region, std::string reason) {
+  if (explanation == nullptr) return;
+  explanation->notes.push_back(
+      {"trimming", region.placement.group.symbol() + " on " + region.name, true, std::move(reason)});
+}
+
+void set_faces(const PreparedMesh& prepared, std::vector<int> faces, FoundRegion& region) {
+  region.faces = std::move(faces);
+  region.area = area_of(prepared, region.faces);
+}
+
+}  // namespace
+
+void trim_regions(const PreparedMesh& prepared, double tolerance, BorderMoves moves, const RunContext& context,
                   std::vector<FoundRegion>& regions, Explanation* explanation, const std::function<bool()>& late) {
   for (FoundRegion& region : regions) {
     if (late && late()) break;
     const GroupPlacement& placement = region.placement;
     if (region.residual && region.residual->max <= tolerance) continue;
-    const SurfacePatch patch = make_patch(prepared, region.faces, kResidualSamples, tolerance, context, "residual");
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
+    const auto patch_of = [&](const std::vector<int>& faces) {
+      return make_patch(prepared, faces, kResidualSamples, tolerance, context, "residual");
+    };
+    const SurfacePatch patch = patch_of(region.faces);
     if (!region.residual) region.residual = measure_residual(patch, motions, context);
     if (region.residual->max <= tolerance) continue;
     if (placement.group.continuous() &&
         largest_sagitta(prepared, placement, region.faces) > kEvidencePolicy.sagitta * tolerance) {
       continue;
     }
+    std::vector<int> voted = voted_border(prepared, tolerance, motions, region.faces, moves, context);
+    if (!voted.empty() && voted != region.faces) {
+      const Residual residual = measure_residual(patch_of(voted), motions, context);
+      // Inwards only where it is done with then: what others take faces from comes here again and again.
+      if (residual.max <= tolerance || (moves == BorderMoves::both_ways && residual.max < region.residual->max)) {
+        note(explanation, region, "its border is where most of its images have it");
+        set_faces(prepared, std::move(voted), region);
+        region.residual = residual;
+      }
+    }
+    if (region.residual->max <= tolerance) continue;
     std::optional<std::vector<int>> left =
         Trimmer(prepared, tolerance, motions, context, region.faces).run(patch.samples.faces);
-    if (explanation != nullptr) {
-      explanation->notes.push_back(
-          {"trimming", placement.group.symbol() + " on " + region.name, true,
-           left ? std::to_string(region.faces.size() - left->size()) + " faces without an image go"
-                : "more than a tenth would go; kept as it is"});
-    }
+    note(explanation, region,
+         left ? std::to_string(region.faces.size() - left->size()) + " faces without an image go"
+              : "more than a tenth would go; kept as it is");
     if (!left || left->size() == region.faces.size()) continue;
-    region.faces = std::move(*left);
-    region.area = area_of(prepared, region.faces);
+    set_faces(prepared, std::move(*left), region);
     region.residual.reset();
   }
 }

@@ -1,0 +1,109 @@
+#include "support/border_vote.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "surface/face_points.h"
+#include "surface/thresholds.h"
+
+namespace orbifit {
+
+namespace {
+
+using Eigen::Vector3d;
+
+class BorderVote {
+ public:
+  BorderVote(const PreparedMesh& prepared, double tolerance, const std::vector<Motion>& motions,
+             const std::vector<int>& faces, BorderMoves moves)
+      : prepared_(prepared),
+        tolerance_(tolerance),
+        motions_(motions),
+        moves_(moves),
+        in_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0) {
+    for (const int face : faces) in_[static_cast<std::size_t>(face)] = 1;
+  }
+
+  std::vector<int> run(std::vector<int> asked, const RunContext& context) {
+    constexpr int kPasses = 4;  // faces by which a border may move: one that is off by more is another border
+    for (int pass = 0; pass < kPasses; ++pass) {
+      asked = at_border(asked);
+      std::vector<char> elected(asked.size(), 0);
+      parallel_for(context, asked.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (i % 256 == 0) context.check();
+          elected[i] = is_elected(asked[i]) ? 1 : 0;
+        }
+      });
+      bool any = false;
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        char& in = in_[static_cast<std::size_t>(asked[i])];
+        any = any || in != elected[i];
+        in = elected[i];
+      }
+      if (!any) break;
+    }
+    std::vector<int> result;
+    for (std::size_t face = 0; face < in_.size(); ++face) {
+      if (in_[face] != 0) result.push_back(static_cast<int>(face));
+    }
+    return result;
+  }
+
+ private:
+  bool in(int face) const { return in_[static_cast<std::size_t>(face)] != 0; }
+
+  template <typename Look>
+  void for_neighbours(int face, const Look& look) const {
+    for (int k = 0; k < 3; ++k) {
+      const auto corner = static_cast<std::size_t>(prepared_.mesh.faces(face, k));
+      const auto vertex = static_cast<std::size_t>(prepared_.weld.group_of_vertex[corner]);
+      for (const int other : prepared_.faces_of_vertex[vertex]) look(other);
+    }
+  }
+
+  // Of these faces and those around them the ones that have a neighbour on the other side of the border.
+  std::vector<int> at_border(const std::vector<int>& faces) const {
+    std::vector<int> result;
+    for (const int face : faces) {
+      for_neighbours(face, [&](int other) {
+        if (in(other) == in(face)) return;
+        result.push_back(face);
+        result.push_back(other);
+      });
+    }
+    std::ranges::sort(result);
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
+
+  bool is_elected(int face) const {
+    if (moves_ == BorderMoves::inwards && !in(face)) return false;
+    const Vector3d centroid = face_centroid(prepared_, face);
+    const Vector3d normal = prepared_.normals.row(face);
+    std::size_t votes = in(face) ? 1 : 0;
+    for (const Motion& motion : motions_) {
+      const SurfaceIndex::Nearest image =
+          prepared_.index->nearest_facing(motion(centroid), motion.linear * normal, kAlikeNormals, tolerance_, true);
+      if (image.face < 0 && !in(face)) return false;
+      if (image.face >= 0 && in(image.face)) ++votes;
+    }
+    const std::size_t all = motions_.size() + 1;
+    return 2 * votes > all || (2 * votes == all && in(face));
+  }
+
+  const PreparedMesh& prepared_;
+  double tolerance_;
+  const std::vector<Motion>& motions_;
+  BorderMoves moves_;
+  std::vector<char> in_;  // by face of the mesh
+};
+
+}  // namespace
+
+std::vector<int> voted_border(const PreparedMesh& prepared, double tolerance, const std::vector<Motion>& motions,
+                              const std::vector<int>& faces, BorderMoves moves, const RunContext& context) {
+  return BorderVote(prepared, tolerance, motions, faces, moves).run(faces, context);
+}
+
+}  // namespace orbifit
