@@ -45,7 +45,7 @@
 #include "support/found_region.h"
 #include "support/own_group.h"
 #include "support/trimmed_regions.h"
-#include "surface/canonical_order.h"
+#include "surface/canonical_pose.h"
 #include "surface/components.h"
 #include "surface/repeated_parts.h"
 #include "surface/segments.h"
@@ -88,9 +88,11 @@ bool spent(const DetectOptions& options, Clock::time_point start, double share) 
 class Detector {
  public:
   /// \param segments pieces of surface between creases; empty: those of the mesh
-  Detector(const PreparedMesh& prepared, Components segments, const DetectOptions& options, Clock::time_point start,
-           RunContext& context)
+  /// \param stretch see CanonicalPose
+  Detector(const PreparedMesh& prepared, Components segments, double stretch, const DetectOptions& options,
+           Clock::time_point start, RunContext& context)
       : options_(options),
+        stretch_(stretch),
         context_(context),
         limited_(context),
         start_(start),
@@ -207,10 +209,10 @@ class Detector {
         groups_at_larger_tolerance(prepared_, has, options_.tolerance, screen_, limited_);
     if (hints.empty()) return;
     std::string text = "the whole has " + (has ? "only " + has->symbol() : "no symmetry") + " at tolerance " +
-                       number(options_.tolerance) + ", but ";
+                       number(options_.tolerance / stretch_) + ", but ";
     for (const LargerToleranceGroup& each : hints) {
       if (&each != &hints.front()) text += " and ";
-      text += each.group.symbol() + " at " + number(each.tolerance);
+      text += each.group.symbol() + " at " + number(each.tolerance / stretch_);
     }
     context_.message(text);
   }
@@ -404,6 +406,7 @@ class Detector {
   }
 
   const DetectOptions& options_;
+  double stretch_;
   RunContext& context_;
   RunContext limited_;  // which the time of the options ends
   Clock::time_point start_;
@@ -456,15 +459,17 @@ std::optional<CoarseMesh> proxy_mesh_of(const PreparedMesh& fine, double noise, 
 
 // What was found as users see it: consistent, without what follows from the rest unless all is asked for, in the order
 // of importance, and named.
-SymmetryAnnotation listed(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation annotation,
+SymmetryAnnotation listed(const PreparedMesh& prepared, const CanonicalPose& pose, SymmetryAnnotation annotation,
                           const DetectOptions& options, const RunContext& context) {
+  const Mesh& mesh = pose.mesh;
   annotation = options.all
                    ? kept_consistent(prepared, mesh, annotation, options.explanation, context)
                    : kept_without_what_follows(prepared, mesh, std::move(annotation), options.explanation, context);
   const std::vector<std::vector<std::size_t>> families =
       list_by_importance(prepared, annotation, options.all, options.explanation, context);
   const PartNames names(options.named_parts, static_cast<std::size_t>(mesh.faces.rows()));
-  name_by_shape_and_place(prepared, families, options.up, names, annotation, options.explanation);
+  const SideAxes axes = pose.motion.linear * side_axes(options.up);
+  name_by_shape_and_place(prepared, families, axes, names, annotation, options.explanation);
   context.progress("regions", 1);
   return annotation;
 }
@@ -486,10 +491,18 @@ void DetectOptions::validate() const {
 
 namespace {
 
-// Of the mesh in canonical order. \param coloured  the same as the colours have it
-SymmetryAnnotation detected(const Mesh& coloured, const CanonicalOrder& order, const DetectOptions& options,
+// The mesh as it was given, moved into another's pose.
+Mesh moved_to(const CanonicalPose& pose, Mesh given) {
+  for (Eigen::Index v = 0; v < given.vertices.rows(); ++v) {
+    given.vertices.row(v) = pose.motion(given.vertices.row(v).transpose()).transpose();
+  }
+  return given;
+}
+
+// Of the mesh in its canonical pose. \param as_given  with the colours' faces
+SymmetryAnnotation detected(const Mesh& as_given, const CanonicalPose& pose, const DetectOptions& options,
                             RunContext& context) {
-  const Mesh& mesh = order.mesh;
+  const Mesh& mesh = pose.mesh;
   const auto start = Clock::now();
   PreparedMesh prepared = prepare(mesh);
   SymmetryAnnotation annotation = empty_annotation(mesh, options.tolerance);
@@ -508,12 +521,12 @@ SymmetryAnnotation detected(const Mesh& coloured, const CanonicalOrder& order, c
     Components segments = transferred_pieces(smooth_segments(prepared), prepared, *coarse);
     DetectOptions on_coarse = options;
     on_coarse.time_budget *= kOfDetection;
-    found = Detector(proxy, std::move(segments), on_coarse, start, context).run();
+    found = Detector(proxy, std::move(segments), pose.stretch, on_coarse, start, context).run();
     const auto late = [&](double share) { return spent(options, start, share); };
     found = transferred(prepared, *coarse, proxy, std::move(found),
                         {options.tolerance, options.samples, options.explanation, late}, context);
   } else {
-    found = Detector(prepared, {}, options, start, context).run();
+    found = Detector(prepared, {}, pose.stretch, options, start, context).run();
   }
   if (given) {
     drop_made_by_smoothing(NoiseCheck(*given, prepared, noise, options.tolerance, context), options.explanation,
@@ -522,7 +535,7 @@ SymmetryAnnotation detected(const Mesh& coloured, const CanonicalOrder& order, c
   drop_cut_discs(prepared, options.tolerance, context, found.regions, options.explanation);
   drop_repeats(prepared, options.tolerance, found.regions, options.explanation);
   const auto late = [&] { return spent(options, start, 1); };
-  trim_regions(prepared, options.tolerance, context, found.regions, options.explanation, late);
+  trim_regions(prepared, options.tolerance, BorderMoves::both_ways, context, found.regions, options.explanation, late);
   if (!late()) {
     const PartRegionOptions parts{options.tolerance, kMinShare, false, options.explanation, late, {}};
     std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),
@@ -532,18 +545,18 @@ SymmetryAnnotation detected(const Mesh& coloured, const CanonicalOrder& order, c
   annotation.patterns = std::move(found.patterns);
   for (std::size_t i = 0; i < annotation.patterns.size(); ++i) annotation.patterns[i].id = static_cast<int>(i);
   if (options.colours == nullptr || options.colours->uniform()) {
-    return listed(prepared, mesh, std::move(annotation), options, context);
+    return listed(prepared, pose, std::move(annotation), options, context);
   }
   context.progress("colours", 0);
-  const ColourSamples samples(mesh, *options.colours, coloured, order.face_of,
+  const ColourSamples samples(mesh, *options.colours, moved_to(pose, as_given), pose.face_of,
                               options.tolerance * diagonal(mesh.vertices), context);
   if (options.broken_by_colours != nullptr) {
     DetectOptions by_shape = options;
     by_shape.explanation = nullptr;
     *options.broken_by_colours =
-        kept_by_colours(mesh, listed(prepared, mesh, annotation, by_shape, context), samples, context).broken;
+        kept_by_colours(mesh, listed(prepared, pose, annotation, by_shape, context), samples, context).broken;
   }
-  return listed(prepared, mesh, kept_by_colours(mesh, annotation, samples, context).annotation, options, context);
+  return listed(prepared, pose, kept_by_colours(mesh, annotation, samples, context).annotation, options, context);
 }
 
 }  // namespace
@@ -551,14 +564,17 @@ SymmetryAnnotation detected(const Mesh& coloured, const CanonicalOrder& order, c
 SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunContext& context) {
   options.validate();
   require_finite(mesh);
-  const CanonicalOrder order(mesh);
-  DetectOptions in_order = options;
-  std::vector<int>& parts = in_order.named_parts.part_of_face;
+  const CanonicalPose pose(mesh);
+  DetectOptions in_pose = options;
+  in_pose.tolerance *= pose.stretch;
+  std::vector<int>& parts = in_pose.named_parts.part_of_face;
   if (!parts.empty()) {
-    std::ranges::transform(order.face_of, parts.begin(),
+    std::ranges::transform(pose.face_of, parts.begin(),
                            [&](int face) { return options.named_parts.part_of_face[static_cast<std::size_t>(face)]; });
   }
-  return order.in_given_order(detected(mesh, order, in_order, context));
+  SymmetryAnnotation result = pose.as_given(detected(mesh, pose, in_pose, context), mesh);
+  result.tolerance = options.tolerance;
+  return result;
 }
 
 }  // namespace orbifit

@@ -122,13 +122,9 @@ std::vector<std::string> names_of_family(const PreparedMesh& prepared, const Par
 /// Words for the sides of the mesh.
 class Sides {
  public:
-  Sides(const PreparedMesh& prepared, const Vector3d& up) {
-    axes_[2] = up.normalized();
-    const Vector3d right = std::abs(up.normalized().x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
-    axes_[0] = (right - right.dot(axes_[2]) * axes_[2]).normalized();
-    axes_[1] = axes_[2].cross(axes_[0]);
+  Sides(const PreparedMesh& prepared, const SideAxes& axes) : axes_(axes) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Eigen::VectorXd along = prepared.mesh.vertices * axes_[k];
+      const Eigen::VectorXd along = prepared.mesh.vertices * axis(k);
       low_[k] = along.minCoeff();
       high_[k] = along.maxCoeff();
     }
@@ -141,14 +137,16 @@ class Sides {
     for (const std::size_t k : {2UL, 1UL, 0UL}) {
       const double extent = high_[k] - low_[k];
       if (extent < kAside) continue;  // of the diagonal: too flat to have sides
-      const double aside = (centroid.dot(axes_[k]) - 0.5 * (low_[k] + high_[k])) / extent;
+      const double aside = (centroid.dot(axis(k)) - 0.5 * (low_[k] + high_[k])) / extent;
       if (std::abs(aside) > kAside) text += std::string(kWords[k][aside > 0 ? 1 : 0]) + " ";
     }
     return text;
   }
 
  private:
-  Vector3d axes_[3];  // right, backwards, up
+  Vector3d axis(std::size_t k) const { return axes_.col(static_cast<Eigen::Index>(k)); }
+
+  SideAxes axes_;
   double low_[3], high_[3];
 };
 
@@ -172,10 +170,19 @@ std::string pattern_name(const Pattern& pattern, const Noun& noun) {
 
 }  // namespace
 
+SideAxes side_axes(const Vector3d& up) {
+  SideAxes axes;
+  axes.col(2) = up.normalized();
+  const Vector3d right = std::abs(axes(0, 2)) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
+  axes.col(0) = (right - right.dot(axes.col(2)) * axes.col(2)).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
 void name_by_shape_and_place(const PreparedMesh& prepared, const std::vector<std::vector<std::size_t>>& families,
-                             const Vector3d& up, const PartNames& names, SymmetryAnnotation& annotation,
+                             const SideAxes& axes, const PartNames& names, SymmetryAnnotation& annotation,
                              Explanation* explanation) {
-  const Sides sides(prepared, up);
+  const Sides sides(prepared, axes);
   std::vector<std::string> taken;  // names, to tell equal ones apart
   const auto told_apart = [&](std::string name) {
     const auto same = std::ranges::count(taken, name);

@@ -11,7 +11,7 @@
 #include "group/verification.h"
 #include "remeshing/remesh.h"
 #include "suite/detection_suite.h"
-#include "surface/canonical_order.h"
+#include "surface/canonical_pose.h"
 #include "surface/surface_patch.h"
 
 namespace orbifit {
@@ -77,7 +77,7 @@ TEST(DetectSuite, PartsComeBeforeWhatEndsWithinThem) {
 TEST(DetectSuite, ResidualsAreOfTheFacesAndPlacesThatAreListed) {
   RunContext context;
   // In the order in which it is looked at, so that the same samples are drawn.
-  const Mesh mesh = CanonicalOrder(remesh(suite_model("yard_tool").mesh, {}, context).mesh).mesh;
+  const Mesh mesh = CanonicalPose(remesh(suite_model("yard_tool").mesh, {}, context).mesh).mesh;
   const SymmetryAnnotation found = detect(mesh, {}, context);
   const PreparedMesh prepared = prepare(mesh);
   const SymmetryAnnotation local = transformed(found, inverse(prepared.input_of_normalised));

@@ -30,7 +30,7 @@ class RegionNames : public ::testing::Test {
 
   std::vector<std::string> names(const std::vector<std::vector<std::size_t>>& families, const Vector3d& up) {
     const PartNames parts(parts_, static_cast<std::size_t>(mesh_.faces.rows()));
-    name_by_shape_and_place(prepare(mesh_), families, up, parts, annotation_, &explanation_);
+    name_by_shape_and_place(prepare(mesh_), families, side_axes(up), parts, annotation_, &explanation_);
     std::vector<std::string> result;
     for (const Region& region : annotation_.regions) result.push_back(region.name);
     return result;
@@ -123,7 +123,7 @@ TEST(RoundNames, AreByTheirProportions) {
     const Mesh aside = test::joined({mesh, test::moved(test::box(9, 9, 9), test::shift(20, 0, 0))});
     annotation.regions.push_back(
         make_region(*PointGroup::parse("Dinfh"), Vector3d::Zero(), GroupFrame::Identity(), test::all_faces(mesh), ""));
-    name_by_shape_and_place(prepare(aside), {{0}}, Vector3d::UnitZ(), PartNames({}, 0), annotation, nullptr);
+    name_by_shape_and_place(prepare(aside), {{0}}, side_axes(Vector3d::UnitZ()), PartNames({}, 0), annotation, nullptr);
     return annotation.regions[0].name;
   };
   EXPECT_EQ(name(test::prism(48, 1, 0.2)), "left disc");

@@ -111,8 +111,10 @@ Chosen chosen_families(const Weighed& weighed, const RunContext& context) {
   Chosen result;
   for (Rated& each : rated) {
     context.check();
+    const double saving = quotient.saving(each.family);
+    const bool tiny = each.within_a_part && saving < kEvidencePolicy.least * quotient.area();
     const bool says_more =
-        quotient.saving(each.family) > kEvidencePolicy.sliver * quotient.named_area(each.family).left ||
+        (saving > kEvidencePolicy.sliver * quotient.named_area(each.family).left && !tiny) ||
         (each.area >= kEvidencePolicy.main_part * surface && !quotient.lies_within_accepted(each.family));
     if (says_more) quotient.accept(each.family);
     (says_more ? result.kept : result.left_out).push_back(std::move(each.family));

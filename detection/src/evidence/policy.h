@@ -15,6 +15,10 @@ struct EvidencePolicy {
   /// Share of the mesh's area from which on a region or pattern (with its images) is a main part: it is listed unless
   /// another holds it, since it tells how others stand to one another.
   double main_part = 0.2;
+  /// Share of the surface that does not follow from what is listed before, below which what a region or pattern (with
+  /// its images) saves of it is next to nothing where it ends within a part. What is a part of its own is listed
+  /// however small it is: it was modelled as one.
+  double least = 0.02;
   /// Share of a region's area that may be taken from its border: a region that loses more ends within a surface whose
   /// faces are too large for its group, and loses on with each face that goes. With half in place of a tenth 3 % fewer
   /// of a remesh's groups are found.

@@ -17,6 +17,12 @@ Place place_of(const Mesh& mesh, int vertex) {
   return {mesh.vertices(vertex, 0), mesh.vertices(vertex, 1), mesh.vertices(vertex, 2)};
 }
 
+// The mesh with coordinates that are whole multiples of `grid`; as it is for none.
+Mesh on_grid(Mesh mesh, double grid) {
+  if (grid > 0) mesh.vertices = grid * (mesh.vertices / grid).array().round();
+  return mesh;
+}
+
 // The corner of a face with which it begins.
 int first_corner(const Mesh& mesh, int face) {
   int first = 0;
@@ -81,30 +87,20 @@ std::vector<int> ordered_vertices(const Mesh& mesh, const std::vector<int>& face
 
 }  // namespace
 
-CanonicalOrder::CanonicalOrder(const Mesh& given) : face_of(ordered_faces(given)) {
-  const std::vector<int> vertices = ordered_vertices(given, face_of);
+CanonicalOrder::CanonicalOrder(const Mesh& given, double grid) {
+  const Mesh told = on_grid(given, grid);
+  face_of = ordered_faces(told);
+  const std::vector<int> vertices = ordered_vertices(told, face_of);
   std::vector<int> place(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) place[static_cast<std::size_t>(vertices[i])] = static_cast<int>(i);
   mesh.vertices = given.vertices(vertices, Eigen::all);
   mesh.faces.resize(given.faces.rows(), 3);
   for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-    const std::array<int, 3> corners = corners_of(given, face_of[static_cast<std::size_t>(f)]);
+    const std::array<int, 3> corners = corners_of(told, face_of[static_cast<std::size_t>(f)]);
     for (int k = 0; k < 3; ++k) {
       mesh.faces(f, k) = place[static_cast<std::size_t>(corners[static_cast<std::size_t>(k)])];
     }
   }
-}
-
-SymmetryAnnotation CanonicalOrder::in_given_order(SymmetryAnnotation annotation) const {
-  const auto renumber = [&](std::vector<int>& faces) {
-    for (int& face : faces) face = face_of[static_cast<std::size_t>(face)];
-    std::ranges::sort(faces);
-  };
-  for (Region& region : annotation.regions) renumber(region.faces);
-  for (Pattern& pattern : annotation.patterns) {
-    for (PatternInstance& instance : pattern.instances) renumber(instance.faces);
-  }
-  return annotation;
 }
 
 }  // namespace orbifit

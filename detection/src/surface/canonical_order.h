@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "orbifit/model/annotation.h"
 #include "orbifit/model/mesh.h"
 
 namespace orbifit {
@@ -15,10 +14,8 @@ struct CanonicalOrder {
   std::vector<int> face_of;  ///< #F: of each of its faces the number in the mesh given
 
   /// O(F log F). \pre coordinates are finite
-  explicit CanonicalOrder(const Mesh& given);
-
-  /// Of the mesh given, what was found of this one: faces ascending.
-  SymmetryAnnotation in_given_order(SymmetryAnnotation annotation) const;
+  /// \param grid  coordinates that round to the same multiple of it are in no order; 0: those that are equal
+  explicit CanonicalOrder(const Mesh& given, double grid = 0);
 };
 
 }  // namespace orbifit
