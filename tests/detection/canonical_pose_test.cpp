@@ -53,6 +53,16 @@ Mesh in_another_pose(const Mesh& mesh, Random& random) {
   return result;
 }
 
+// Of 30 teeth, with corners at two places of each that are as far from the middle: low moments do not tell them apart.
+Mesh gear() {
+  std::vector<Mesh> parts;
+  for (int k = 0; k < 30; ++k) {
+    const Motion turn = Motion::rotation(Vector3d::UnitZ(), 2 * std::numbers::pi * k / 30, Vector3d::Zero());
+    parts.push_back(test::moved(test::box(0.05, 0.1, 0.2), turn * test::shift(1, 0, 0)));
+  }
+  return test::joined(parts);
+}
+
 class CanonicalPoses : public testing::TestWithParam<PosedShape> {};
 
 TEST_P(CanonicalPoses, AreTheSameFromAnyPoseAndOrder) {
@@ -85,20 +95,19 @@ TEST_P(CanonicalPoses, AreTheMeshMoved) {
 
 // Without symmetry; with mirrors, which frames of one hand do not tell apart by distances; with axes; with corners that
 // are as far as one another though no symmetry takes them there.
-INSTANTIATE_TEST_SUITE_P(Shapes, CanonicalPoses,
-                         testing::Values(PosedShape{"scalene", test::scalene},
-                                         PosedShape{"hills", [] { return test::hills(12, 0); }},
-                                         PosedShape{"box", [] { return test::box(3, 2, 1); }},
-                                         PosedShape{"cube", [] { return test::box(1, 1, 1); }},
-                                         PosedShape{"prism", [] { return test::prism(7, 1, 2); }},
-                                         PosedShape{"two_boxes",
-                                                    [] {
-                                                      return test::joined(
-                                                          {test::box(1, 1, 1),
-                                                           test::moved(test::box(1, 1, 1), test::shift(5, 0, 0)),
-                                                           test::moved(test::scalene(), test::shift(2.5, 0.2, 0.1))});
-                                                    }}),
-                         [](const auto& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, CanonicalPoses,
+    testing::Values(PosedShape{"scalene", test::scalene}, PosedShape{"hills", [] { return test::hills(12, 0); }},
+                    PosedShape{"box", [] { return test::box(3, 2, 1); }},
+                    PosedShape{"cube", [] { return test::box(1, 1, 1); }},
+                    PosedShape{"prism", [] { return test::prism(7, 1, 2); }}, PosedShape{"gear", gear},
+                    PosedShape{"two_boxes",
+                               [] {
+                                 return test::joined({test::box(1, 1, 1),
+                                                      test::moved(test::box(1, 1, 1), test::shift(5, 0, 0)),
+                                                      test::moved(test::scalene(), test::shift(2.5, 0.2, 0.1))});
+                               }}),
+    [](const auto& each) { return each.param.name; });
 
 TEST(CanonicalPose, TakesWhatIsFoundBack) {
   const Mesh mesh = test::moved(test::prism(5, 1, 2), {axis_rotation(Vector3d(1, 2, 3).normalized(), 1), {4, 5, 6}});

@@ -18,9 +18,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kAlike = 1e-7;          // of the largest: rounding in sums over many corners, several times
-constexpr double kGrid = 1e-9;           // of the diagonal: coordinates that differ by less are in no order
-constexpr std::size_t kCandidates = 32;  // as far as the farthest, and alike: symmetries take them to one another
+constexpr double kAlike = 1e-7;           // of the largest: rounding in sums over many corners, several times
+constexpr double kGrid = 1e-9;            // of the diagonal: coordinates that differ by less are in no order
+constexpr std::size_t kCandidates = 100;  // corners as far as the farthest, and frames: most groups have fewer elements
 
 using Monomials = Eigen::Matrix<double, 6, 1>;
 
@@ -99,22 +99,20 @@ std::vector<Vector3d> leading(const CentredCorners& corners, const Rank& rank) {
   return result;
 }
 
-// What a frame, by its rows, makes of the corners: of mirror images, and of corners that are as far by chance, it
-// differs.
-using Signature = std::array<double, 6>;
+// What a frame, by its rows, makes of the corners: sums of waves along directions that no symmetry has, in units of the
+// farthest corner's distance. Of mirror images, and of corners that are as far by chance, they differ; the shorter
+// waves tell turns by parts of a circle apart that moments do not, up to some ninety parts.
+using Signature = std::array<double, 3>;
 
 Signature signature_of(const CentredCorners& corners, const Matrix3d& frame) {
+  Matrix3d waves;
+  waves << 5, 7, 4, 17, -11, 21, -47, 53, 59;
+  const Matrix3d phases = waves * frame;
   Signature result{};
   double count = 0;
   corners.for_each([&](const Vector3d& p) {
-    const Vector3d q = frame * p;
-    const std::array<double, 6> terms{q.z() * q.z() * q.z(),
-                                      q.x() * q.y() * q.z(),
-                                      q.x() * q.x() * q.z(),
-                                      q.y() * q.y() * q.z(),
-                                      q.x() * q.x() * q.x() * q.z() + q.x() * q.y() * q.y(),
-                                      q.x() * q.y() * q.z() * q.z() + q.y() * q.z() * q.z() * q.z()};
-    for (std::size_t k = 0; k < terms.size(); ++k) result[k] += terms[k];
+    const Vector3d phase = phases * p;
+    for (Eigen::Index k = 0; k < 3; ++k) result[static_cast<std::size_t>(k)] += std::sin(phase[k] + 1);
     ++count;
   });
   for (double& term : result) term /= std::max(count, 1.0);
@@ -133,7 +131,7 @@ bool larger(const Signature& a, const Signature& b) {
 
 Motion canonical_motion(const Mesh& mesh) {
   const CentredCorners corners(mesh);
-  std::optional<std::pair<Signature, Matrix3d>> best;
+  std::vector<Matrix3d> frames;
   for (const Vector3d& first : leading(corners, [](const Vector3d& p) { return p.norm(); })) {
     if (!(first.norm() > 0)) continue;
     const Vector3d x = first.normalized();
@@ -142,11 +140,20 @@ Motion canonical_motion(const Mesh& mesh) {
       const Vector3d y = away(second).norm() > kAlike ? away(second).normalized() : x.unitOrthogonal();
       Matrix3d frame;
       frame << x.transpose(), y.transpose(), x.cross(y).transpose();
-      const Signature signature = signature_of(corners, frame);
-      if (!best || larger(signature, best->first)) best = {signature, nearest_orthogonal(frame)};
+      frames.push_back(nearest_orthogonal(frame));
+    }
+    if (frames.size() >= kCandidates) break;
+  }
+  Matrix3d linear = frames.empty() ? Matrix3d::Identity() : frames.front();
+  if (frames.size() > 1) {
+    Signature best = signature_of(corners, linear);
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+      const Signature signature = signature_of(corners, frames[i]);
+      if (!larger(signature, best)) continue;
+      best = signature;
+      linear = frames[i];
     }
   }
-  const Matrix3d linear = best ? best->second : Matrix3d::Identity();
   return {linear, -linear * corners.mean()};
 }
 
