@@ -96,5 +96,29 @@ TEST(DetectSuite, ResidualsAreOfTheFacesAndPlacesThatAreListed) {
   EXPECT_GE(measured, 2);
 }
 
+// Of a surface whose triangles no motion takes to one another, at the same tolerance in lengths: a turned box has
+// another diagonal.
+TEST(DetectSuite, TheSameIsFoundInAnyPose) {
+  RunContext context;
+  const Mesh mesh = remesh(suite_model("stool_C3v").mesh, {}, context).mesh;
+  const SymmetryAnnotation expected = detect(mesh, {}, context);
+  ASSERT_GE(expected.regions.size(), 3U);
+  const Motion motion{axis_rotation(Eigen::Vector3d(3, -1, 2).normalized(), 2), {1, 2, -3}};
+  Mesh moved = mesh;
+  for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
+    moved.vertices.row(v) = motion(mesh.vertices.row(v).transpose()).transpose();
+  }
+  DetectOptions options;
+  options.tolerance *= diagonal(mesh.vertices) / diagonal(moved.vertices);
+  const SymmetryAnnotation found = detect(moved, options, context);
+  ASSERT_EQ(found.regions.size(), expected.regions.size());
+  ASSERT_EQ(found.patterns.size(), expected.patterns.size());
+  for (std::size_t r = 0; r < found.regions.size(); ++r) {
+    EXPECT_EQ(found.regions[r].group, expected.regions[r].group);
+    EXPECT_EQ(found.regions[r].faces, expected.regions[r].faces);
+    EXPECT_LT((found.regions[r].centre - motion(expected.regions[r].centre)).norm(), 1e-6 * diagonal(mesh.vertices));
+  }
+}
+
 }  // namespace
 }  // namespace orbifit
