@@ -18,6 +18,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr std::size_t kTold = 50000;      // faces by which frames are told apart: a tenth of a second for a hundred
 constexpr double kAlike = 1e-7;           // of the largest: rounding in sums over many corners, several times
 constexpr double kGrid = 1e-9;            // of the diagonal: coordinates that differ by less are in no order
 constexpr std::size_t kCandidates = 100;  // corners as far as the farthest, and frames: most groups have fewer elements
@@ -30,7 +31,7 @@ Monomials squares_of(const Vector3d& p) {
   return result;
 }
 
-/// Corners of faces about their mean, in units of the farthest one's distance.
+/// Corners of faces about their mean, in units of the farthest one's distance. The mesh is kept by reference.
 class CentredCorners {
  public:
   explicit CentredCorners(const Mesh& mesh) : mesh_(mesh) {
@@ -53,6 +54,25 @@ class CentredCorners {
     for_each_vertex([&](const Vector3d& p) { look(scale_ * (p - mean_)); });
   }
 
+  // The middles of the faces farthest from the mean, of those that are as far all: kTold of them, or a few more.
+  std::vector<Vector3d> outermost() const {
+    std::vector<Vector3d> middles;
+    std::vector<double> distances;
+    for (Eigen::Index f = 0; f < mesh_.faces.rows(); ++f) {
+      Vector3d sum = Vector3d::Zero();
+      for (int k = 0; k < 3; ++k) sum += scale_ * (vertex(f, k) - mean_);
+      middles.emplace_back(sum / 3);
+      distances.push_back(middles.back().norm());
+    }
+    if (middles.size() <= kTold) return middles;
+    std::vector<double> sorted = distances;
+    const auto at = sorted.end() - static_cast<std::ptrdiff_t>(kTold);
+    std::ranges::nth_element(sorted, at);
+    std::size_t i = 0;
+    std::erase_if(middles, [&](const Vector3d&) { return distances[i++] < *at - kAlike; });
+    return middles;
+  }
+
   // The sum of (p . q)^3 and (p . q)^4 over all corners q: the same for images under a symmetry.
   double descriptor(const Vector3d& p) const {
     Monomials squares = squares_of(p);
@@ -64,9 +84,10 @@ class CentredCorners {
   template <typename Look>
   void for_each_vertex(const Look& look) const {
     for (Eigen::Index f = 0; f < mesh_.faces.rows(); ++f) {
-      for (int k = 0; k < 3; ++k) look(Vector3d(mesh_.vertices.row(mesh_.faces(f, k))));
+      for (int k = 0; k < 3; ++k) look(vertex(f, k));
     }
   }
+  Vector3d vertex(Eigen::Index f, int k) const { return mesh_.vertices.row(mesh_.faces(f, k)); }
 
   const Mesh& mesh_;
   Vector3d mean_ = Vector3d::Zero();
@@ -99,23 +120,21 @@ std::vector<Vector3d> leading(const CentredCorners& corners, const Rank& rank) {
   return result;
 }
 
-// What a frame, by its rows, makes of the corners: sums of waves along directions that no symmetry has, in units of the
+// What a frame, by its rows, makes of points: sums of waves along directions that no symmetry has, in units of the
 // farthest corner's distance. Of mirror images, and of corners that are as far by chance, they differ; the shorter
 // waves tell turns by parts of a circle apart that moments do not, up to some ninety parts.
 using Signature = std::array<double, 3>;
 
-Signature signature_of(const CentredCorners& corners, const Matrix3d& frame) {
+Signature signature_of(const std::vector<Vector3d>& points, const Matrix3d& frame) {
   Matrix3d waves;
   waves << 5, 7, 4, 17, -11, 21, -47, 53, 59;
   const Matrix3d phases = waves * frame;
   Signature result{};
-  double count = 0;
-  corners.for_each([&](const Vector3d& p) {
+  for (const Vector3d& p : points) {
     const Vector3d phase = phases * p;
-    for (Eigen::Index k = 0; k < 3; ++k) result[static_cast<std::size_t>(k)] += std::sin(phase[k] + 1);
-    ++count;
-  });
-  for (double& term : result) term /= std::max(count, 1.0);
+    for (std::size_t k = 0; k < 3; ++k) result[k] += std::sin(phase[static_cast<Eigen::Index>(k)] + 1);
+  }
+  for (double& term : result) term /= static_cast<double>(points.size());
   return result;
 }
 
@@ -131,6 +150,7 @@ bool larger(const Signature& a, const Signature& b) {
 
 Motion canonical_motion(const Mesh& mesh) {
   const CentredCorners corners(mesh);
+  if (!corners.mean().allFinite()) return {};  // beyond what sums can hold
   std::vector<Matrix3d> frames;
   for (const Vector3d& first : leading(corners, [](const Vector3d& p) { return p.norm(); })) {
     if (!(first.norm() > 0)) continue;
@@ -146,9 +166,10 @@ Motion canonical_motion(const Mesh& mesh) {
   }
   Matrix3d linear = frames.empty() ? Matrix3d::Identity() : frames.front();
   if (frames.size() > 1) {
-    Signature best = signature_of(corners, linear);
+    const std::vector<Vector3d> points = corners.outermost();
+    Signature best = signature_of(points, linear);
     for (std::size_t i = 1; i < frames.size(); ++i) {
-      const Signature signature = signature_of(corners, frames[i]);
+      const Signature signature = signature_of(points, frames[i]);
       if (!larger(signature, best)) continue;
       best = signature;
       linear = frames[i];

@@ -11,7 +11,7 @@ namespace orbifit {
 /// The pose that a mesh has in a frame of its own: coordinates in it are the same, but for rounding, whatever pose and
 /// order it is given in; where the mesh has symmetries, up to one of them. The origin is the mean of the faces'
 /// corners. The first axis goes through the corner farthest from it, the second towards the one farthest from that
-/// axis; of corners that are as far, which symmetries take to one another as a rule, sums over all corners decide.
+/// axis; of corners that are as far, which symmetries take to one another as a rule, sums over the faces decide.
 /// \return what takes the mesh there, a proper motion. O(C F) for C corners as far as the farthest, or 100 of more.
 /// \pre coordinates are finite
 Motion canonical_motion(const Mesh& mesh);
