@@ -251,7 +251,7 @@ DetectionMeans means_of(const std::vector<const DetectionRow*>& rows) {
 }
 
 std::string detection_text(const std::vector<DetectionRow>& rows) {
-  const std::vector<std::string> figures{"rows",     "strict", "loose",  "precision", "F1",     "axis",
+  const std::vector<std::string> figures{"rows",     "strict", "loose",  "precision", "F1",      "axis",
                                          "offset %", "listed", "within", "again",     "s in all"};
   std::vector<std::string> form_header{"form", "noise"};
   form_header.insert(form_header.end(), figures.begin(), figures.end());
