@@ -19,6 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr std::size_t kFew =
+    8;  // shapes of fewer faces than one in so many have a tree of their own: the mesh's is slow for them
 constexpr int kSamples = 64;     // of a shape: shares to two per cent
 constexpr double kAlike = 1e-9;  // of the diagonal: rounding, where motions and copies are exact
 
@@ -156,7 +158,11 @@ Points RegionShapes::sampled(const std::vector<int>& faces, double area) const {
 
 const SurfaceIndex& RegionShapes::index(int shape) const {
   const Shape& known = at(shape);
-  if (!known.index) known.index = std::make_unique<SurfaceIndex>(surface_.index.part(known.faces));
+  if (!known.index) {
+    const bool few = kFew * known.faces.size() < known.holds.size() && !known.faces.empty();
+    known.index = few ? std::make_unique<SurfaceIndex>(surface_.mesh, known.faces)
+                      : std::make_unique<SurfaceIndex>(surface_.index.part(known.faces));
+  }
   return *known.index;
 }
 
