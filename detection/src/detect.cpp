@@ -574,7 +574,7 @@ SymmetryAnnotation detect(const Mesh& mesh, const DetectOptions& options, RunCon
   }
   SymmetryAnnotation result = pose.as_given(detected(mesh, pose, in_pose, context), mesh);
   result.tolerance = options.tolerance;
-  return result;
+  return kept_when_read(mesh, std::move(result), options.explanation, context);
 }
 
 }  // namespace orbifit

@@ -165,4 +165,19 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
   }
 }
 
+SymmetryAnnotation kept_when_read(const Mesh& mesh, SymmetryAnnotation listed, Explanation* explanation,
+                                  const RunContext& context) {
+  while (true) {
+    const ConsistentAnnotation read = consistent_annotation(mesh, listed, context);
+    std::vector<LeftOut> left_out = read.left_out;
+    std::erase_if(left_out, [&](const LeftOut& each) { return is_image(each, listed); });
+    if (left_out.empty()) break;
+    note_left_out(left_out, explanation);
+    take_out(listed, left_out);
+  }
+  number(listed);
+  set_parents(listed.regions);
+  return listed;
+}
+
 }  // namespace orbifit

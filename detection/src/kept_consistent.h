@@ -28,4 +28,10 @@ SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mes
 SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
                                              Explanation* explanation, const RunContext& context);
 
+/// A list without what would be left out when it is read: thresholds are fractions of the diagonal, which is another
+/// one in the pose that a mesh is given in than in the one that detection works in.
+/// \param mesh  as it is given
+SymmetryAnnotation kept_when_read(const Mesh& mesh, SymmetryAnnotation listed, Explanation* explanation,
+                                  const RunContext& context);
+
 }  // namespace orbifit
