@@ -144,6 +144,7 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
   std::vector<Region> measured = found.regions;
   Remaining possible{std::move(found), {}};
   Remaining now = possible;
+  int chances = 1;  // each is as much work as all before it
   for (bool first = true;; first = !first) {
     const SymmetryAnnotation listed = without_what_follows(prepared, now.found, context);
     ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
@@ -156,11 +157,12 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
       note_left_out(now.left_out, explanation);
       return sorted(mesh, std::move(kept.annotation), now.left_out.size(), context);
     }
-    if (first) {  // it may have implied something
+    if (first || chances == 0) {  // it may have implied something
       now.leave_out(kept.left_out);
     } else {  // it was kept until now, and something may have been left out for it
       possible.leave_out(kept.left_out);
       now = possible;
+      --chances;
     }
   }
 }
