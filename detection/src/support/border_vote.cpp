@@ -53,20 +53,11 @@ class BorderVote {
  private:
   bool in(int face) const { return in_[static_cast<std::size_t>(face)] != 0; }
 
-  template <typename Look>
-  void for_neighbours(int face, const Look& look) const {
-    for (int k = 0; k < 3; ++k) {
-      const auto corner = static_cast<std::size_t>(prepared_.mesh.faces(face, k));
-      const auto vertex = static_cast<std::size_t>(prepared_.weld.group_of_vertex[corner]);
-      for (const int other : prepared_.faces_of_vertex[vertex]) look(other);
-    }
-  }
-
   // Of these faces and those around them the ones that have a neighbour on the other side of the border.
   std::vector<int> at_border(const std::vector<int>& faces) const {
     std::vector<int> result;
     for (const int face : faces) {
-      for_neighbours(face, [&](int other) {
+      for_neighbours(prepared_, face, [&](int other) {
         if (in(other) == in(face)) return;
         result.push_back(face);
         result.push_back(other);

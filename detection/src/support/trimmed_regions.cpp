@@ -52,18 +52,9 @@ class Trimmer {
   }
 
  private:
-  template <typename Look>
-  void for_neighbours(int face, const Look& look) const {
-    for (int k = 0; k < 3; ++k) {
-      const auto corner = static_cast<std::size_t>(prepared_.mesh.faces(face, k));
-      const auto vertex = static_cast<std::size_t>(prepared_.weld.group_of_vertex[corner]);
-      for (const int other : prepared_.faces_of_vertex[vertex]) look(other);
-    }
-  }
-
   bool at_border(int face) const {
     bool border = false;
-    for_neighbours(face, [&](int other) { border = border || in_[static_cast<std::size_t>(other)] == 0; });
+    for_neighbours(prepared_, face, [&](int other) { border = border || in_[static_cast<std::size_t>(other)] == 0; });
     return border;
   }
 
@@ -98,7 +89,7 @@ class Trimmer {
         if (kept[i] != 0) continue;
         gone.push_back(asked[i]);
         spare -= prepared_.areas[asked[i]];
-        for_neighbours(asked[i], [&](int other) { around.push_back(other); });
+        for_neighbours(prepared_, asked[i], [&](int other) { around.push_back(other); });
       }
       if (spare < 0) return gone;
       asked = std::move(around);
@@ -120,7 +111,7 @@ class Trimmer {
       }
     });
     std::erase(nearest, -1);
-    for (const int face : gone) for_neighbours(face, [&](int other) { nearest.push_back(other); });
+    for (const int face : gone) for_neighbours(prepared_, face, [&](int other) { nearest.push_back(other); });
     return nearest;
   }
 

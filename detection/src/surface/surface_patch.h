@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,16 @@ PreparedMesh prepare(const Mesh& mesh);
 
 /// Of the faces that count, see PreparedMesh::areas.
 double area_of(const PreparedMesh& prepared, const std::vector<int>& faces);
+
+/// Calls look(other) for each face at a corner of the face, itself too; for those at two of its corners twice.
+template <typename Look>
+void for_neighbours(const PreparedMesh& prepared, int face, const Look& look) {
+  for (int k = 0; k < 3; ++k) {
+    const auto corner = static_cast<std::size_t>(prepared.mesh.faces(face, k));
+    const auto vertex = static_cast<std::size_t>(prepared.weld.group_of_vertex[corner]);
+    for (const int other : prepared.faces_of_vertex[vertex]) look(other);
+  }
+}
 
 /// Area moments of some faces, exact integrals over the triangles.
 struct SurfaceMoments {
