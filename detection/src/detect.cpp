@@ -491,14 +491,6 @@ void DetectOptions::validate() const {
 
 namespace {
 
-// The mesh as it was given, moved into another's pose.
-Mesh moved_to(const CanonicalPose& pose, Mesh given) {
-  for (Eigen::Index v = 0; v < given.vertices.rows(); ++v) {
-    given.vertices.row(v) = pose.motion(given.vertices.row(v).transpose()).transpose();
-  }
-  return given;
-}
-
 // Of the mesh in its canonical pose. \param as_given  with the colours' faces
 SymmetryAnnotation detected(const Mesh& as_given, const CanonicalPose& pose, const DetectOptions& options,
                             RunContext& context) {
@@ -548,7 +540,7 @@ SymmetryAnnotation detected(const Mesh& as_given, const CanonicalPose& pose, con
     return listed(prepared, pose, std::move(annotation), options, context);
   }
   context.progress("colours", 0);
-  const ColourSamples samples(mesh, *options.colours, moved_to(pose, as_given), pose.face_of,
+  const ColourSamples samples(mesh, *options.colours, pose.moved(as_given), pose.face_of,
                               options.tolerance * diagonal(mesh.vertices), context);
   if (options.broken_by_colours != nullptr) {
     DetectOptions by_shape = options;

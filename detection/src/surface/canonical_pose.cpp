@@ -181,15 +181,19 @@ Motion canonical_motion(const Mesh& mesh) {
 CanonicalPose::CanonicalPose(const Mesh& given) {
   const CanonicalOrder in_order(given);  // sums of the same mesh are then the same to the last digit
   motion = canonical_motion(in_order.mesh);
-  Mesh moved = in_order.mesh;
-  for (Eigen::Index v = 0; v < moved.vertices.rows(); ++v) {
-    moved.vertices.row(v) = motion(moved.vertices.row(v).transpose()).transpose();
-  }
-  const double own = diagonal(moved.vertices);
+  const Mesh there = moved(in_order.mesh);
+  const double own = diagonal(there.vertices);
   if (own > 0) stretch = diagonal(given.vertices) / own;
-  CanonicalOrder order(moved, kGrid * own);
+  CanonicalOrder order(there, kGrid * own);
   mesh = std::move(order.mesh);
   for (const int face : order.face_of) face_of.push_back(in_order.face_of[static_cast<std::size_t>(face)]);
+}
+
+Mesh CanonicalPose::moved(Mesh given) const {
+  for (Eigen::Index v = 0; v < given.vertices.rows(); ++v) {
+    given.vertices.row(v) = motion(given.vertices.row(v).transpose()).transpose();
+  }
+  return given;
 }
 
 SymmetryAnnotation CanonicalPose::as_given(const SymmetryAnnotation& annotation, const Mesh& given) const {
@@ -213,11 +217,11 @@ SymmetryAnnotation CanonicalPose::as_given(const SymmetryAnnotation& annotation,
   for (Region& region : result.regions) {
     if (const std::optional<GroupPlace> place = place_of(region)) {
       const GroupPlace there = image_of(*place, back);
-      Region moved = make_region(there.group, there.centre, there.frame, {}, {});
-      region.centre = moved.centre;
-      region.axis = moved.axis;
-      region.generators = std::move(moved.generators);
-      region.elements = std::move(moved.elements);
+      Region placed = make_region(there.group, there.centre, there.frame, {}, {});
+      region.centre = placed.centre;
+      region.axis = placed.axis;
+      region.generators = std::move(placed.generators);
+      region.elements = std::move(placed.elements);
     }
     faces_given(region.faces);
     residual_given(region.residual);

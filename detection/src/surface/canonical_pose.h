@@ -27,6 +27,9 @@ struct CanonicalPose {
   /// O(F log F). \pre coordinates are finite
   explicit CanonicalPose(const Mesh& given);
 
+  /// The mesh given, in its own order, where this one lies.
+  Mesh moved(Mesh given) const;
+
   /// Of the mesh given, what was found of this one: faces ascending, groups and motions where that lies, fractions
   /// those of its diagonal.
   SymmetryAnnotation as_given(const SymmetryAnnotation& annotation, const Mesh& given) const;
