@@ -69,8 +69,8 @@ class OrbitBuilder {
       : mesh_(mesh),
         regions_(regions),
         words_(words),
-        grid_(mesh.vertices, tolerance),
-        sets_(closed_sets_of_vertices(mesh, regions, grid_)) {
+        images_(mesh.vertices, tolerance, 0),
+        sets_(closed_sets_of_vertices(mesh, regions, images_)) {
     closure_.doublet = tolerance;
     result_.tolerance = tolerance;
     result_.followers.assign(sets_.size(), {-1, 0, -1});
@@ -149,7 +149,7 @@ class OrbitBuilder {
       result_.point_sets.push_back(point.set);
       const bool turned = continuum_of(point.set) >= 0;
       bool met = false;
-      const VertexGrid& grid = turned ? *canonical_grid_ : grid_;
+      const VertexGrid& grid = turned ? *canonical_grid_ : images_.grid();
       bool same_only = !turned;  // on a circle vertices may lie in more places than the point
       grid.visit(point.position,
                  [&](int other) { same_only = same_only || sets_[static_cast<std::size_t>(other)] == point.set; });
@@ -200,7 +200,7 @@ class OrbitBuilder {
   const Mesh& mesh_;
   const RegionMap& regions_;
   GroupWords& words_;
-  VertexGrid grid_;
+  VertexImages images_;
   std::vector<int> sets_;
   ClosureOptions closure_;
   VertexOrbits result_;

@@ -11,8 +11,8 @@
 #include "consistency/consistency_search.h"
 #include "domains/closed_sets.h"
 #include "domains/domain_map.h"
+#include "domains/vertex_images.h"
 #include "domains/vertex_sets.h"
-#include "geometry/vertex_grid.h"
 
 namespace orbifit {
 
@@ -26,12 +26,19 @@ struct Conflict {
 
 class BorderCheck {
  public:
-  BorderCheck(const Mesh& mesh, const DomainMap& domains, const RunContext& context)
+  BorderCheck(const Mesh& mesh, const DomainMap& domains, VertexImages& images, const RunContext& context)
       : mesh_(mesh),
         domains_(domains),
+        images_(images),
         context_(context),
-        grid_(mesh.vertices, kDoublet * diagonal(mesh.vertices)),
-        sets_(closed_sets_of_vertices(mesh, domains, grid_)) {}
+        sets_(closed_sets_of_vertices(mesh, domains, images)),
+        of_place_(static_cast<std::size_t>(domains.places())) {
+    for (int place = 0; place < domains.places(); ++place) {
+      for (const Motion& motion : domains.elements(place)) {
+        of_place_[static_cast<std::size_t>(place)].push_back(&images.of(motion));
+      }
+    }
+  }
 
   std::vector<Conflict> run() {
     for (int vertex = 0; vertex < static_cast<int>(sets_.size()); ++vertex) {
@@ -58,13 +65,15 @@ class BorderCheck {
   // The sets of the points that a place has at a position, with a vertex of each.
   std::map<int, int> sets_at(const Eigen::Vector3d& position, int place) const {
     std::map<int, int> result;
-    grid_.visit(position, [&](int vertex) {
+    images_.grid().visit(position, [&](int vertex) {
       if (domains_.holds(set_of(vertex), place)) result.try_emplace(set_of(vertex), vertex);
     });
     return result;
   }
 
   void follow(int vertex, int place, int element) {
+    const int at = (*of_place_[static_cast<std::size_t>(place)][static_cast<std::size_t>(element)])(vertex);
+    if (at == VertexImages::kNone) return;
     const Eigen::Vector3d position = mesh_.vertices.row(vertex).transpose();
     const int carried = domains_.carried_set(set_of(vertex), place, element);
     const int arrival = domains_.arrival(place, element);
@@ -90,9 +99,10 @@ class BorderCheck {
 
   const Mesh& mesh_;
   const DomainMap& domains_;
+  VertexImages& images_;
   const RunContext& context_;
-  VertexGrid grid_;
   std::vector<int> sets_;
+  std::vector<std::vector<VertexImages::Images*>> of_place_;  // by place and element
   std::map<int, std::vector<std::pair<int, int>>> unclosed_;  // of each set seen
   std::vector<Conflict> result_;
 };
@@ -135,7 +145,8 @@ std::optional<Loss> least_loss(const Mesh& mesh, const std::vector<std::vector<i
 
 }  // namespace
 
-bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunContext& context) {
+bool close_borders(const ShapeSurface& surface, SymmetryAnnotation& annotation, const RunContext& context) {
+  const Mesh& mesh = surface.mesh;
   std::vector<std::vector<int>*> faces;  // of each place
   for (Region& region : annotation.regions) faces.push_back(&region.faces);
   for (Pattern& pattern : annotation.patterns) {
@@ -144,7 +155,7 @@ bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunCo
   bool any = false;
   while (true) {
     const DomainMap domains(mesh, annotation, instance_motions(annotation));
-    std::vector<Conflict> conflicts = BorderCheck(mesh, domains, context).run();
+    std::vector<Conflict> conflicts = BorderCheck(mesh, domains, surface.vertex_images, context).run();
     bool taken = false;
     while (const std::optional<Loss> loss = least_loss(mesh, faces, domains, conflicts)) {
       taken = true;

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "orbifit/model/annotation.h"
-#include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+
+#include "consistency/region_shapes.h"
 
 namespace orbifit {
 
@@ -14,6 +15,6 @@ namespace orbifit {
 /// of it beside another's, whose image the one point there is; A loses those. Of all regions that may lose faces the
 /// one that loses the least share of its own does so first. An annotation without such vertices stays as it is. Cost
 /// O(V) for each element of each group, as often as faces are taken. \return whether any were
-bool close_borders(const Mesh& mesh, SymmetryAnnotation& annotation, const RunContext& context);
+bool close_borders(const ShapeSurface& surface, SymmetryAnnotation& annotation, const RunContext& context);
 
 }  // namespace orbifit

@@ -57,7 +57,7 @@ ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const Sy
   // What was added or given up may contradict what else is kept; every repetition leaves out more, so there is an end.
   // Groups that do not close may do so once borders are given up, which costs less.
   while (true) {
-    if (close_borders(surface.mesh, result.annotation, context) || !settled) {
+    if (close_borders(surface, result.annotation, context) || !settled) {
       if (std::optional<ConsistentAnnotation> again = chosen_annotation(surface, result.annotation, context)) {
         settled = again->left_out.empty();
         take(std::move(*again));

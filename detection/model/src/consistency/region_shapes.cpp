@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.h"
+#include "domains/vertex_sets.h"
 #include "geometry/grid_cell.h"
 
 namespace orbifit {
@@ -98,7 +99,8 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
       centroids(face_centroids(of)),
-      index(of) {}
+      index(of),
+      vertex_images(of.vertices, kDoublet * diagonal) {}
 
 int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();

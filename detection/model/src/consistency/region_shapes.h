@@ -18,6 +18,7 @@
 #include "base/digest.h"
 #include "consistency/group_place.h"
 #include "domains/piece_moments.h"
+#include "domains/vertex_images.h"
 #include "geometry/surface_index.h"
 
 namespace orbifit {
@@ -42,6 +43,7 @@ struct ShapeSurface {
   Eigen::VectorXd areas;
   Points centroids;  ///< of faces
   SurfaceIndex index;
+  mutable VertexImages vertex_images;
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;

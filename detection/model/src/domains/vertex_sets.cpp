@@ -127,10 +127,11 @@ namespace {
 // Sets are carried along by every motion of every place, vertex by vertex, until nothing changes.
 class SetClosure {
  public:
-  SetClosure(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid, PointSets points)
+  SetClosure(const Mesh& mesh, const DomainMap& domains, VertexImages& images, PointSets points)
       : mesh_(mesh),
         domains_(domains),
-        grid_(grid),
+        images_(images),
+        of_place_(static_cast<std::size_t>(domains.places())),
         normals_(vertex_normals(mesh)),
         rounding_(kWeld * diagonal(mesh.vertices)),
         points_(std::move(points)),
@@ -145,12 +146,10 @@ class SetClosure {
     for (std::size_t head = 0; head < queue_.size(); ++head) {
       const int vertex = queue_[head];
       queued_[static_cast<std::size_t>(vertex)] = 0;
-      const std::vector<int> here = nearest_to(mesh_.vertices.row(vertex).transpose());
       const std::vector<int> places = domains_.set_places(set_of(vertex));
       for (const int place : places) {
-        const bool alone = lone_point(here, place);
         for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
-          carry(vertex, place, element, alone);
+          carry(vertex, place, element);
         }
       }
     }
@@ -169,12 +168,20 @@ class SetClosure {
     if (std::exchange(queued_[static_cast<std::size_t>(root)], 1) == 0) queue_.push_back(root);
   }
 
+  int image(int vertex, int place, int element) {
+    auto& of = of_place_[static_cast<std::size_t>(place)];
+    if (of.empty()) {
+      for (const Motion& motion : domains_.elements(place)) of.push_back(&images_.of(motion));
+    }
+    return (*of[static_cast<std::size_t>(element)])(vertex);
+  }
+
   // The vertices nearest to a position; others near it are there for themselves.
   std::vector<int> nearest_to(const Eigen::Vector3d& position) const {
     const auto distance = [&](int other) { return (mesh_.vertices.row(other).transpose() - position).norm(); };
     std::vector<int> near;
     double least = std::numeric_limits<double>::infinity();
-    grid_.visit(position, [&](int other) {
+    images_.grid().visit(position, [&](int other) {
       near.push_back(other);
       least = std::min(least, distance(other));
     });
@@ -194,17 +201,20 @@ class SetClosure {
     return found != kNone;
   }
 
-  // \param alone  whether the place has one point alone where the vertex is
-  void carry(int vertex, int place, int element, bool alone) {
+  void carry(int vertex, int place, int element) {
     // Parts that touch have vertices at one place; their surfaces face different ways there.
     constexpr double kSameSide = 0.7;  // cosine: the corners of a part and of what it stands on are farther apart
+    const int image = this->image(vertex, place, element);
+    if (image == VertexImages::kNone) return;
     const int arrival = domains_.arrival(place, element);
     const int carried = domains_.carried_set(set_of(vertex), place, element);
     const Motion& motion = domains_.elements(place)[static_cast<std::size_t>(element)];
-    const Eigen::Vector3d turned = motion.linear * normals_.row(vertex).transpose();
-    const std::vector<int> near = nearest_to(motion(mesh_.vertices.row(vertex).transpose()));
+    const Eigen::Vector3d position = mesh_.vertices.row(vertex).transpose();
+    const std::vector<int> near =
+        image == VertexImages::kSeveral ? nearest_to(motion(position)) : std::vector<int>{image};
     if (std::ranges::any_of(near, [&](int other) { return set_of(other) == carried; })) return;
-    const bool alone_there = alone && lone_point(near, arrival);
+    const bool alone_there = lone_point(nearest_to(position), place) && lone_point(near, arrival);
+    const Eigen::Vector3d turned = motion.linear * normals_.row(vertex).transpose();
     std::vector<int> met;
     for (const int other : near) {
       const bool meant = alone_there ? domains_.holds(set_of(other), arrival)
@@ -220,7 +230,8 @@ class SetClosure {
 
   const Mesh& mesh_;
   const DomainMap& domains_;
-  const VertexGrid& grid_;
+  VertexImages& images_;
+  std::vector<std::vector<VertexImages::Images*>> of_place_;  // by place and element, once asked for
   Points normals_;
   double rounding_;
   PointSets points_;
@@ -230,12 +241,12 @@ class SetClosure {
 
 }  // namespace
 
-std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid) {
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images) {
   PointSets points = point_sets(mesh, domains);
   bool partial = false;
   for (int place = 0; place < domains.places(); ++place) partial = partial || !domains.whole(place);
   if (!partial) return by_vertex(points);
-  return by_vertex(SetClosure(mesh, domains, grid, std::move(points)).run());
+  return by_vertex(SetClosure(mesh, domains, images, std::move(points)).run());
 }
 
 }  // namespace orbifit

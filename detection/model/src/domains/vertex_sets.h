@@ -5,7 +5,7 @@
 #include "orbifit/model/mesh.h"
 
 #include "domains/domain_map.h"
-#include "geometry/vertex_grid.h"
+#include "domains/vertex_images.h"
 
 namespace orbifit {
 
@@ -22,6 +22,7 @@ std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains);
 /// As sets_of_vertices(), with what the motions of its places say of each vertex: where an image of a vertex is a
 /// vertex, the image of its set and the other's are one. Regions are drawn face by face, and where one ends a face
 /// earlier than its image, the vertices of both are decided alike here, once for all of an orbit.
-std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, const VertexGrid& grid);
+/// \param images  of the mesh's vertices
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images);
 
 }  // namespace orbifit

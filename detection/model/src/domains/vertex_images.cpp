@@ -1,0 +1,24 @@
+#include "domains/vertex_images.h"
+
+#include <algorithm>
+
+namespace orbifit {
+
+int VertexImages::Images::look(int vertex) const {
+  int result = kNone;
+  of_.grid_.visit(motion_(of_.vertices_.row(vertex).transpose()),
+                  [&](int other) { result = result == kNone ? other : kSeveral; });
+  return result;
+}
+
+VertexImages::Images& VertexImages::of(const Motion& motion) {
+  std::array<double, 12> key{};
+  std::copy_n(motion.linear.data(), 9, key.begin());
+  std::copy_n(motion.translation.data(), 3, key.begin() + 9);
+  const auto found = by_motion_.find(key);
+  if (found != by_motion_.end()) return found->second;
+  const bool remembers = (by_motion_.size() + 1) * static_cast<std::size_t>(vertices_.rows()) <= most_remembered_;
+  return by_motion_.emplace(key, Images(*this, motion, remembers)).first->second;
+}
+
+}  // namespace orbifit

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "orbifit/model/mesh.h"
+#include "orbifit/model/motion.h"
+
+#include "geometry/vertex_grid.h"
+
+namespace orbifit {
+
+/// Of a mesh, which vertices lie where motions take vertices. What was asked once is remembered: annotations of one
+/// mesh share most of their motions, and of most meshes most vertices have no image at all. Not for use by several
+/// threads.
+class VertexImages {
+ public:
+  static constexpr int kNone = -1;                                       ///< no vertex lies there
+  static constexpr int kSeveral = -2;                                    ///< ask grid() which
+  static constexpr std::size_t kMostRemembered = std::size_t{1} << 25U;  ///< 128 MiB
+
+  /// \param vertices  kept by reference
+  /// \param tolerance  how near is there, mesh units
+  /// \param most_remembered  images; those of more motions are looked up each time
+  VertexImages(const Points& vertices, double tolerance, std::size_t most_remembered = kMostRemembered)
+      : vertices_(vertices), grid_(vertices, tolerance), most_remembered_(most_remembered) {}
+
+  const VertexGrid& grid() const { return grid_; }
+
+  /// Where one motion takes vertices.
+  class Images {
+   public:
+    /// The vertex where it takes a vertex, or kNone, or kSeveral. O(1), on average.
+    int operator()(int vertex) {
+      if (known_.empty()) return look(vertex);
+      int& known = known_[static_cast<std::size_t>(vertex)];
+      if (known == kUnknown) known = look(vertex);
+      return known;
+    }
+
+   private:
+    friend class VertexImages;
+    static constexpr int kUnknown = -3;
+    Images(const VertexImages& of, const Motion& motion, bool remembers)
+        : of_(of), motion_(motion), known_(remembers ? static_cast<std::size_t>(of.vertices_.rows()) : 0, kUnknown) {}
+    int look(int vertex) const;
+
+    const VertexImages& of_;
+    Motion motion_;
+    std::vector<int> known_;  // empty: nothing is remembered
+  };
+
+  /// \return valid as long as this object
+  Images& of(const Motion& motion);
+
+ private:
+  const Points& vertices_;
+  VertexGrid grid_;
+  std::size_t most_remembered_;
+  std::map<std::array<double, 12>, Images> by_motion_;
+};
+
+}  // namespace orbifit
