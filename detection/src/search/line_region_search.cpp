@@ -45,6 +45,18 @@ bool turns_otherwise(const GroupPlacement& has, const GroupPlacement& other, dou
   return radius * axis.cross(other.frame.col(2)).norm() < near && axis.cross(other.centre - has.centre).norm() < near;
 }
 
+// Whether some element takes points of the patch elsewhere than it did, by more than the grid tells.
+bool has_moved(const SurfacePatch& patch, const GroupPlacement& from, const GroupPlacement& to) {
+  constexpr double kTold = 0.1;  // tolerances: a fifth of a cell
+  const std::vector<Motion> before = judged_motions(from.group, from.frame, from.centre);
+  const std::vector<Motion> after = judged_motions(to.group, to.frame, to.centre);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double moved = motion_distance(before[i], after[i], patch.moments.centroid, patch.moments.radius);
+    if (moved > kTold * patch.tolerance) return true;
+  }
+  return false;
+}
+
 // The very same, of one stage.
 bool same(const LineRegionSearch::Candidate& a, const LineRegionSearch::Candidate& b) {
   return a.stage == b.stage && a.enlarge == b.enlarge && a.start.group == b.start.group &&
@@ -208,12 +220,13 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   if (!measure(region)) return judged(false, "too small");
   if (mere_plates(region.faces)) return judged(false, "any two plates are mirror images");
   if (mere_balls(region)) return judged(false, "little but balls that it fixes");
-  if (is_known(Question::kNothingNew)) return known_already();
+  if (is_known(Question::kNothingNew) || is_known(Question::kEndsAnywhere)) return known_already();
   SurfacePatch patch = patch_of(region, context);
   if (hopeless(patch, start, context)) return judged(false, "not verified: a first look keeps too little");
   region.placement = refine(patch, start, context);
   if (is_known(Question::kNothingNew)) return known_already();
-  std::vector<int> again = grid_region(surface_, region.placement, context);
+  std::vector<int> again = region.faces;
+  if (has_moved(patch, start, region.placement)) again = grid_region(surface_, region.placement, context);
   if (again != region.faces) {
     region.faces = std::move(again);
     if (!measure(region)) return judged(false, "too small once refined");

@@ -20,7 +20,8 @@ class BorderVote {
         tolerance_(tolerance),
         motions_(motions),
         moves_(moves),
-        in_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0) {
+        in_(static_cast<std::size_t>(prepared.mesh.faces.rows()), 0),
+        images_(in_.size()) {
     for (const int face : faces) in_[static_cast<std::size_t>(face)] = 1;
   }
 
@@ -68,16 +69,27 @@ class BorderVote {
     return result;
   }
 
-  bool is_elected(int face) const {
-    if (moves_ == BorderMoves::inwards && !in(face)) return false;
+  // The faces on which the motions take a face, -1 for none: the same ones in each pass.
+  const std::vector<int>& images_of(int face) {
+    std::vector<int>& images = images_[static_cast<std::size_t>(face)];
+    if (!images.empty()) return images;
     const Vector3d centroid = face_centroid(prepared_, face);
     const Vector3d normal = prepared_.normals.row(face);
-    std::size_t votes = in(face) ? 1 : 0;
     for (const Motion& motion : motions_) {
-      const SurfaceIndex::Nearest image =
-          prepared_.index->nearest_facing(motion(centroid), motion.linear * normal, kAlikeNormals, tolerance_, true);
-      if (image.face < 0 && !in(face)) return false;
-      if (image.face >= 0 && in(image.face)) ++votes;
+      images.push_back(
+          prepared_.index->nearest_facing(motion(centroid), motion.linear * normal, kAlikeNormals, tolerance_, true)
+              .face);
+    }
+    return images;
+  }
+
+  // Not for two threads that ask of the same face.
+  bool is_elected(int face) {
+    if (moves_ == BorderMoves::inwards && !in(face)) return false;
+    std::size_t votes = in(face) ? 1 : 0;
+    for (const int image : images_of(face)) {
+      if (image < 0 && !in(face)) return false;
+      if (image >= 0 && in(image)) ++votes;
     }
     const std::size_t all = motions_.size() + 1;
     return 2 * votes > all || (2 * votes == all && in(face));
@@ -87,7 +99,8 @@ class BorderVote {
   double tolerance_;
   const std::vector<Motion>& motions_;
   BorderMoves moves_;
-  std::vector<char> in_;  // by face of the mesh
+  std::vector<char> in_;                  // by face of the mesh
+  std::vector<std::vector<int>> images_;  // likewise, of those that were asked
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "group/verification.h"
 #include "surface/creases.h"
@@ -37,7 +38,8 @@ std::vector<int> with_area(const PreparedMesh& prepared) {
 /// Whether motions keep faces on the surface.
 class FaceTest {
  public:
-  FaceTest(const ScreenedSurface& surface, const std::vector<Motion>& motions) : surface_(surface), motions_(motions) {}
+  FaceTest(const ScreenedSurface& surface, std::vector<Motion> motions)
+      : surface_(surface), motions_(std::move(motions)) {}
 
   // All motions keep all but a few points of the face. Not for several threads at once.
   bool keep(int face) {
@@ -46,7 +48,7 @@ class FaceTest {
     const auto allowed = static_cast<std::size_t>(kMaxOff * static_cast<double>(points_.size()));
     const auto most_astray = static_cast<std::size_t>(kMaxAstray * static_cast<double>(points_.size()));
     const Vector3d normal = surface_.prepared.normals.row(face);
-    return std::ranges::all_of(motions_, [&](const Motion& motion) {
+    const auto keeps = [&](const Motion& motion) {
       const Vector3d turned = motion.linear * normal;
       std::size_t off = 0;
       std::size_t astray = 0;
@@ -57,7 +59,12 @@ class FaceTest {
         if (near ? ++astray > most_astray : ++off > allowed) return false;
       }
       return true;
-    });
+    };
+    const auto refuting = std::ranges::find_if_not(motions_, keeps);
+    if (refuting == motions_.end()) return true;
+    // What takes this face off the surface will take its neighbours off, and is asked first.
+    std::iter_swap(motions_.begin(), refuting);
+    return false;
   }
 
  private:
@@ -70,7 +77,7 @@ class FaceTest {
   }
 
   const ScreenedSurface& surface_;
-  const std::vector<Motion>& motions_;
+  std::vector<Motion> motions_;
   std::vector<Vector3d> points_;
   std::vector<signed char> at_crease_;  // of the points, -1 where it was not asked yet
 };

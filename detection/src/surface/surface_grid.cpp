@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <unordered_map>
 
 #include "geometry/cover_triangle.h"
 
@@ -49,6 +51,26 @@ SurfaceGrid::SurfaceGrid(const PreparedMesh& prepared, const std::vector<int>& f
     cover_triangle(corner(0), corner(1), corner(2), kSpacing / per_cell_,
                    [&](const Vector3d& point) { add(point, mask); });
   }
+  number_masks();
+}
+
+// Most cells share their mask with many others.
+void SurfaceGrid::number_masks() {
+  std::unordered_map<std::uint64_t, std::uint16_t> known;
+  numbers_.resize(masks_.size());
+  for (std::size_t block = 0; block < masks_.size(); ++block) {
+    for (std::size_t cell = 0; cell < masks_[block].size(); ++cell) {
+      const std::uint64_t mask = masks_[block][cell];
+      const auto [entry, added] = known.try_emplace(mask, static_cast<std::uint16_t>(distinct_.size()));
+      if (added) distinct_.push_back(mask);
+      if (distinct_.size() > std::numeric_limits<std::uint16_t>::max()) {
+        numbers_.clear();
+        return;
+      }
+      numbers_[block][cell] = entry->second;
+    }
+  }
+  masks_ = {};
 }
 
 // The cells whose centres are within reach of a point, for each place of it within its own cell.

@@ -51,20 +51,24 @@ class SurfaceGrid {
     const int block = blocks_[number({at[0] >> 3, at[1] >> 3, at[2] >> 3}, counts_[1], counts_[2])];
     if (block < 0) return 0;
     const auto inside = static_cast<std::size_t>(((at[0] & 7) << 6) | ((at[1] & 7) << 3) | (at[2] & 7));
-    return masks_[static_cast<std::size_t>(block)][inside];
+    if (numbers_.empty()) return masks_[static_cast<std::size_t>(block)][inside];
+    return distinct_[numbers_[static_cast<std::size_t>(block)][inside]];
   }
 
   void make_directions();
   void make_stencils();
   void add(const Eigen::Vector3d& point, std::uint64_t mask);
+  void number_masks();
 
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double per_cell_ = 1;
   double reach_ = 0;
   Eigen::Vector3i cells_ = Eigen::Vector3i::Zero();
-  Eigen::Vector3i counts_ = Eigen::Vector3i::Zero();  // of blocks
-  std::vector<int> blocks_;                           // -1 for empty
-  std::vector<std::array<std::uint64_t, 512>> masks_;
+  Eigen::Vector3i counts_ = Eigen::Vector3i::Zero();     // of blocks
+  std::vector<int> blocks_;                              // -1 for empty
+  std::vector<std::array<std::uint64_t, 512>> masks_;    // of the cells; empty where they have numbers
+  std::vector<std::array<std::uint16_t, 512>> numbers_;  // of their masks among the distinct ones: fits in a cache
+  std::vector<std::uint64_t> distinct_;
   std::vector<std::vector<Eigen::Vector3i>> stencils_;  // steps to cells within reach, by the place in a cell
   Eigen::Matrix<double, kDirections, 3> directions_;
   std::vector<unsigned char> nearest_;  // direction by the place on a cube's surface
