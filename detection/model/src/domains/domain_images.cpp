@@ -88,7 +88,7 @@ void DomainMap::find_twins(const Mesh& mesh) {
     if (twins_.contains(place)) return;
     // Not the faces' centroids: flat sides may be cut into triangles either way.
     Points marks = mesh.vertices(vertices_of_faces(mesh, at(place).faces), Eigen::all);
-    twins_.emplace(place, Marks{marks, PointIndex(marks)});
+    twins_.emplace(place, Marks{std::move(marks), {}});
   };
   for (int p = 0; p < places(); ++p) {
     for (int q = 0; q < p; ++q) {
@@ -106,10 +106,11 @@ double DomainMap::piece_distance(int from, const Motion& motion, int to) const {
   const auto b = twins_.find(to);
   if (a == twins_.end() || b == twins_.end()) return 0;
   const Eigen::Index step = 1 + (a->second.points.rows() - 1) / kMarks;
+  if (!b->second.index) b->second.index.emplace(b->second.points);
   double sum = 0;
   double marks = 0;
   for (Eigen::Index i = 0; i < a->second.points.rows(); i += step, ++marks) {
-    sum += b->second.index.nearest(motion(a->second.points.row(i).transpose()), 1).front().distance;
+    sum += b->second.index->nearest(motion(a->second.points.row(i).transpose()), 1).front().distance;
   }
   return sum / marks / size_;
 }

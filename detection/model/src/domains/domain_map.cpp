@@ -93,6 +93,7 @@ DomainMap::DomainMap(const Mesh& mesh, const SymmetryAnnotation& annotation,
   find_sets(mesh);
   moments_ = moments_of_sets(mesh, set_of_face_, set_count(), origin_);
   images_.resize(places_.size());
+  inverses_.resize(places_.size());
   find_meeting(mesh);
   find_twins(mesh);
 }
@@ -230,10 +231,17 @@ int DomainMap::arrival(int place, int element) const {
 
 int DomainMap::inverse_element(int place, int element) const {
   if (at(place).pattern_first >= 0) return place - at(place).pattern_first;
+  std::vector<int>& inverses = inverses_[static_cast<std::size_t>(place)];
   const std::vector<Motion>& motions = at(place).motions;
-  const Eigen::Matrix3d back = motions[static_cast<std::size_t>(element)].linear.transpose();
-  const auto nearest = std::ranges::min_element(motions, {}, [&](const Motion& m) { return (m.linear - back).norm(); });
-  return static_cast<int>(nearest - motions.begin());
+  if (inverses.empty()) inverses.assign(motions.size(), -1);
+  int& inverse = inverses[static_cast<std::size_t>(element)];
+  if (inverse < 0) {
+    const Eigen::Matrix3d back = motions[static_cast<std::size_t>(element)].linear.transpose();
+    const auto nearest =
+        std::ranges::min_element(motions, {}, [&](const Motion& m) { return (m.linear - back).norm(); });
+    inverse = static_cast<int>(nearest - motions.begin());
+  }
+  return inverse;
 }
 
 int DomainMap::intern(const std::vector<int>& set) const {

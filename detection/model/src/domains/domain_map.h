@@ -61,7 +61,8 @@ class DomainMap {
   /// The place where element number `element` of `place` arrives.
   int arrival(int place, int element) const;
 
-  /// The number, at the place of arrival, of the motion that takes back what that element takes there.
+  /// The number, at the place of arrival, of the motion that takes back what that element takes there. Not for use by
+  /// several threads.
   int inverse_element(int place, int element) const;
 
   /// The place of a pattern's first instance.
@@ -184,12 +185,13 @@ class DomainMap {
   std::vector<std::pair<int, PieceMoments>> point_moments_;  // of the vertices of each set that a vertex has
   struct Marks {
     Points points;
-    PointIndex index;
+    mutable std::optional<PointIndex> index;  // once it is asked
   };
   std::map<int, Marks> twins_;                                  // places that moments do not tell apart: corners
   mutable std::map<std::pair<int, int>, PieceMoments> common_;  // of the faces that two places hold, as known so far
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();            // of the moments
   mutable std::vector<std::vector<std::unique_ptr<Images>>> images_;
+  mutable std::vector<std::vector<int>> inverses_;  // by place and element, once asked for
 };
 
 /// The region with fewest faces among a set's places; -1: none.
