@@ -421,9 +421,14 @@ class PartSearch {
     }
   }
 
-  // The own group of several parts about an axis. Whether there is one.
-  bool find_set_group(const std::vector<int>& members, const Vector3d& axis) {
-    return worth_a_look(members) && take_set_group("axes", look_at_set(members, {axis}), members);
+  // The own group of several parts that are known to turn like that. Whether there is one.
+  bool find_set_group(const std::vector<int>& members, const GroupPlacement& turn) {
+    if (!worth_a_look(members)) return false;
+    if (some_of_a_grid(turn.group, members, classes(), survey().moments)) {  // more of them turn by more
+      note("axes", turn, members, false, "some of many of a kind");
+      return true;
+    }
+    return take_set_group("axes", look_at_set(members, {turn.frame.col(2)}), members);
   }
 
   // The parts of `of` that none of the others holds.
@@ -474,9 +479,8 @@ class PartSearch {
   void find_axis_regions(const Line& line) {
     const GroupFrame frame = frame_about(line.direction);
     const std::vector<int> round = mover_->permuted({{Family::Cinf, 1}, frame, line.point}, {});
-    if (!round.empty() && !already_known({{Family::Cinf, 1}, frame, line.point}, round)) {
-      find_set_group(round, line.direction);
-    }
+    const GroupPlacement by_any{{Family::Cinf, 1}, frame, line.point};
+    if (!round.empty() && !already_known(by_any, round)) find_set_group(round, by_any);
     std::vector<std::pair<int, std::vector<int>>> found;
     const int lowest = crowded() ? 3 : 2;
     // What lies on the line speaks for itself: what turns about it is looked for off it first.
@@ -504,9 +508,9 @@ class PartSearch {
       for (const CongruenceClass& kind : classes()) {
         std::vector<int> ring;
         std::ranges::set_intersection(fresh, kind.members, std::back_inserter(ring));
-        if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, line.direction);
+        if (ring.size() > 1 && !already_known(turn, ring)) find_set_group(ring, turn);
       }
-      if (!mere_pair(turned, classes()) && !already_known(turn, turned) && !find_set_group(turned, line.direction)) {
+      if (!mere_pair(turned, classes()) && !already_known(turn, turned) && !find_set_group(turned, turn)) {
         const SurfacePatch patch = patch_of(turned, "axis");
         const GroupPlacement placement = refine(patch, turn, context_);
         if (orbifit::verified(patch, placement, context_)) add("axes", placement, turned, strictness(placement, patch));

@@ -77,8 +77,12 @@ class BorderCheck {
     const Eigen::Vector3d position = mesh_.vertices.row(vertex).transpose();
     const int carried = domains_.carried_set(set_of(vertex), place, element);
     const int arrival = domains_.arrival(place, element);
-    const std::map<int, int> there =
-        sets_at(domains_.elements(place)[static_cast<std::size_t>(element)](position), arrival);
+    std::map<int, int> there;
+    if (at == VertexImages::kSeveral) {
+      there = sets_at(domains_.elements(place)[static_cast<std::size_t>(element)](position), arrival);
+    } else if (set_of(at) != carried && domains_.holds(set_of(at), arrival)) {
+      there = {{set_of(at), at}};
+    }
     if (there.size() != 1 || there.contains(carried)) return;  // of several, which is meant is not known
     const int only = there.begin()->first;
     const int image = there.begin()->second;
@@ -113,6 +117,17 @@ std::vector<int> faces_around(const Mesh& mesh, const std::vector<int>& faces, c
     return std::ranges::any_of(mesh.faces.row(face), [&](int vertex) { return vertices.contains(vertex); });
   });
   return result;
+}
+
+// Asks at once, on all threads, where the motions of the places take their vertices.
+void ask_images(const ShapeSurface& surface, const DomainMap& domains, const std::vector<std::vector<int>*>& faces,
+                const RunContext& context) {
+  const auto all = static_cast<std::size_t>(surface.mesh.faces.rows());
+  if (std::ranges::all_of(faces, [&](const std::vector<int>* each) { return each->size() == all; })) return;
+  for (int place = 0; place < domains.places(); ++place) {
+    const std::vector<int> vertices = vertices_of_faces(surface.mesh, *faces[static_cast<std::size_t>(place)]);
+    for (const Motion& motion : domains.elements(place)) surface.vertex_images.of(motion).ask(vertices, context);
+  }
 }
 
 // What a place would give up.
@@ -155,6 +170,7 @@ bool close_borders(const ShapeSurface& surface, SymmetryAnnotation& annotation, 
   bool any = false;
   while (true) {
     const DomainMap domains(mesh, annotation, instance_motions(annotation));
+    if (!any) ask_images(surface, domains, faces, context);
     std::vector<Conflict> conflicts = BorderCheck(mesh, domains, surface.vertex_images, context).run();
     bool taken = false;
     while (const std::optional<Loss> loss = least_loss(mesh, faces, domains, conflicts)) {

@@ -7,6 +7,7 @@
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/motion.h"
+#include "orbifit/model/run_context.h"
 
 #include "geometry/vertex_grid.h"
 
@@ -39,6 +40,9 @@ class VertexImages {
       if (known == kUnknown) known = look(vertex);
       return known;
     }
+
+    /// Asks of several vertices, each given once, on all threads, so that the answers are known.
+    void ask(const std::vector<int>& vertices, const RunContext& context);
 
    private:
     friend class VertexImages;
