@@ -421,10 +421,17 @@ class PartSearch {
     }
   }
 
+  // Whether the parts may turn by a third or less: two of their principal moments are then equal.
+  bool may_turn_by_less(const std::vector<int>& parts) const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments_of(parts).covariance, Eigen::EigenvaluesOnly);
+    const Vector3d d = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+    return std::min(d[1] - d[0], d[2] - d[1]) < options_.tolerance;
+  }
+
   // The own group of several parts that are known to turn like that. Whether there is one.
   bool find_set_group(const std::vector<int>& members, const GroupPlacement& turn) {
     if (!worth_a_look(members)) return false;
-    if (some_of_a_grid(turn.group, members, classes(), survey().moments)) {  // more of them turn by more
+    if (some_of_a_grid(turn.group, members, classes(), survey().moments) && !may_turn_by_less(members)) {
       note("axes", turn, members, false, "some of many of a kind");
       return true;
     }
