@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "fit_loop.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
+#include "quiet_context.h"
 #include "refinement.h"
 #include "registration/correspondences.h"
 #include "relaxation.h"
@@ -235,6 +237,38 @@ Trial better_in_doubt(const FitInput& input, const FitOptions& options, const Ru
   return worth(other.best.result) > worth(told) + kWorthwhile ? std::move(other) : std::move(trial);
 }
 
+// Refines a fit that is one: a subspace that is fine enough explains any scan, so that whether this one is the
+// template's a coarse one tells. Beside that judges the coarse fit's groups, unless those that are unsupported were
+// dropped.
+void refine_and_judge(const Trial& trial, const FitOptions& options, const RunContext& context, StageClock& clock,
+                      FitResult& result) {
+  const bool judges = options.judge_groups && !options.drop_unsupported && !trial.input.annotation.regions.empty();
+  std::vector<std::function<void(const RunContext&)>> tasks;
+  double refining = 0;
+  const SymmetryAnnotation annotation = result.rest_annotation;
+  if (result.converged) {
+    tasks.emplace_back([&](const RunContext& own) {
+      const Stopwatch stopwatch;
+      refine(trial.input.with(annotation), trial.best.start, options, own, result);
+      conclude(options, result);
+      refining = stopwatch.seconds();
+    });
+  }
+  std::vector<GroupAgreement> groups = std::move(result.groups);
+  if (judges) {
+    tasks.emplace_back([&, fitted = result.fitted, carried = result.annotation](const RunContext& own) {
+      groups = judged_groups(fitted, carried, trial.input, trial.best.start, options, own);
+    });
+  }
+  const RunContext own = quiet_context(context, tasks.size());
+  parallel_for(context, tasks.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) tasks[i](own);
+  });
+  result.groups = std::move(groups);
+  if (judges) clock.finished("groups", refining);
+  if (refining > 0) clock.finished("refinement");
+}
+
 // A size that the scan leaves open is the template's, or chance's: the fit is the less to be relied on.
 void tell_open_size(const PlacedScan& start, const FitOptions& options, const RunContext& context, FitResult& result) {
   if (!result.converged) return;
@@ -271,18 +305,12 @@ FitResult fit(const FitInput& given, const FitOptions& options, const RunContext
   Trial first = trial_of(input, options, false, context, clock);
   Trial trial = better_in_doubt(input, options, context, clock, std::move(first));
   FitResult result = std::move(trial.best.result);
-  if ((options.judge_groups || options.drop_unsupported) && !input.annotation.regions.empty()) {
-    judge_groups(trial.input, trial.best.start, options, context, result);
+  if (options.drop_unsupported && !input.annotation.regions.empty()) {
+    drop_unsupported(trial.input, trial.best.start, options, context, result);
     clock.finished("groups");
   }
   conclude(options, result);
-  // A subspace that is fine enough explains any scan: whether this one is the template's, a coarse one tells.
-  if (result.converged) {
-    const SymmetryAnnotation annotation = result.rest_annotation;
-    refine(trial.input.with(annotation), trial.best.start, options, context, result);
-    conclude(options, result);
-    clock.finished("refinement");
-  }
+  refine_and_judge(trial, options, context, clock, result);
   tell_open_size(trial.best.start, options, context, result);
   tell_landmarks(input, context, result);
   result.field_residual =

@@ -48,15 +48,21 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
 
 }  // namespace
 
-void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
-                  FitResult& result) {
+std::vector<GroupAgreement> judged_groups(const Mesh& fitted, const SymmetryAnnotation& annotation,
+                                          const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                                          const RunContext& context) {
+  return group_agreement(fitted, free_fit(input, start, options, context), annotation, start.scan, context);
+}
+
+void drop_unsupported(const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                      const RunContext& context, FitResult& result) {
   constexpr int kMaxRelaxations = 5;
   const Mesh free = free_fit(input, start, options, context);
   for (int round = 0;; ++round) {
     std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);
     if (round == 0) result.groups = groups;
     std::erase_if(groups, [](const GroupAgreement& group) { return !group.disagrees; });
-    if (!options.drop_unsupported || groups.empty() || round == kMaxRelaxations) return;
+    if (groups.empty() || round == kMaxRelaxations) return;
     leave_out(groups, input, start, options, context, result);
   }
 }

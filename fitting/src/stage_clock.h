@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -25,14 +26,19 @@ class StageClock {
   explicit StageClock(std::vector<StageTime>& times) : times_(times) {}
 
   /// The stage that began when the one before it was finished.
-  void finished(const std::string& stage) {
-    times_.push_back({stage, since_.seconds()});
+  void finished(const std::string& stage) { finished(stage, 0); }
+
+  /// The same, but so many seconds were another stage's, beside which it went on, and which is finished next.
+  void finished(const std::string& stage, double beside) {
+    times_.push_back({stage, std::max(0.0, since_.seconds() + left_ - beside)});
+    left_ = beside;
     since_.set_back();
   }
 
  private:
   std::vector<StageTime>& times_;
   Stopwatch since_;
+  double left_ = 0;  // seconds of the next stage before that
 };
 
 }  // namespace orbifit
