@@ -65,12 +65,9 @@ VertexOrbits in_space_order(VertexOrbits orbits) {
 
 class OrbitBuilder {
  public:
-  OrbitBuilder(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance)
-      : mesh_(mesh),
-        regions_(regions),
-        words_(words),
-        grid_(mesh.vertices, tolerance),
-        sets_(closed_sets_of_vertices(mesh, regions, grid_)) {
+  OrbitBuilder(const Mesh& mesh, const RegionMap& regions, GroupWords& words, const VertexGrid& grid,
+               const std::vector<int>& sets, double tolerance)
+      : mesh_(mesh), regions_(regions), words_(words), grid_(grid), sets_(sets) {
     closure_.doublet = tolerance;
     result_.tolerance = tolerance;
     result_.followers.assign(sets_.size(), {-1, 0, -1});
@@ -200,8 +197,8 @@ class OrbitBuilder {
   const Mesh& mesh_;
   const RegionMap& regions_;
   GroupWords& words_;
-  VertexGrid grid_;
-  std::vector<int> sets_;
+  const VertexGrid& grid_;
+  const std::vector<int>& sets_;
   ClosureOptions closure_;
   VertexOrbits result_;
   bool continuous_ = false;
@@ -216,8 +213,10 @@ class OrbitBuilder {
 }  // namespace
 
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
-                           const RunContext& context) {
-  return OrbitBuilder(mesh, regions, words, tolerance).run(context);
+                           std::vector<int>& known_sets, const RunContext& context) {
+  const VertexGrid grid(mesh.vertices, tolerance);
+  if (known_sets.empty()) known_sets = closed_sets_of_vertices(mesh, regions, grid);
+  return OrbitBuilder(mesh, regions, words, grid, known_sets, tolerance).run(context);
 }
 
 int set_of_vertex(const VertexOrbits& orbits, int vertex) {
