@@ -41,8 +41,8 @@ std::optional<FitResult> finer_fit(const FitInput& input, const PlacedScan& star
   }
   const Subspace& subspace = *built;
   Eigen::VectorXd q = transferred(coarse.subspace, {coarse.q, coarse.basis}, subspace, context);
-  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context),
-                   sample_displacements(subspace, q));
+  FitSystem system(subspace, input.mesh, options.stretch,
+                   contacts_to_keep(start, subspace, input.mesh, options, context), sample_displacements(subspace, q));
   return fit_from({coarse.pose, std::move(q), coarse.others}, options.levels, input, start, system, options, context);
 }
 

@@ -26,7 +26,7 @@ Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& 
   free.subspace.samples = kFewSamples;
   const FitInput without = input.with(none);
   const Subspace subspace = build_subspace(input.mesh, none, free.subspace, context);
-  FitSystem system(subspace, input.mesh, free.stretch, contacts_to_keep(subspace, input.mesh, free, context));
+  FitSystem system(subspace, input.mesh, free.stretch, contacts_to_keep(start, subspace, input.mesh, free, context));
   return fit_from(without, start, system, free, context).fitted;
 }
 
@@ -40,7 +40,8 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   const SymmetryAnnotation rest =
       made_consistent(input.mesh, without_regions(input.annotation, result.dropped), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
-  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
+  FitSystem system(subspace, input.mesh, options.stretch,
+                   contacts_to_keep(start, subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);
   for (std::size_t k = 0; k < found.others.size(); ++k) found.others[k] = found.others[k] * start.others[k];
   take_over(std::move(found), result);

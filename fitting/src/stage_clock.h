@@ -26,19 +26,22 @@ class StageClock {
   explicit StageClock(std::vector<StageTime>& times) : times_(times) {}
 
   /// The stage that began when the one before it was finished.
-  void finished(const std::string& stage) { finished(stage, 0); }
-
-  /// The same, but so many seconds were another stage's, beside which it went on, and which is finished next.
-  void finished(const std::string& stage, double beside) {
-    times_.push_back({stage, std::max(0.0, since_.seconds() + left_ - beside)});
-    left_ = beside;
+  void finished(const std::string& stage) {
+    times_.push_back({stage, std::max(0.0, since_.seconds() - beside_)});
+    beside_ = 0;
     since_.set_back();
+  }
+
+  /// A stage beside which the one that is finished next went on: that one is the less.
+  void took(const std::string& stage, double seconds) {
+    times_.push_back({stage, seconds});
+    beside_ += seconds;
   }
 
  private:
   std::vector<StageTime>& times_;
   Stopwatch since_;
-  double left_ = 0;  // seconds of the next stage before that
+  double beside_ = 0;  // seconds noted since then
 };
 
 }  // namespace orbifit

@@ -11,6 +11,7 @@
 #include "orbifit/detection/detect.h"
 #include "orbifit/fitting/fit_verdict.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/subspace/handles.h"
@@ -155,21 +156,20 @@ SymmetryAnnotation template_annotation(const FitArguments& arguments, const Mesh
   return arguments.without.empty() ? annotation : without(arguments.without, annotation);
 }
 
-// Builds the subspace; `annotation`, the input's, becomes what of it is consistent.
-StageTime build(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input, RunContext& run) {
+// `annotation`, the input's, becomes what of it is consistent.
+StageTime make_consistent(const Mesh& mesh, SymmetryAnnotation& annotation, const RunContext& run) {
   const auto began = std::chrono::steady_clock::now();
-  input.subspace =
-      std::make_shared<Subspace>(build_consistent(input.mesh, annotation, arguments.options.subspace, run));
-  return {"subspace", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()};
+  annotation = made_consistent(mesh, annotation, run);
+  return {"consistency", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()};
 }
 
 FitResult build_and_fit(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input,
                         RunContext& run) {
-  const StageTime building = build(arguments, annotation, input, run);
+  const StageTime agreeing = make_consistent(input.mesh, annotation, run);
   if (!arguments.landmarks.empty()) input.landmarks = read_landmarks(arguments.landmarks, input.mesh);
   if (!arguments.handles.empty()) input.handles = read_handles(arguments.handles, input.mesh).handles;
   FitResult result = orbifit::fit(input, arguments.options, run);
-  result.times.insert(result.times.begin(), building);
+  result.times.insert(result.times.begin(), agreeing);
   return result;
 }
 
