@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,6 +36,16 @@ struct RegionPairs {
   std::vector<SurfacePlace> places;      // q: of element e and vertex v at e * #vertices + v
   std::vector<Pairing::Choice> choices;  // what else q may be
 };
+
+// Regions side by side, which then tell no progress.
+void for_each_region(const RunContext& context, std::size_t count,
+                     const std::function<void(std::size_t number, const RunContext& own)>& body) {
+  RunContext own = context;
+  own.on_progress = nullptr;
+  parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i, own);
+  });
+}
 
 RegionPairs pair_up(const Mesh& mesh, const Region& region, double tolerance, double rest_diagonal,
                     const RunContext& context) {
@@ -182,15 +193,15 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
   for (std::size_t i = 0; i < measured.size(); ++i) frames[measured[i]] = together.frames[i];
   if (motions != CarriedMotions::moving) return frames;
 
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    context.progress("carried motions", static_cast<double>(i) / static_cast<double>(measured.size()));
+  context.progress("carried motions", 0);
+  for_each_region(context, measured.size(), [&](std::size_t i, const RunContext&) {
     const std::size_t r = measured[i];
     const Points from = deformed.vertices(pairs[r].vertices, Eigen::all);
     const Points to = mesh.vertices(pairs[r].vertices, Eigen::all);
     std::vector<Motion> own_starts{as_motion(together.frames[i], regions[r].centre), best_rigid_motion(from, to)};
     own_starts.insert(own_starts.end(), starts.begin(), starts.end());
     frames[r] = best_fit({samples[i]}, motions, scale, own_starts).frames.front();
-  }
+  });
   return frames;
 }
 
@@ -306,11 +317,11 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
   const Shape rest(mesh);
   std::optional<Shape> now;
   if (deformed != nullptr) now.emplace(*deformed);
-  std::vector<RegionPairs> pairs;
-  for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
-    context.progress("pairs", static_cast<double>(r) / static_cast<double>(annotation.regions.size()));
-    pairs.push_back(pair_up(mesh, annotation.regions[r], annotation.tolerance, rest.size, context));
-  }
+  std::vector<RegionPairs> pairs(annotation.regions.size());
+  context.progress("pairs", 0);
+  for_each_region(context, pairs.size(), [&](std::size_t r, const RunContext& own) {
+    pairs[r] = pair_up(mesh, annotation.regions[r], annotation.tolerance, rest.size, own);
+  });
   std::vector<CarriedFrame> frames(annotation.regions.size());
   constexpr int kRounds = 4;  // of frames and choices, each of which rests on the other
   for (int round = 0; deformed != nullptr && round < kRounds; ++round) {
