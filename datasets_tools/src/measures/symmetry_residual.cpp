@@ -29,6 +29,8 @@ constexpr int kMaxFitPoints = 600;
 constexpr int kMinFitPoints = 60;
 constexpr int kFitBudget = 200000;
 
+}  // namespace
+
 // All (p, g, q) of one region.
 struct RegionPairs {
   std::vector<int> vertices;             // p
@@ -36,6 +38,8 @@ struct RegionPairs {
   std::vector<SurfacePlace> places;      // q: of element e and vertex v at e * #vertices + v
   std::vector<Pairing::Choice> choices;  // what else q may be
 };
+
+namespace {
 
 // Regions side by side, which then tell no progress.
 void for_each_region(const RunContext& context, std::size_t count,
@@ -304,8 +308,9 @@ PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const P
 
 }  // namespace
 
-SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
-                                 CarriedMotions motions, RunContext& context) {
+namespace {
+
+void require_same_connectivity(const Mesh& mesh, const Mesh* deformed) {
   if (deformed != nullptr && (deformed->vertices.rows() != mesh.vertices.rows() ||
                               deformed->faces.rows() != mesh.faces.rows() || deformed->faces != mesh.faces)) {
     throw InputError("", "deformed mesh",
@@ -314,14 +319,43 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
                          " faces; its connectivity must be that of the mesh, " + std::to_string(mesh.vertices.rows()) +
                          " vertices and " + std::to_string(mesh.faces.rows()) + " faces");
   }
+}
+
+}  // namespace
+
+struct SymmetryPairs::OfRegions {
+  std::vector<RegionPairs> pairs;
+};
+
+SymmetryPairs::SymmetryPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+    : mesh_(mesh), annotation_(annotation) {
+  const double size = diagonal(mesh.vertices);
+  auto of_regions = std::make_unique<OfRegions>();
+  of_regions->pairs.resize(annotation.regions.size());
+  context.progress("pairs", 0);
+  for_each_region(context, annotation.regions.size(), [&](std::size_t r, const RunContext& own) {
+    of_regions->pairs[r] = pair_up(mesh, annotation.regions[r], annotation.tolerance, size, own);
+  });
+  pairs_ = std::move(of_regions);
+}
+
+SymmetryPairs::SymmetryPairs(SymmetryPairs&&) noexcept = default;
+SymmetryPairs::~SymmetryPairs() = default;
+
+SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
+                                 CarriedMotions motions, RunContext& context) {
+  require_same_connectivity(mesh, deformed);
+  return SymmetryPairs(mesh, annotation, context).residual(deformed, motions, context);
+}
+
+SymmetryReport SymmetryPairs::residual(const Mesh* deformed, CarriedMotions motions, const RunContext& context) const {
+  require_same_connectivity(mesh_, deformed);
+  const Mesh& mesh = mesh_;
+  const SymmetryAnnotation& annotation = annotation_;
   const Shape rest(mesh);
   std::optional<Shape> now;
   if (deformed != nullptr) now.emplace(*deformed);
-  std::vector<RegionPairs> pairs(annotation.regions.size());
-  context.progress("pairs", 0);
-  for_each_region(context, pairs.size(), [&](std::size_t r, const RunContext& own) {
-    pairs[r] = pair_up(mesh, annotation.regions[r], annotation.tolerance, rest.size, own);
-  });
+  std::vector<RegionPairs> pairs = pairs_->pairs;  // of parts at one place others may be chosen
   std::vector<CarriedFrame> frames(annotation.regions.size());
   constexpr int kRounds = 4;  // of frames and choices, each of which rests on the other
   for (int round = 0; deformed != nullptr && round < kRounds; ++round) {

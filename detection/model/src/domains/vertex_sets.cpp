@@ -147,6 +147,7 @@ class SetClosure {
       queued_[static_cast<std::size_t>(vertex)] = 0;
       const std::vector<int> here = nearest_to(mesh_.vertices.row(vertex).transpose());
       const std::vector<int> places = domains_.set_places(set_of(vertex));
+      fetch_images(vertex, places);
       for (const int place : places) {
         const bool alone = lone_point(here, place);
         for (int element = 0; element < static_cast<int>(domains_.elements(place).size()); ++element) {
@@ -158,6 +159,16 @@ class SetClosure {
   }
 
  private:
+  void fetch_images(int vertex, const std::vector<int>& places) {
+    images_.clear();
+    for (const int place : places) {
+      for (const Motion& motion : domains_.elements(place)) {
+        images_.push_back(motion(mesh_.vertices.row(vertex).transpose()));
+      }
+    }
+    grid_.fetch(images_, slots_);
+  }
+
   int root_of(int vertex) const { return points_.root[static_cast<std::size_t>(vertex)]; }
   int& set_of(int vertex) { return points_.sets[static_cast<std::size_t>(root_of(vertex))]; }
 
@@ -226,6 +237,8 @@ class SetClosure {
   PointSets points_;
   std::vector<int> queue_;  // roots
   std::vector<char> queued_;
+  std::vector<Eigen::Vector3d> images_;
+  std::vector<std::size_t> slots_;  // of the images
 };
 
 }  // namespace

@@ -38,6 +38,18 @@ class VertexGrid {
     }
   }
 
+  /// Has what is at places that are visited next brought near: of many, each visit would wait for it by itself.
+  void fetch(const std::vector<Eigen::Vector3d>& places, std::vector<std::size_t>& slots) const {
+    slots.clear();
+    for (const Eigen::Vector3d& place : places) {
+      const Eigen::Vector3d scaled = (place - origin_) / width_;
+      if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) continue;
+      slots.push_back(slot(first_.size() - 1, {whole(scaled[0]), whole(scaled[1]), whole(scaled[2])}));
+      __builtin_prefetch(first_.data() + slots.back());
+    }
+    for (const std::size_t at : slots) __builtin_prefetch(entries_.data() + first_[at]);
+  }
+
   /// Calls visit(vertex) for each vertex within the tolerance of `place`.
   template <class Visit>
   void visit(const Eigen::Vector3d& place, const Visit& visit) const {
