@@ -35,7 +35,9 @@ std::optional<FitResult> finer_fit(const FitInput& input, const PlacedScan& star
   finer.radius = finer_radius(coarse);
   std::optional<Subspace> built;
   try {
-    built = rebuilt_subspace(coarse.subspace, input.mesh, input.annotation, finer, context);
+    const bool own = start.shared && start.shared->owns(coarse.subspace);
+    built = own ? rebuilt_subspace(coarse.subspace, input.mesh, input.annotation, finer, context)
+                : build_subspace(input.mesh, input.annotation, finer, context);
   } catch (const InputError&) {
     return std::nullopt;  // more samples than it may have: how many, its groups say
   }

@@ -167,10 +167,14 @@ std::vector<Motion> ScanStep::other_motions(const Eigen::VectorXd& solved) const
 std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspondence>& pairs,
                                   const std::vector<Pull>& pulls) {
   std::vector<int> vertices;
+  std::vector<char> met(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  const auto add = [&](int vertex) {
+    if (std::exchange(met[static_cast<std::size_t>(vertex)], 1) == 0) vertices.push_back(vertex);
+  };
   for (const Correspondence& pair : pairs) {
-    for (int k = 0; k < 3; ++k) vertices.push_back(mesh.faces(pair.face, k));
+    for (int k = 0; k < 3; ++k) add(mesh.faces(pair.face, k));
   }
-  for (const Pull& pull : pulls) vertices.push_back(pull.vertex);
+  for (const Pull& pull : pulls) add(pull.vertex);
   return vertices;
 }
 

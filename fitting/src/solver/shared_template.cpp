@@ -1,9 +1,12 @@
 #include "solver/shared_template.h"
 
+#include <utility>
+
 namespace orbifit {
 
-SharedTemplate::SharedTemplate(const Mesh& mesh, bool contacts, const RunContext& context)
-    : surface_(mesh), tree_(std::make_shared<const MovingSurface>(mesh)) {
+SharedTemplate::SharedTemplate(const Mesh& mesh, bool contacts, std::shared_ptr<const Subspace> given,
+                               const RunContext& context)
+    : given_(std::move(given)), surface_(mesh), tree_(std::make_shared<const MovingSurface>(mesh)) {
   if (contacts) search_ = std::make_unique<const ContactSearch>(mesh, tree_, ContactOptions{}, context);
 }
 

@@ -18,7 +18,8 @@ namespace orbifit {
 class SharedTemplate {
  public:
   /// \param mesh  kept by reference \param contacts  whether they will be asked for
-  SharedTemplate(const Mesh& mesh, bool contacts, const RunContext& context);
+  /// \param given  the subspace that the fit was given; null: it builds its own
+  SharedTemplate(const Mesh& mesh, bool contacts, std::shared_ptr<const Subspace> given, const RunContext& context);
   SharedTemplate(const SharedTemplate&) = delete;
   SharedTemplate& operator=(const SharedTemplate&) = delete;
   SharedTemplate(SharedTemplate&&) = delete;
@@ -28,10 +29,14 @@ class SharedTemplate {
   const MatchSurface& surface() const { return surface_; }  ///< at rest
   const MovingSurface& tree() const { return *tree_; }      ///< at rest: to be copied and moved
 
+  /// Whether a subspace is the fit's own: one that it was given others may be using meanwhile.
+  bool owns(const Subspace& subspace) const { return !given_ || given_->operator->() != subspace.operator->(); }
+
   /// Those that a subspace of the mesh is to keep; remembered of the first one that is asked for.
   std::vector<Contact> contacts(const Subspace& subspace, const RunContext& context) const;
 
  private:
+  std::shared_ptr<const Subspace> given_;
   MatchSurface surface_;
   std::shared_ptr<const MovingSurface> tree_;
   std::unique_ptr<const ContactSearch> search_;

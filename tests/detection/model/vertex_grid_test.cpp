@@ -25,5 +25,16 @@ TEST(VertexGrid, FindsVerticesFarFromOneAnother) {
   EXPECT_EQ(found(grid, {1e300, 1e300, -1e300}), std::vector<int>{});
 }
 
+// Places far from any vertex, too.
+TEST(VertexGrid, FindsTheSameOncePlacesWereFetched) {
+  Points vertices(3, 3);
+  vertices << 0, 0, 0, 1, 0, 0, -1, -2, 3;
+  const VertexGrid grid(vertices, 1e-3);
+  std::vector<std::size_t> slots;
+  grid.fetch({{0, 0, 0}, {1e300, 0, 0}, {-1, -2, 3.0005}}, slots);
+  EXPECT_EQ(found(grid, {-1, -2, 3.0005}), std::vector<int>{2});
+  EXPECT_EQ(found(grid, {-1, -2, 3.0015}), std::vector<int>{});
+}
+
 }  // namespace
 }  // namespace orbifit
