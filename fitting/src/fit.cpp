@@ -19,6 +19,7 @@
 #include "registration/correspondences.h"
 #include "relaxation.h"
 #include "scan/thinned_scan.h"
+#include "side_by_side.h"
 #include "solver/fit_system.h"
 #include "stage_clock.h"
 #include "start/fit_starts.h"
@@ -80,7 +81,7 @@ struct Best {
 // the template's thickness, unless that explains less by more than it had to explain more, and the size is open.
 void try_other_scale(const FitInput& input, FitSystem& system, const FitOptions& options, const RunContext& context,
                      Best& best) {
-  const std::optional<PlacedScan> other = at_other_scale(input, best.start);
+  const std::optional<PlacedScan> other = at_other_scale(input, best.start, context);
   if (!other) return;
   FitResult grown = fit_from(input, *other, system, options, context);
   const int before = best.result.iterations_in_all;
@@ -131,7 +132,8 @@ int keep_promising(std::vector<PlacedScan>& starts, const FitInput& input, FitSy
 
 Best best_of(std::vector<PlacedScan> starts, const FitInput& input, const Subspace& subspace, const FitOptions& options,
              const RunContext& context) {
-  FitSystems systems(subspace, input.mesh, options, context);
+  FitSystems systems(subspace, input.mesh, options.stretch,
+                     contacts_to_keep(starts.front(), subspace, input.mesh, options, context));
   int iterations = keep_promising(starts, input, systems, options, context);
   std::vector<FitResult> results(starts.size());
   systems.share(starts.size(), context, [&](std::size_t i, FitSystem& system, const RunContext& own) {
@@ -190,7 +192,7 @@ void fit_all_scans(const FitInput& input, const FitOptions& options, const RunCo
   const FitResult first = std::move(best.result);
   best.start = join_scans(input, best.start, first, options, context);
   FitSystem system(*input.subspace, input.mesh, options.stretch,
-                   contacts_to_keep(*input.subspace, input.mesh, options, context));
+                   contacts_to_keep(best.start, *input.subspace, input.mesh, options, context));
   best.result = fit_from(input, best.start, system, options, context);
   FitState state = with_scale(best.start.pose.scale, first.pose, {first.q, first.basis}, *input.subspace, input.mesh);
   FitResult further = fit_from(std::move(state), static_cast<int>(kSofter * options.levels), input, best.start, system,
@@ -207,13 +209,28 @@ void fit_all_scans(const FitInput& input, const FitOptions& options, const RunCo
 
 Trial trial_of(const FitInput& input, const FitOptions& options, bool doubt_landmarks, const RunContext& context,
                StageClock& clock) {
-  FitStarts starts = find_starts(input, options, doubt_landmarks, context, clock);
-  FitInput agreed = with_landmarks(input, starts.agrees);
-  if (!agreed.subspace) {
-    agreed.subspace =
-        std::make_shared<Subspace>(build_subspace(input.mesh, input.annotation, options.subspace, context));
-    clock.finished("subspace");
+  FitStarts starts;
+  std::shared_ptr<const Subspace> subspace = input.subspace;
+  std::vector<StageTime> finding;
+  std::vector<SideTask> tasks;
+  double building = 0;
+  if (!subspace) {
+    tasks.emplace_back([&](const RunContext& own) {
+      const Stopwatch stopwatch;
+      subspace = std::make_shared<Subspace>(build_subspace(input.mesh, input.annotation, options.subspace, own));
+      building = stopwatch.seconds();
+    });
   }
+  tasks.emplace_back([&](const RunContext& own) {
+    StageClock own_clock(finding);
+    starts = find_starts(input, options, doubt_landmarks, own, own_clock);
+  });
+  side_by_side(tasks, context);
+  if (!input.subspace) clock.took("subspace", building);
+  for (std::size_t i = 0; i + 1 < finding.size(); ++i) clock.took(finding[i].stage, finding[i].seconds);
+  clock.finished(finding.back().stage);
+  FitInput agreed = with_landmarks(input, starts.agrees);
+  agreed.subspace = std::move(subspace);
   Best best = best_of(std::move(starts.places), agreed, *agreed.subspace, options, context);
   fit_all_scans(agreed, options, context, best);
   best.result.placements = std::move(starts.placements);
@@ -233,6 +250,36 @@ Trial better_in_doubt(const FitInput& input, const FitOptions& options, const Ru
   again.subspace = trial.input.subspace;
   Trial other = trial_of(again, options, true, context, clock);
   return worth(other.best.result) > worth(told) + kWorthwhile ? std::move(other) : std::move(trial);
+}
+
+// Refines a fit that is one: a subspace that is fine enough explains any scan, so that whether this one is the
+// template's a coarse one tells. Beside that judges the coarse fit's groups, unless those that are unsupported were
+// dropped.
+void refine_and_judge(const Trial& trial, const FitOptions& options, const RunContext& context, StageClock& clock,
+                      FitResult& result) {
+  const bool judges = options.judge_groups && !options.drop_unsupported && !trial.input.annotation.regions.empty();
+  const bool refines = result.converged;
+  const SymmetryAnnotation annotation = result.rest_annotation;
+  std::vector<GroupAgreement> groups = std::move(result.groups);
+  double refining = 0;
+  std::vector<SideTask> tasks;
+  if (judges) {
+    tasks.emplace_back([&, fitted = result.fitted, carried = result.annotation](const RunContext& own) {
+      groups = judged_groups(fitted, carried, trial.input, trial.best.start, options, own);
+    });
+  }
+  if (refines) {
+    tasks.emplace_back([&](const RunContext& own) {
+      const Stopwatch stopwatch;
+      refine(trial.input.with(annotation), trial.best.start, options, own, result);
+      conclude(options, result);
+      refining = stopwatch.seconds();
+    });
+  }
+  side_by_side(tasks, context);
+  result.groups = std::move(groups);
+  if (judges && refines) clock.took("refinement", refining);
+  if (judges || refines) clock.finished(judges ? "groups" : "refinement");
 }
 
 // A size that the scan leaves open is the template's, or chance's: the fit is the less to be relied on.
@@ -271,18 +318,12 @@ FitResult fit(const FitInput& given, const FitOptions& options, const RunContext
   Trial first = trial_of(input, options, false, context, clock);
   Trial trial = better_in_doubt(input, options, context, clock, std::move(first));
   FitResult result = std::move(trial.best.result);
-  if ((options.judge_groups || options.drop_unsupported) && !input.annotation.regions.empty()) {
-    judge_groups(trial.input, trial.best.start, options, context, result);
+  if (options.drop_unsupported && !input.annotation.regions.empty()) {
+    drop_unsupported(trial.input, trial.best.start, options, context, result);
     clock.finished("groups");
   }
   conclude(options, result);
-  // A subspace that is fine enough explains any scan: whether this one is the template's, a coarse one tells.
-  if (result.converged) {
-    const SymmetryAnnotation annotation = result.rest_annotation;
-    refine(trial.input.with(annotation), trial.best.start, options, context, result);
-    conclude(options, result);
-    clock.finished("refinement");
-  }
+  refine_and_judge(trial, options, context, clock, result);
   tell_open_size(trial.best.start, options, context, result);
   tell_landmarks(input, context, result);
   result.field_residual =

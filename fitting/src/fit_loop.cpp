@@ -46,7 +46,7 @@ FitLoop::FitLoop(const FitInput& input, const PlacedScan& start, DeformationSyst
       context_(context),
       size_(diagonal(input.mesh.vertices)),
       deformed_(input.mesh),
-      surface_(deformed_) {}
+      surface_(moving_template(start, deformed_)) {}
 
 FitLoop::Stage FitLoop::stage(int iteration) const {
   Stage now;

@@ -6,16 +6,14 @@
 
 namespace orbifit {
 
-std::vector<Contact> contacts_to_keep(const Subspace& subspace, const Mesh& mesh, const FitOptions& options,
-                                      const RunContext& context) {
-  return options.contacts ? find_contacts(subspace, mesh, {}, context) : std::vector<Contact>{};
+std::vector<Contact> contacts_to_keep(const PlacedScan& start, const Subspace& subspace, const Mesh& mesh,
+                                      const FitOptions& options, const RunContext& context) {
+  if (!options.contacts) return {};
+  return start.shared ? start.shared->contacts(subspace, context) : find_contacts(subspace, mesh, {}, context);
 }
 
-FitSystems::FitSystems(const Subspace& subspace, const Mesh& mesh, const FitOptions& options, const RunContext& context)
-    : subspace_(subspace),
-      mesh_(mesh),
-      stretch_(options.stretch),
-      contacts_(contacts_to_keep(subspace, mesh, options, context)) {}
+FitSystems::FitSystems(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts)
+    : subspace_(subspace), mesh_(mesh), stretch_(stretch), contacts_(std::move(contacts)) {}
 
 std::unique_ptr<FitSystem> FitSystems::take() {
   {

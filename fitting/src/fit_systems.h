@@ -12,19 +12,20 @@
 #include "orbifit/subspace/subspace.h"
 
 #include "solver/fit_system.h"
+#include "start/placed_scan.h"
 
 namespace orbifit {
 
 /// What FitOptions ask to be kept touching.
-std::vector<Contact> contacts_to_keep(const Subspace& subspace, const Mesh& mesh, const FitOptions& options,
-                                      const RunContext& context);
+std::vector<Contact> contacts_to_keep(const PlacedScan& start, const Subspace& subspace, const Mesh& mesh,
+                                      const FitOptions& options, const RunContext& context);
 
 /// Systems of one subspace for fits side by side, no more than threads. Each serves one fit after another; what it
 /// knows by then changes how soon it answers, not what.
 class FitSystems {
  public:
-  /// References are kept. Stretch and contacts are FitOptions', and the contacts are found once.
-  FitSystems(const Subspace& subspace, const Mesh& mesh, const FitOptions& options, const RunContext& context);
+  /// References are kept. Arguments as of FitSystem.
+  FitSystems(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts);
 
   using Task = std::function<void(std::size_t number, FitSystem& system, const RunContext& own)>;
 

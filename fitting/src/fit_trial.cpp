@@ -61,7 +61,9 @@ FitResult fit_from(FitState state, int first_level, const FitInput& input, const
   result.fitted = std::move(deformed);
   result.annotation.mesh_diagonal = diagonal(result.fitted.vertices);
   const PreparedScan put = with_others_moved(start, result.others);
-  assess_fit(input, put, start.views->silhouette.seen(), options, context, result);
+  MovingSurface surface = moving_template(start, input.mesh);
+  surface.move(result.fitted, context);
+  assess_fit(input, put, start.views->silhouette.seen(), surface, options, context, result);
   return result;
 }
 

@@ -35,14 +35,16 @@ std::optional<FitResult> finer_fit(const FitInput& input, const PlacedScan& star
   finer.radius = finer_radius(coarse);
   std::optional<Subspace> built;
   try {
-    built = build_subspace(input.mesh, input.annotation, finer, context);
+    const bool own = start.shared && start.shared->owns(coarse.subspace);
+    built = own ? rebuilt_subspace(coarse.subspace, input.mesh, input.annotation, finer, context)
+                : build_subspace(input.mesh, input.annotation, finer, context);
   } catch (const InputError&) {
     return std::nullopt;  // more samples than it may have: how many, its groups say
   }
   const Subspace& subspace = *built;
   Eigen::VectorXd q = transferred(coarse.subspace, {coarse.q, coarse.basis}, subspace, context);
-  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context),
-                   sample_displacements(subspace, q));
+  FitSystem system(subspace, input.mesh, options.stretch,
+                   contacts_to_keep(start, subspace, input.mesh, options, context), sample_displacements(subspace, q));
   return fit_from({coarse.pose, std::move(q), coarse.others}, options.levels, input, start, system, options, context);
 }
 

@@ -26,7 +26,7 @@ Mesh free_fit(const FitInput& input, const PlacedScan& start, const FitOptions& 
   free.subspace.samples = kFewSamples;
   const FitInput without = input.with(none);
   const Subspace subspace = build_subspace(input.mesh, none, free.subspace, context);
-  FitSystem system(subspace, input.mesh, free.stretch, contacts_to_keep(subspace, input.mesh, free, context));
+  FitSystem system(subspace, input.mesh, free.stretch, contacts_to_keep(start, subspace, input.mesh, free, context));
   return fit_from(without, start, system, free, context).fitted;
 }
 
@@ -40,7 +40,8 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
   const SymmetryAnnotation rest =
       made_consistent(input.mesh, without_regions(input.annotation, result.dropped), context);
   const Subspace subspace = build_subspace(input.mesh, rest, options.subspace, context);
-  FitSystem system(subspace, input.mesh, options.stretch, contacts_to_keep(subspace, input.mesh, options, context));
+  FitSystem system(subspace, input.mesh, options.stretch,
+                   contacts_to_keep(start, subspace, input.mesh, options, context));
   FitResult found = fit_from(input.with(rest), start, system, options, context);
   for (std::size_t k = 0; k < found.others.size(); ++k) found.others[k] = found.others[k] * start.others[k];
   take_over(std::move(found), result);
@@ -48,15 +49,21 @@ void leave_out(const std::vector<GroupAgreement>& groups, const FitInput& input,
 
 }  // namespace
 
-void judge_groups(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
-                  FitResult& result) {
+std::vector<GroupAgreement> judged_groups(const Mesh& fitted, const SymmetryAnnotation& annotation,
+                                          const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                                          const RunContext& context) {
+  return group_agreement(fitted, free_fit(input, start, options, context), annotation, start.scan, context);
+}
+
+void drop_unsupported(const FitInput& input, const PlacedScan& start, const FitOptions& options,
+                      const RunContext& context, FitResult& result) {
   constexpr int kMaxRelaxations = 5;
   const Mesh free = free_fit(input, start, options, context);
   for (int round = 0;; ++round) {
     std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);
     if (round == 0) result.groups = groups;
     std::erase_if(groups, [](const GroupAgreement& group) { return !group.disagrees; });
-    if (!options.drop_unsupported || groups.empty() || round == kMaxRelaxations) return;
+    if (groups.empty() || round == kMaxRelaxations) return;
     leave_out(groups, input, start, options, context, result);
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -26,13 +27,21 @@ class StageClock {
 
   /// The stage that began when the one before it was finished.
   void finished(const std::string& stage) {
-    times_.push_back({stage, since_.seconds()});
+    times_.push_back({stage, std::max(0.0, since_.seconds() - beside_)});
+    beside_ = 0;
     since_.set_back();
+  }
+
+  /// A stage beside which the one that is finished next went on: that one is the less.
+  void took(const std::string& stage, double seconds) {
+    times_.push_back({stage, seconds});
+    beside_ += seconds;
   }
 
  private:
   std::vector<StageTime>& times_;
   Stopwatch since_;
+  double beside_ = 0;  // seconds noted since then
 };
 
 }  // namespace orbifit

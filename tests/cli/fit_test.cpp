@@ -42,7 +42,7 @@ TEST_F(OrbifitFit, SaysOfEachGroupWhatTheScanSaysOfIt) {
   for (const json& group : report["groups"]) EXPECT_EQ(group["disagrees"], false) << group;
   EXPECT_GT(report["confidence"], 0.9);
   EXPECT_EQ(report["torn_off"], 0);
-  EXPECT_GT(report["seconds"]["subspace"], 0);  // which the program builds before the fit
+  EXPECT_GT(report["seconds"]["subspace"], 0);
   const std::string page = read_file(file("page.html"));
   EXPECT_NE(page.find("Symmetry groups and the scan"), std::string::npos);
   EXPECT_EQ(page.find("://"), std::string::npos);

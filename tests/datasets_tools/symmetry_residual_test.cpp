@@ -91,6 +91,20 @@ TEST(SymmetryResidual, MeasuresTheRestShapesOwnFlaw) {
   EXPECT_EQ(region.excess.max, 0);
 }
 
+TEST(SymmetryResidual, PairsServeOneShapeAfterAnother) {
+  const GeneratedModel model = generate("table", {{"detail", 1}});
+  const GeneratedModel other = generate("table", {{"detail", 1}, {"height", 0.8}});
+  RunContext context;
+  const SymmetryPairs pairs(model.mesh, model.truth, context);
+  for (const Mesh* deformed : {&other.mesh, &model.mesh, &other.mesh}) {
+    const SymmetryReport report = pairs.residual(deformed, CarriedMotions::floating, context);
+    const SymmetryReport anew = symmetry_residual(model.mesh, model.truth, deformed, CarriedMotions::floating, context);
+    EXPECT_EQ(report.worst_excess, anew.worst_excess);
+    EXPECT_EQ(report.worst_deformed, anew.worst_deformed);
+    EXPECT_EQ(report.vertex_excess, anew.vertex_excess);
+  }
+}
+
 TEST(SymmetryResidual, ExcessLeavesTheFloorOut) {
   GeneratedModel model = square();
   model.mesh.vertices(3, 2) = 0.01;

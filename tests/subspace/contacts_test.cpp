@@ -75,6 +75,24 @@ TEST(TouchingPoints, AreFoundWhereEdgesPierceFaces) {
   }
 }
 
+// With whatever spacings were asked for before.
+TEST(TouchingSearch, FindsWhatIsFoundAnew) {
+  const Mesh mesh = two_boxes(0.005);
+  const Components parts = touching_parts(mesh, weld_vertices(mesh.vertices));
+  const TouchingSearch search(mesh, parts.component_of_face, 0.01, RunContext{});
+  for (const double spacing : {0.2, 0.21, 0.05, 0.2, 0.1}) {
+    const std::vector<TouchingPoints> found = search.points(spacing, RunContext{});
+    const std::vector<TouchingPoints> anew =
+        touching_points(mesh, parts.component_of_face, 0.01, spacing, RunContext{});
+    ASSERT_EQ(found.size(), anew.size()) << spacing;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].parts, anew[i].parts);
+      EXPECT_EQ(found[i].middle, anew[i].middle);
+      EXPECT_EQ(found[i].gap, anew[i].gap);
+    }
+  }
+}
+
 // The largest difference of what the two sides of a contact do, less the turn of its gap, of the diagonal.
 double opened(const std::vector<Contact>& contacts, const Subspace& subspace, const SubspaceState& state) {
   const Points moved = vertex_displacements(subspace, state);

@@ -77,7 +77,7 @@ TEST(Lift, PointsStandForTheirImagesUnderTheWhole) {
     EXPECT_GT(std::ranges::count(stood_for, 0), orbits.representatives()) << name;
 
     const PlainLift plain(subspace->sampling, *subspace->regions, true);
-    subspace->regions->prepare();
+    subspace->regions->prepare(RunContext{});
     PlainLift::Scratch scratch;
     for (int r = 0; r < orbits.representatives(); r += 97) {
       Eigen::Vector3d all = Eigen::Vector3d::Zero();

@@ -202,6 +202,19 @@ TEST_P(SubspaceOfModel, IsTheSameWithTwoThreads) {
   EXPECT_EQ(vertex_displacements(again, q), vertex_displacements(subspace_, q));
 }
 
+TEST_P(SubspaceOfModel, IsTheSameBuiltFromACoarserOne) {
+  SubspaceOptions options;
+  options.mode = subspace_->mode;
+  options.radius = 1.5 * subspace_->sampling.radius;
+  const Subspace coarse = build_subspace(model_.mesh, model_.truth, options, RunContext{});
+  options.radius = subspace_->sampling.radius;
+  const Subspace again = rebuilt_subspace(coarse, model_.mesh, model_.truth, options, RunContext{});
+  EXPECT_EQ(again->surface, coarse->surface);
+  EXPECT_EQ(again->sampling.points, subspace_->sampling.points);
+  const Eigen::VectorXd q = random_coordinates(subspace_, 1);
+  EXPECT_EQ(vertex_displacements(again, q), vertex_displacements(subspace_, q));
+}
+
 std::string model_test_name(const testing::TestParamInfo<std::tuple<std::string, GroupMode>>& info) {
   return std::get<0>(info.param) + "_" + to_string(std::get<1>(info.param));
 }

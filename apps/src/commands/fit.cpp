@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "orbifit/detection/detect.h"
 #include "orbifit/fitting/fit_verdict.h"
 #include "orbifit/model/annotation_io.h"
+#include "orbifit/model/consistent_annotation.h"
 #include "orbifit/model/errors.h"
 #include "orbifit/model/mesh_io.h"
 #include "orbifit/subspace/handles.h"
@@ -155,21 +157,39 @@ SymmetryAnnotation template_annotation(const FitArguments& arguments, const Mesh
   return arguments.without.empty() ? annotation : without(arguments.without, annotation);
 }
 
-// Builds the subspace; `annotation`, the input's, becomes what of it is consistent.
-StageTime build(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input, RunContext& run) {
+// `annotation`, the input's, becomes what of it is consistent.
+StageTime make_consistent(const Mesh& mesh, SymmetryAnnotation& annotation, const RunContext& run) {
   const auto began = std::chrono::steady_clock::now();
-  input.subspace =
-      std::make_shared<Subspace>(build_consistent(input.mesh, annotation, arguments.options.subspace, run));
-  return {"subspace", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()};
+  annotation = made_consistent(mesh, annotation, run);
+  return {"consistency", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()};
 }
 
-FitResult build_and_fit(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input,
-                        RunContext& run) {
-  const StageTime building = build(arguments, annotation, input, run);
+// What only the template tells of the fit's symmetry is found beside the fit, where there are threads for both.
+FitResult fit_and_pair(const FitInput& input, const FitOptions& options, const RunContext& run,
+                       std::optional<SymmetryPairs>& pairs) {
+  if (run.threads < 2) return orbifit::fit(input, options, run);
+  RunContext silent = run;
+  silent.on_progress = nullptr;
+  FitResult result;
+  parallel_for(run, 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t task = begin; task < end; ++task) {
+      if (task == 0) {
+        pairs.emplace(input.mesh, input.annotation, silent);
+      } else {
+        result = orbifit::fit(input, options, run);
+      }
+    }
+  });
+  return result;
+}
+
+FitResult prepare_and_fit(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input,
+                          RunContext& run, std::optional<SymmetryPairs>& pairs) {
+  const StageTime agreeing = make_consistent(input.mesh, annotation, run);
   if (!arguments.landmarks.empty()) input.landmarks = read_landmarks(arguments.landmarks, input.mesh);
   if (!arguments.handles.empty()) input.handles = read_handles(arguments.handles, input.mesh).handles;
-  FitResult result = orbifit::fit(input, arguments.options, run);
-  result.times.insert(result.times.begin(), building);
+  FitResult result = fit_and_pair(input, arguments.options, run, pairs);
+  result.times.insert(result.times.begin(), agreeing);
   return result;
 }
 
@@ -197,9 +217,10 @@ int run_fit(const CLI::App& app, FitArguments& arguments, CommandContext& contex
   chosen.judge_groups = !arguments.report.empty() || !arguments.html.empty() || context.json;
   FitInput input{mesh, annotation, scans.front(), Similarity{}};
   for (std::size_t i = 1; i < scans.size(); ++i) input.others.push_back(&scans[i]);
-  const FitResult result = build_and_fit(arguments, annotation, input, context.run);
-  const SymmetryReport symmetry =
-      symmetry_residual(mesh, result.rest_annotation, &result.fitted, CarriedMotions::moving, context.run);
+  std::optional<SymmetryPairs> pairs;
+  const FitResult result = prepare_and_fit(arguments, annotation, input, context.run, pairs);
+  if (!pairs || !result.dropped.empty()) pairs.emplace(mesh, result.rest_annotation, context.run);
+  const SymmetryReport symmetry = pairs->residual(&result.fitted, CarriedMotions::moving, context.run);
   const std::vector<std::string> verdict = fit_verdict(mesh, result);
   context.run.check();
   // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.

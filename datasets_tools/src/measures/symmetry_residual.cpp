@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,8 @@ constexpr int kMaxFitPoints = 600;
 constexpr int kMinFitPoints = 60;
 constexpr int kFitBudget = 200000;
 
+}  // namespace
+
 // All (p, g, q) of one region.
 struct RegionPairs {
   std::vector<int> vertices;             // p
@@ -35,6 +38,18 @@ struct RegionPairs {
   std::vector<SurfacePlace> places;      // q: of element e and vertex v at e * #vertices + v
   std::vector<Pairing::Choice> choices;  // what else q may be
 };
+
+namespace {
+
+// Regions side by side, which then tell no progress.
+void for_each_region(const RunContext& context, std::size_t count,
+                     const std::function<void(std::size_t number, const RunContext& own)>& body) {
+  RunContext own = context;
+  own.on_progress = nullptr;
+  parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i, own);
+  });
+}
 
 RegionPairs pair_up(const Mesh& mesh, const Region& region, double tolerance, double rest_diagonal,
                     const RunContext& context) {
@@ -182,15 +197,15 @@ std::vector<CarriedFrame> carried_frames(const Mesh& mesh, const Mesh& deformed,
   for (std::size_t i = 0; i < measured.size(); ++i) frames[measured[i]] = together.frames[i];
   if (motions != CarriedMotions::moving) return frames;
 
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    context.progress("carried motions", static_cast<double>(i) / static_cast<double>(measured.size()));
+  context.progress("carried motions", 0);
+  for_each_region(context, measured.size(), [&](std::size_t i, const RunContext&) {
     const std::size_t r = measured[i];
     const Points from = deformed.vertices(pairs[r].vertices, Eigen::all);
     const Points to = mesh.vertices(pairs[r].vertices, Eigen::all);
     std::vector<Motion> own_starts{as_motion(together.frames[i], regions[r].centre), best_rigid_motion(from, to)};
     own_starts.insert(own_starts.end(), starts.begin(), starts.end());
     frames[r] = best_fit({samples[i]}, motions, scale, own_starts).frames.front();
-  }
+  });
   return frames;
 }
 
@@ -293,8 +308,9 @@ PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const P
 
 }  // namespace
 
-SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
-                                 CarriedMotions motions, RunContext& context) {
+namespace {
+
+void require_same_connectivity(const Mesh& mesh, const Mesh* deformed) {
   if (deformed != nullptr && (deformed->vertices.rows() != mesh.vertices.rows() ||
                               deformed->faces.rows() != mesh.faces.rows() || deformed->faces != mesh.faces)) {
     throw InputError("", "deformed mesh",
@@ -303,14 +319,43 @@ SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& ann
                          " faces; its connectivity must be that of the mesh, " + std::to_string(mesh.vertices.rows()) +
                          " vertices and " + std::to_string(mesh.faces.rows()) + " faces");
   }
+}
+
+}  // namespace
+
+struct SymmetryPairs::OfRegions {
+  std::vector<RegionPairs> pairs;
+};
+
+SymmetryPairs::SymmetryPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
+    : mesh_(mesh), annotation_(annotation) {
+  const double size = diagonal(mesh.vertices);
+  auto of_regions = std::make_unique<OfRegions>();
+  of_regions->pairs.resize(annotation.regions.size());
+  context.progress("pairs", 0);
+  for_each_region(context, annotation.regions.size(), [&](std::size_t r, const RunContext& own) {
+    of_regions->pairs[r] = pair_up(mesh, annotation.regions[r], annotation.tolerance, size, own);
+  });
+  pairs_ = std::move(of_regions);
+}
+
+SymmetryPairs::SymmetryPairs(SymmetryPairs&&) noexcept = default;
+SymmetryPairs::~SymmetryPairs() = default;
+
+SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
+                                 CarriedMotions motions, RunContext& context) {
+  require_same_connectivity(mesh, deformed);
+  return SymmetryPairs(mesh, annotation, context).residual(deformed, motions, context);
+}
+
+SymmetryReport SymmetryPairs::residual(const Mesh* deformed, CarriedMotions motions, const RunContext& context) const {
+  require_same_connectivity(mesh_, deformed);
+  const Mesh& mesh = mesh_;
+  const SymmetryAnnotation& annotation = annotation_;
   const Shape rest(mesh);
   std::optional<Shape> now;
   if (deformed != nullptr) now.emplace(*deformed);
-  std::vector<RegionPairs> pairs;
-  for (std::size_t r = 0; r < annotation.regions.size(); ++r) {
-    context.progress("pairs", static_cast<double>(r) / static_cast<double>(annotation.regions.size()));
-    pairs.push_back(pair_up(mesh, annotation.regions[r], annotation.tolerance, rest.size, context));
-  }
+  std::vector<RegionPairs> pairs = pairs_->pairs;  // of parts at one place others may be chosen
   std::vector<CarriedFrame> frames(annotation.regions.size());
   constexpr int kRounds = 4;  // of frames and choices, each of which rests on the other
   for (int round = 0; deformed != nullptr && round < kRounds; ++round) {

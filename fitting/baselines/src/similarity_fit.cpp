@@ -42,7 +42,7 @@ FitResult fit_similarity(const FitInput& input, const SimilarityOptions& options
     scaled.iterations = options.iterations;
     std::vector<int> points(static_cast<std::size_t>(start.scan.points.rows()));
     std::iota(points.begin(), points.end(), 0);
-    result.pose = align_with_scale(MatchSurface(input.mesh), start.scan, points, start.pose, scaled);
+    result.pose = align_with_scale(MatchSurface(input.mesh), start.scan, points, start.pose, scaled, context);
     result.stopped_because = "the iterations asked for are done";
   }
   clock.finished("fit");

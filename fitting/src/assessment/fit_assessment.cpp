@@ -8,7 +8,6 @@
 #include "geometry/point_index.h"
 #include "geometry/sampling.h"
 #include "solver/pulls.h"
-#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
@@ -54,13 +53,23 @@ double pulls_rms(const FitInput& input, const FitResult& result) {
 
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result) {
+  assess_fit(input, scan, seen, MovingSurface(result.fitted), options, context, result);
+}
+
+void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const MovingSurface& surface,
+                const FitOptions& options, const RunContext& context, FitResult& result) {
   const double size = diagonal(result.fitted.vertices);
-  const MovingSurface surface(result.fitted);
+  std::vector<double> distances(static_cast<std::size_t>(scan.points.rows()));
+  parallel_for(context, distances.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      distances[i] = surface.nearest(scan.points.row(static_cast<Eigen::Index>(i)).transpose()).distance / size;
+    }
+  });
   double squares = 0;
   int inliers = 0;
   std::vector<int> unexplained;
   for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
-    const double distance = surface.nearest(scan.points.row(i).transpose()).distance / size;
+    const double distance = distances[static_cast<std::size_t>(i)];
     if (distance > options.inlier_distance) {
       unexplained.push_back(static_cast<int>(i));
       continue;
@@ -86,10 +95,12 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
 
   const double near = std::max(2 * scan.spacing, options.inlier_distance * size);
   result.seen.resize(static_cast<std::size_t>(result.fitted.vertices.rows()));
-  for (std::size_t v = 0; v < result.seen.size(); ++v) {
-    const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
-    result.seen[v] = seen.points().nearest(vertex, 1).front().distance <= near ? 1 : 0;
-  }
+  parallel_for(context, result.seen.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
+      result.seen[v] = seen.points().nearest(vertex, 1).front().distance <= near ? 1 : 0;
+    }
+  });
   const Eigen::VectorXd areas = face_areas(result.fitted);
   double hidden = 0;
   for (Eigen::Index f = 0; f < areas.size(); ++f) {

@@ -4,6 +4,7 @@
 
 #include "scan/scan_preparation.h"
 #include "scan/seen_surface.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
@@ -17,6 +18,10 @@ double pulls_rms(const FitInput& input, const FitResult& result);
 /// points of this one
 void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                 const RunContext& context, FitResult& result);
+
+/// The same. \param surface  of `result.fitted`
+void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurface& seen, const MovingSurface& surface,
+                const FitOptions& options, const RunContext& context, FitResult& result);
 
 /// Share of the whole scan that a fit explains: what was left out as other things counts as unexplained. In [0, 1].
 double explained_share(const FitResult& result);

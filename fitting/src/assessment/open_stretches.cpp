@@ -202,11 +202,14 @@ std::vector<OpenStretch> open_stretches(const PreparedScan& scan, const SeenSurf
   std::vector<Matrix3d> ways = directions(result.annotation, result.fitted.faces.rows(), probe.axes());
   if (!options.fixed_scale) ways.emplace_back(Matrix3d::Identity());
   std::vector<OpenStretch> found;
-  for (const Matrix3d& along : ways) {
-    context.check();
-    const OpenStretch stretch{along, open(along, -1), open(along, 1)};
-    if (stretch.most() > 0) found.push_back(stretch);
-  }
+  for (const Matrix3d& along : ways) found.push_back({along});
+  parallel_for(context, 2 * found.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      OpenStretch& stretch = found[i / 2];
+      (i % 2 == 0 ? stretch.shorter : stretch.longer) = open(stretch.along, i % 2 == 0 ? -1 : 1);
+    }
+  });
+  std::erase_if(found, [](const OpenStretch& stretch) { return stretch.most() == 0; });
   std::ranges::stable_sort(found, std::greater<>(), &OpenStretch::most);
   return found;
 }

@@ -161,10 +161,12 @@ class Search {
     const std::vector<int> of(data_.order.begin(),
                               data_.order.begin() + static_cast<std::ptrdiff_t>(std::min(points, data_.order.size())));
     std::vector<Placement> result(starts.size());
+    RunContext own = context_;
+    own.threads = 1;
     parallel_for(context_, starts.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         result[i].pose = align_with_scale(data_.surface, data_.scan, of, starts[i],
-                                          {iterations, robust, 0.015, options_.scale.has_value()});
+                                          {iterations, robust, 0.015, options_.scale.has_value()}, own);
         const Similarity back = inverse(result[i].pose);
         const double reach = score_.reach_of(result[i].pose);
         result[i].inlier_ratio = score_.closeness(back, reach / result[i].pose.scale, 1500);

@@ -78,25 +78,36 @@ Similarity align_rigidly(const MatchSurface& surface, const PreparedScan& scan, 
 }
 
 Similarity align_with_scale(const MatchSurface& surface, const PreparedScan& scan, const std::vector<int>& points,
-                            const Similarity& start, const ScaledAlignmentOptions& options) {
+                            const Similarity& start, const ScaledAlignmentOptions& options, const RunContext& context) {
   constexpr double kNormalCosine = 0.7;
   constexpr double kReach = 3;  // robust scales
+  constexpr std::size_t kMinShare = 100;
   const double size = diagonal(surface.mesh().vertices);
   const Eigen::Vector3d pivot = bounding_box_centre(surface.mesh().vertices);
   Similarity pose = start;
   std::vector<int> likely(points.size(), -1);
+  std::vector<SurfaceIndex::Nearest> nearest(points.size());
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const double progress = double(iteration) / std::max(1, options.iterations - 1);
     const double robust = size * options.first_robust * std::pow(options.last_robust / options.first_robust, progress);
     const Similarity back = inverse(pose);
+    parallel_for(
+        context, points.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Vector3d facing = back.linear * scan.normals.row(points[i]).transpose();
+            nearest[i] = surface.index.nearest_facing(back(scan.points.row(points[i])), facing, kNormalCosine,
+                                                      kReach * robust, true, likely[i]);
+            likely[i] = nearest[i].place;
+          }
+        },
+        kMinShare);
     PoseSystem system(size, pivot);
     bool any = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d s = back(scan.points.row(points[i]));
-      const Eigen::Vector3d facing = back.linear * scan.normals.row(points[i]).transpose();
-      const auto near = surface.index.nearest_facing(s, facing, kNormalCosine, kReach * robust, true, likely[i]);
-      likely[i] = near.place;
+      const SurfaceIndex::Nearest& near = nearest[i];
       if (near.face < 0) continue;
+      const Eigen::Vector3d s = back(scan.points.row(points[i]));
       const Eigen::Vector3d n = surface.normal(near.face);
       system.add(s, n, n.dot(near.point - s), robust_weight(near.distance, robust));
       any = true;

@@ -35,7 +35,7 @@ struct ScaledAlignmentOptions {
 /// iteration. \param surface  the template's \param points  numbers of the scan's points; the others do not take part
 /// \return the refined pose, template -> scan; the last one where no point is near
 Similarity align_with_scale(const MatchSurface& surface, const PreparedScan& scan, const std::vector<int>& points,
-                            const Similarity& start, const ScaledAlignmentOptions& options);
+                            const Similarity& start, const ScaledAlignmentOptions& options, const RunContext& context);
 
 /// The pose at another scale, about the middle of the template's box.
 Similarity rescaled(const Similarity& pose, double scale, const Mesh& mesh);

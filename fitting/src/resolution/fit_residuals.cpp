@@ -11,7 +11,7 @@ namespace orbifit {
 namespace {
 
 // How far in front of the surface a point is; negative behind it. What hardly counts is hardly far.
-double offset_of(const Correspondence& pair, const Mesh& fitted, const MatchSurface& surface,
+double offset_of(const Correspondence& pair, const Mesh& fitted, const MovingSurface& surface,
                  const Eigen::Vector3d& point) {
   const Eigen::Vector3d foot = fitted.vertices(fitted.faces.row(pair.face), Eigen::all).transpose() * pair.barycentric;
   const double side = surface.normal(pair.face).dot(pair.normal) < 0 ? -1 : 1;
@@ -49,7 +49,8 @@ FitResiduals fit_residuals(const FitInput& input, const PlacedScan& start, const
   options.trim = 1;
   options.direction_noise = kDirectionNoise * size;
   options.robust_scale = kLastRobust * size;
-  const MatchSurface surface(fitted);
+  MovingSurface surface = moving_template(start, input.mesh);
+  surface.move(fitted, context);
   const std::vector<Correspondence> pairs =
       find_correspondences(surface, points, normals_to_template(result.pose, put.normals), options, context);
   std::vector<double> offsets(static_cast<std::size_t>(points.rows()), 0);

@@ -59,7 +59,7 @@ class Trials {
         options_(options),
         context_(context),
         system_(first.subspace, input.mesh, options.stretch,
-                contacts_to_keep(first.subspace, input.mesh, options, context)),
+                contacts_to_keep(start, first.subspace, input.mesh, options, context)),
         most_(most) {}
 
   // Replaces the fit by one from the state, if that explains the scan alike. \return whether it does

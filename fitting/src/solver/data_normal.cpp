@@ -34,7 +34,13 @@ class Batch {
       representatives_.push_back(way.representative);
       use(rows_.own(way.representative).columns);
     }
-    use(rows_.shift(way.shift).columns);
+    const auto shift = static_cast<std::size_t>(way.shift);
+    if (shift_used_.size() <= shift) shift_used_.resize(shift + 1, 0);
+    if (shift_used_[shift] == 0) {
+      shift_used_[shift] = 1;
+      shifts_.push_back(way.shift);
+      use(rows_.shift(way.shift).columns);
+    }
     use(way.more.columns);
   }
 
@@ -97,7 +103,9 @@ class Batch {
   void multiply_out(GramPart& product) {
     for (const int column : columns_) local_of_[static_cast<std::size_t>(column)] = -1;
     for (const int representative : representatives_) place_of_[static_cast<std::size_t>(representative)] = -1;
+    for (const int shift : shifts_) shift_used_[static_cast<std::size_t>(shift)] = 0;
     representatives_.clear();
+    shifts_.clear();
     product.columns = std::move(columns_);
     columns_.clear();
     lower_gram(all_, product.gram);
@@ -121,7 +129,8 @@ class Batch {
   int last_, common_;
   std::vector<int> local_of_;  // by column: its place among those used; -1: not used
   std::vector<int> place_of_;  // by representative, likewise
-  std::vector<int> columns_, representatives_;
+  std::vector<char> shift_used_;
+  std::vector<int> columns_, representatives_, shifts_;
   RowMajorMatrix own_;  // three rows of each representative, on the columns used, filled up with zeros to fours
   RowMajorMatrix all_;  // likewise
   Eigen::VectorXd right_;
@@ -158,12 +167,14 @@ std::vector<Motion> ScanStep::other_motions(const Eigen::VectorXd& solved) const
 std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspondence>& pairs,
                                   const std::vector<Pull>& pulls) {
   std::vector<int> vertices;
+  std::vector<char> met(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  const auto add = [&](int vertex) {
+    if (std::exchange(met[static_cast<std::size_t>(vertex)], 1) == 0) vertices.push_back(vertex);
+  };
   for (const Correspondence& pair : pairs) {
-    for (int k = 0; k < 3; ++k) vertices.push_back(mesh.faces(pair.face, k));
+    for (int k = 0; k < 3; ++k) add(mesh.faces(pair.face, k));
   }
-  for (const Pull& pull : pulls) vertices.push_back(pull.vertex);
-  std::ranges::sort(vertices);
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const Pull& pull : pulls) add(pull.vertex);
   return vertices;
 }
 

@@ -39,7 +39,7 @@ struct ScanStep {
   Motion motion(const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& solved) const;
 };
 
-/// The vertices that pairs and pulls are about, ascending.
+/// The vertices that pairs and pulls are about, each once, as they come.
 std::vector<int> touched_vertices(const Mesh& mesh, const std::vector<Correspondence>& pairs,
                                   const std::vector<Pull>& pulls);
 

@@ -104,12 +104,13 @@ double slack_of(const FitInput& input, const LandmarkConsensus& said, const Simi
 
 // The pose with scale in which the template as it is explains most of the scan near the given one: from there it is
 // told what is the template's, whose lengths may be others. The given one where that is another place.
-Similarity best_explaining(const MatchSurface& surface, const PreparedScan& scan, const Similarity& given) {
+Similarity best_explaining(const MatchSurface& surface, const PreparedScan& scan, const Similarity& given,
+                           const RunContext& context) {
   constexpr int kEnough = 1500;
   const auto count = static_cast<int>(scan.points.rows());
   std::vector<int> some;
   for (int i = 0; i < count; i += std::max(1, count / kEnough)) some.push_back(i);
-  const Similarity found = align_with_scale(surface, scan, some, given, {});
+  const Similarity found = align_with_scale(surface, scan, some, given, {}, context);
   return near_given(surface.mesh(), found, given) ? found : given;
 }
 
@@ -122,7 +123,7 @@ PlacedScan given_start(const FitInput& input, const MatchSurface& surface, const
   whole.scan = prepare_scan(input.scan, preparation, context);
   if (refined) pose = align_rigidly(surface, whole.scan, pose, context);
   whole.pose = pose;
-  const Similarity best = best_explaining(surface, whole.scan, pose);
+  const Similarity best = best_explaining(surface, whole.scan, pose, context);
   std::optional<PlacedScan> placed =
       placed_scan(surface, input.scan, best, slack_of(input, said, best), options.placement, preparation, context);
   if (!placed) return whole;
@@ -154,7 +155,8 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt
                     StageClock& clock) {
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
-  const MatchSurface surface(input.mesh);
+  const auto shared = std::make_shared<const SharedTemplate>(input.mesh, options.contacts, input.subspace, context);
+  const MatchSurface& surface = shared->surface();
   LandmarkConsensus said = said_by_landmarks(input, options);
   if (doubt_landmarks) said.pose = input.pose;
   FitStarts result;
@@ -170,6 +172,7 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt
     result.agrees = said.agrees;
     clock.finished("scan");
   }
+  for (PlacedScan& start : result.places) start.shared = shared;
   return result;
 }
 

@@ -16,14 +16,17 @@ bool of_one_kind(double scale, double other) {
   return std::abs(std::log(scale / other)) <= kOneKind;
 }
 
-std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan& start) {
+std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan& start, const RunContext& context) {
   constexpr double kMuchTheSame = 0.02;  // logarithms of the scales' quotient
   constexpr int kEnough = 1500;
   const auto count = static_cast<int>(start.scan.points.rows());
   std::vector<int> some;
   for (int i = 0; i < count; i += std::max(1, count / kEnough)) some.push_back(i);
   PlacedScan result = start;
-  result.pose = align_with_scale(MatchSurface(input.mesh), start.scan, some, start.pose, {});
+  const auto align = [&](const MatchSurface& surface) {
+    return align_with_scale(surface, start.scan, some, start.pose, {}, context);
+  };
+  result.pose = start.shared ? align(start.shared->surface()) : align(MatchSurface(input.mesh));
   const double growth = std::abs(std::log(result.pose.scale / start.pose.scale));
   if (growth < kMuchTheSame || !of_one_kind(result.pose.scale, start.pose.scale)) return std::nullopt;
   return result;

@@ -17,7 +17,7 @@ bool of_one_kind(double scale, double other);
 /// The start with the scale that brings the template, as it is, nearest to the scan. Lengths of which the shape has
 /// more, such as a taller back, take a fit at the template's scale to the wrong slat; from there it may find the right
 /// one. \return none where the scale is much the same, or other than shapes of one kind have
-std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan& start);
+std::optional<PlacedScan> at_other_scale(const FitInput& input, const PlacedScan& start, const RunContext& context);
 
 /// The same shape in the same place where the pose has another scale: the rest is deformation. Scaling about a point
 /// keeps all groups, whose centres go along, so that it lies in a floating subspace, and is nearest to it in others.

@@ -92,6 +92,10 @@ PreparedScan with_others_moved(const PlacedScan& start, const std::vector<Motion
   return result;
 }
 
+MovingSurface moving_template(const PlacedScan& start, const Mesh& mesh) {
+  return start.shared ? start.shared->tree() : MovingSurface(mesh);
+}
+
 std::optional<PlacedScan> placed_scan(const MatchSurface& surface, const PointCloud& cloud, const Similarity& pose,
                                       double slack, const PlacementOptions& options,
                                       const ScanPreparationOptions& preparation, const RunContext& context) {

@@ -12,6 +12,7 @@
 #include "registration/correspondences.h"
 #include "scan/scan_preparation.h"
 #include "solver/scan_views.h"
+#include "solver/shared_template.h"
 
 namespace orbifit {
 
@@ -22,7 +23,8 @@ struct PlacedScan {
   double overlap = 1;       ///< share of the scan's points near those that are left
   double torn_off = 0;      ///< share that is not, being far from the template, but hangs together with those
   bool scale_open = false;  ///< nothing is known of the scale: the pose's is that of the template as it is
-  std::shared_ptr<const ScanViews> views = {};  ///< of the template and this scan
+  std::shared_ptr<const ScanViews> views = {};        ///< of the template and this scan
+  std::shared_ptr<const SharedTemplate> shared = {};  ///< what fits from here share with others; null: nothing
   /// Where several scans are one: each of the others into the frame of the first, and of each point its scan's number.
   std::vector<Motion> others = {};
   std::vector<char> other_used = {};  ///< of the others: the template was found in it
@@ -32,6 +34,9 @@ struct PlacedScan {
 
 /// The start's scan with the points of the other scans moved. \param moves  one for each of PlacedScan::others, or none
 PreparedScan with_others_moved(const PlacedScan& start, const std::vector<Motion>& moves);
+
+/// A surface to be moved, of the template's faces. \param mesh  the template
+MovingSurface moving_template(const PlacedScan& start, const Mesh& mesh);
 
 /// Of the posed template's diagonal: what is farther from a template in the pose of its rest shape is not of it, be it
 /// a point of a scan or a place where one of its vertices is said to be.

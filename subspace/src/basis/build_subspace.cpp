@@ -57,15 +57,14 @@ SamplingOptions sampling_options(const Mesh& mesh, const SubspaceOptions& option
 }
 
 // Samples with the radius asked for, or with one found by a few rounds of secant steps on n ~ r^-2.
-SymmetricSampling choose_sampling(const Mesh& mesh, const RegionMap& regions, GroupWords& words,
+SymmetricSampling choose_sampling(const Mesh& mesh, const AnnotatedSurface& surface, GroupWords& words,
                                   const SubspaceOptions& options, const RunContext& context) {
-  if (options.radius > 0) {
-    return sample_symmetrically(mesh, regions, words, sampling_options(mesh, options, options.radius), context);
-  }
+  const RegionMap& regions = surface.regions;
+  const SymmetricSampler sampler(mesh, regions, surface.borders);
+  if (options.radius > 0) return sampler.sample(words, sampling_options(mesh, options, options.radius), context);
   const double target = options.samples > 0 ? options.samples : kMaxDefaultSamples;
   const double first = options.samples > 0 ? options.samples : kFirstSamples;
   double radius = std::sqrt(face_areas(mesh).sum() / (0.7 * first));
-  const SymmetricSampler sampler(mesh, regions);
   SymmetricSampling best;
   double best_error = 0;
   for (int round = 0; round < kSearchRounds; ++round) {
@@ -183,8 +182,11 @@ void complete_rest_basis(SubspaceParts& subspace) {
   add_atoms(subspace, subspace.basis, RunContext{});
 }
 
-Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, const SubspaceOptions& options,
-                        const RunContext& context) {
+namespace {
+
+// \param known  of another subspace of the same; null: none
+Subspace built(const Mesh& mesh, const SymmetryAnnotation& annotation, const SubspaceOptions& options,
+               std::shared_ptr<AnnotatedSurface> known, const RunContext& context) {
   options.validate();
   if (!(face_areas(mesh).sum() > 0)) throw InputError("", "mesh", "its faces have no area");
   if (options.relative_radii.size() > 0 && options.relative_radii.size() != mesh.vertices.rows()) {
@@ -197,13 +199,15 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   subspace.mode = options.mode;
   subspace.lift_kind = options.lift;
   subspace.diagonal = diagonal(mesh.vertices);
-  subspace.regions = std::make_shared<RegionMap>(mesh, annotation, context);
+  subspace.surface = known ? std::move(known) : std::make_shared<AnnotatedSurface>(mesh, annotation, context);
+  subspace.regions = std::shared_ptr<const RegionMap>(subspace.surface, &subspace.surface->regions);
   const auto words = std::make_shared<GroupWords>(*subspace.regions, options.mode != GroupMode::fixed);
   subspace.words = words;
-  subspace.sampling = choose_sampling(mesh, *subspace.regions, *words, options, context);
+  subspace.sampling = choose_sampling(mesh, *subspace.surface, *words, options, context);
   const bool averaged = options.lift == LiftKind::orbit;
-  subspace.orbits =
-      averaged ? vertex_orbits(mesh, *subspace.regions, *words, place_tolerance(mesh), context) : lone_vertices(mesh);
+  subspace.orbits = averaged ? vertex_orbits(mesh, *subspace.regions, *words, place_tolerance(mesh),
+                                             subspace.surface->vertex_sets, context)
+                             : lone_vertices(mesh);
   if (options.mode == GroupMode::moving)
     subspace.orbits.offsets = follower_offsets(mesh, *subspace.regions, subspace.orbits, *words);
   subspace.basis = basis_without_atoms(subspace, {});
@@ -212,6 +216,18 @@ Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, 
   add_atoms(subspace, subspace.basis, context);
   context.progress("lift", 1);
   return Subspace(parts);
+}
+
+}  // namespace
+
+Subspace build_subspace(const Mesh& mesh, const SymmetryAnnotation& annotation, const SubspaceOptions& options,
+                        const RunContext& context) {
+  return built(mesh, annotation, options, nullptr, context);
+}
+
+Subspace rebuilt_subspace(const Subspace& other, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                          const SubspaceOptions& options, const RunContext& context) {
+  return built(mesh, annotation, options, other->surface, context);
 }
 
 }  // namespace orbifit

@@ -306,7 +306,7 @@ class RowSums {
 OrbitLift orbit_lift(const SymmetricSampling& sampling, const RegionMap& regions, const GroupWords& words,
                      const SymmetricBasis& basis, const VertexOrbits& vertices, bool averaged,
                      const RunContext& context) {
-  if (averaged) regions.prepare();
+  if (averaged) regions.prepare(context);
   AtomTable table(sampling, regions, words, basis);
   std::vector<int> stood_for(vertices.point_words.size(), 1);
   if (averaged) stood_for = points_stood_for(sampling, regions, words, table.carriers(), vertices);

@@ -9,6 +9,7 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/subspace/subspace.h"
 
+#include "basis/annotated_surface.h"
 #include "basis/orbit_lift.h"
 #include "basis/symmetric_basis.h"
 #include "basis/vertex_orbits.h"
@@ -34,7 +35,8 @@ struct ConjugatedBasis : SymmetricBasis {
 struct SubspaceParts {
   GroupMode mode = GroupMode::floating;
   LiftKind lift_kind = LiftKind::orbit;
-  std::shared_ptr<const RegionMap> regions;
+  std::shared_ptr<AnnotatedSurface> surface;  ///< shared by subspaces of the same; null where read from a file
+  std::shared_ptr<const RegionMap> regions;   ///< of `surface`, where there is one
   std::shared_ptr<const GroupWords> words;
   SymmetricSampling sampling;
   VertexOrbits orbits;  ///< of the vertices
@@ -44,6 +46,11 @@ struct SubspaceParts {
 
   int degrees_of_freedom() const { return basis.degrees_of_freedom(); }
 };
+
+/// build_subspace() of the mesh and the annotation of another subspace with other options: takes over what these have
+/// in common. Not while another thread uses either.
+Subspace rebuilt_subspace(const Subspace& other, const Mesh& mesh, const SymmetryAnnotation& annotation,
+                          const SubspaceOptions& options, const RunContext& context);
 
 /// The basis when region i's group is turned by rotations[i] about its carried centre (mode moving).
 ConjugatedBasis conjugated_basis(const Subspace& subspace, const std::vector<Eigen::Matrix3d>& rotations);

@@ -65,12 +65,9 @@ VertexOrbits in_space_order(VertexOrbits orbits) {
 
 class OrbitBuilder {
  public:
-  OrbitBuilder(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance)
-      : mesh_(mesh),
-        regions_(regions),
-        words_(words),
-        images_(mesh.vertices, tolerance, 0),
-        sets_(closed_sets_of_vertices(mesh, regions, images_)) {
+  OrbitBuilder(const Mesh& mesh, const RegionMap& regions, GroupWords& words, const VertexGrid& grid,
+               const std::vector<int>& sets, double tolerance)
+      : mesh_(mesh), regions_(regions), words_(words), grid_(grid), sets_(sets) {
     closure_.doublet = tolerance;
     result_.tolerance = tolerance;
     result_.followers.assign(sets_.size(), {-1, 0, -1});
@@ -149,7 +146,7 @@ class OrbitBuilder {
       result_.point_sets.push_back(point.set);
       const bool turned = continuum_of(point.set) >= 0;
       bool met = false;
-      const VertexGrid& grid = turned ? *canonical_grid_ : images_.grid();
+      const VertexGrid& grid = turned ? *canonical_grid_ : grid_;
       bool same_only = !turned;  // on a circle vertices may lie in more places than the point
       grid.visit(point.position,
                  [&](int other) { same_only = same_only || sets_[static_cast<std::size_t>(other)] == point.set; });
@@ -200,8 +197,8 @@ class OrbitBuilder {
   const Mesh& mesh_;
   const RegionMap& regions_;
   GroupWords& words_;
-  VertexImages images_;
-  std::vector<int> sets_;
+  const VertexGrid& grid_;
+  const std::vector<int>& sets_;
   ClosureOptions closure_;
   VertexOrbits result_;
   bool continuous_ = false;
@@ -216,8 +213,10 @@ class OrbitBuilder {
 }  // namespace
 
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
-                           const RunContext& context) {
-  return OrbitBuilder(mesh, regions, words, tolerance).run(context);
+                           std::vector<int>& known_sets, const RunContext& context) {
+  VertexImages images(mesh.vertices, tolerance);
+  if (known_sets.empty()) known_sets = closed_sets_of_vertices(mesh, regions, images, context);
+  return OrbitBuilder(mesh, regions, words, images.grid(), known_sets, tolerance).run(context);
 }
 
 int set_of_vertex(const VertexOrbits& orbits, int vertex) {

@@ -49,10 +49,11 @@ struct VertexOrbits {
 };
 
 /// \param tolerance vertices nearer than this are one place, mesh units
+/// \param known_sets  closed_sets_of_vertices(), found and kept there where it is empty
 /// O(V * elements), memory about 60 bytes a vertex.
 /// \throw InputError when an orbit does not close
 VertexOrbits vertex_orbits(const Mesh& mesh, const RegionMap& regions, GroupWords& words, double tolerance,
-                           const RunContext& context);
+                           std::vector<int>& known_sets, const RunContext& context);
 
 /// The set of places that holds a vertex, as its orbit has it.
 int set_of_vertex(const VertexOrbits& orbits, int vertex);

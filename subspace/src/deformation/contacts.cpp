@@ -6,6 +6,8 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <unordered_map>
+#include <utility>
 
 #include "base/disjoint_sets.h"
 #include "base/random.h"
@@ -13,7 +15,6 @@
 #include "deformation/touching_points.h"
 #include "geometry/grid_cell.h"
 #include "geometry/topology.h"
-#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
@@ -190,6 +191,16 @@ class Kept {
 
  private:
   using Cell = std::array<std::int64_t, 5>;  // both parts, and the cell in space
+  struct CellHash {
+    std::size_t operator()(const Cell& cell) const {
+      std::uint64_t value = 0;
+      for (const std::int64_t coordinate : cell) {
+        value = (value ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15ULL;
+        value ^= value >> 31U;
+      }
+      return value;
+    }
+  };
 
   const Candidate& at(int number) const { return candidates_[static_cast<std::size_t>(number)]; }
 
@@ -203,7 +214,7 @@ class Kept {
   const std::vector<double>& spacing_;
   const RunContext& context_;
   std::map<std::array<int, 2>, double> width_;  // of cells
-  std::map<Cell, Numbers> by_cell_;
+  std::unordered_map<Cell, Numbers, CellHash> by_cell_;
   std::map<std::array<int, 2>, Numbers> by_parts_;
 };
 
@@ -340,8 +351,8 @@ std::vector<double> part_lengths(const Mesh& mesh, const Components& parts) {
 // The sample of a part nearest to a point; of all samples, where the part has none.
 class NearestSample {
  public:
-  NearestSample(const Points& samples, const Mesh& mesh, const std::vector<int>& part_of_face) : samples_(samples) {
-    const MovingSurface surface(mesh);
+  NearestSample(const Points& samples, const MovingSurface& surface, const std::vector<int>& part_of_face)
+      : samples_(samples) {
     for (Index k = 0; k < samples.rows(); ++k) {
       const int face = surface.nearest(samples.row(k).transpose()).face;
       part_of_sample_.push_back(face < 0 ? -1 : part_of_face[static_cast<std::size_t>(face)]);
@@ -389,16 +400,41 @@ Contact contact_of(const Candidate& candidate, const std::vector<TouchingPoints>
 
 }  // namespace
 
+struct ContactSearch::Parts {
+  Parts(const Mesh& mesh, Components of_mesh, double tolerance, const RunContext& context)
+      : parts(std::move(of_mesh)),
+        lengths(part_lengths(mesh, parts)),
+        touching(mesh, parts.component_of_face, tolerance, context) {}
+
+  Components parts;
+  std::vector<double> lengths;
+  TouchingSearch touching;
+};
+
+ContactSearch::ContactSearch(const Mesh& mesh, std::shared_ptr<const MovingSurface> surface,
+                             const ContactOptions& options, const RunContext& context)
+    : mesh_(mesh), surface_(std::move(surface)), options_(options) {
+  Components parts = touching_parts(mesh, weld_vertices(mesh.vertices));
+  if (parts.faces.size() < 2) return;
+  parts_ = std::make_unique<const Parts>(mesh, std::move(parts), options.tolerance * diagonal(mesh.vertices), context);
+}
+
+ContactSearch::~ContactSearch() = default;
+
 std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, const ContactOptions& options,
                                    const RunContext& context) {
-  const Components parts = touching_parts(mesh, weld_vertices(mesh.vertices));
-  if (parts.faces.size() < 2) return {};
+  return ContactSearch(mesh, std::make_shared<const MovingSurface>(mesh), options, context).in(subspace, context);
+}
+
+std::vector<Contact> ContactSearch::in(const Subspace& subspace, const RunContext& context) const {
+  if (!parts_) return {};
+  const Mesh& mesh = mesh_;
+  const ContactOptions& options = options_;
   const double spacing = options.spacing * subspace->sampling.radius;
-  const std::vector<TouchingPoints> touching =
-      touching_points(mesh, parts.component_of_face, options.tolerance * subspace->diagonal, spacing, context);
+  const std::vector<TouchingPoints> touching = parts_->touching.points(spacing, context);
   if (touching.empty()) return {};
   const ContactTrials trials(subspace, mesh, context);
-  const NearestSample nearest(subspace->sampling.points, mesh, parts.component_of_face);
+  const NearestSample nearest(subspace->sampling.points, *surface_, parts_->parts.component_of_face);
   std::vector<Contact> contacts;
   const auto keep = [&](const std::vector<Candidate>& candidates, const Orbits& orbits) {
     for (const Numbers& orbit : orbits) {
@@ -412,7 +448,7 @@ std::vector<Contact> find_contacts(const Subspace& subspace, const Mesh& mesh, c
 
   std::vector<Candidate> points;
   std::vector<double> small_size;
-  const std::vector<double> lengths = part_lengths(mesh, parts);
+  const std::vector<double>& lengths = parts_->lengths;
   for (std::size_t i = 0; i < touching.size(); ++i) {
     points.push_back(candidate_of(touching, {static_cast<int>(i)}));
     const auto [a, b] = touching[i].parts;

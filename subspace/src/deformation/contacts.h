@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "orbifit/model/run_context.h"
 
 #include "basis/subspace_parts.h"
+#include "symmetry/moving_surface.h"
 
 namespace orbifit {
 
@@ -41,6 +43,30 @@ struct ContactOptions {
   int most = 400;
   /// One contact of each orbit, which counts for all. Else all are kept: the same energies from more rows.
   bool representatives = true;
+};
+
+/// Finds contacts in one subspace of a mesh after another. Const calls may run on several threads.
+class ContactSearch {
+ public:
+  /// \param mesh  kept by reference \param surface  of the mesh
+  ContactSearch(const Mesh& mesh, std::shared_ptr<const MovingSurface> surface, const ContactOptions& options,
+                const RunContext& context);
+  ContactSearch(const ContactSearch&) = delete;
+  ContactSearch& operator=(const ContactSearch&) = delete;
+  ContactSearch(ContactSearch&&) = delete;
+  ContactSearch& operator=(ContactSearch&&) = delete;
+  ~ContactSearch();
+
+  /// See find_contacts(). \param subspace  of the mesh
+  std::vector<Contact> in(const Subspace& subspace, const RunContext& context) const;
+
+ private:
+  struct Parts;
+
+  const Mesh& mesh_;
+  std::shared_ptr<const MovingSurface> surface_;
+  ContactOptions options_;
+  std::unique_ptr<const Parts> parts_;  // null where there is a single part
 };
 
 /// The contacts of a mesh's connected parts (touching_parts() of the welded mesh), thinned out by whole orbits, so that

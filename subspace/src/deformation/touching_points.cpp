@@ -21,12 +21,6 @@ using Eigen::Vector3d;
 
 constexpr int kMaxPieces = 16;  // into which a side of a large face is cut
 
-struct Part {
-  std::vector<int> faces;
-  AlignedBox3d box;
-  std::unique_ptr<MovingSurface> surface;
-};
-
 AlignedBox3d box_of(const Mesh& mesh, int face) {
   AlignedBox3d box;
   for (int k = 0; k < 3; ++k) box.extend(mesh.vertices.row(mesh.faces(face, k)).transpose());
@@ -37,28 +31,17 @@ AlignedBox3d grown(const AlignedBox3d& box, double by) {
   return {box.min().array() - by, box.max().array() + by};
 }
 
-std::vector<Part> parts_of(const Mesh& mesh, const std::vector<int>& part_of_face) {
-  std::vector<Part> parts;
-  for (std::size_t f = 0; f < part_of_face.size(); ++f) {
-    const auto part = static_cast<std::size_t>(part_of_face[f]);
-    if (parts.size() <= part) parts.resize(part + 1);
-    parts[part].faces.push_back(static_cast<int>(f));
-    parts[part].box.extend(box_of(mesh, static_cast<int>(f)));
-  }
-  return parts;
-}
-
 // Pairs of parts whose boxes come within the tolerance of one another, ascending.
-std::vector<std::array<int, 2>> near_pairs(const std::vector<Part>& parts, double tolerance) {
-  std::vector<int> order(parts.size());
+std::vector<std::array<int, 2>> near_pairs(const std::vector<AlignedBox3d>& boxes, double tolerance) {
+  std::vector<int> order(boxes.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto low = [&](int part) { return parts[static_cast<std::size_t>(part)].box.min().x(); };
+  const auto low = [&](int part) { return boxes[static_cast<std::size_t>(part)].min().x(); };
   std::ranges::stable_sort(order, [&](int a, int b) { return low(a) < low(b); });
   std::vector<std::array<int, 2>> pairs;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const AlignedBox3d reach = grown(parts[static_cast<std::size_t>(order[i])].box, tolerance);
+    const AlignedBox3d reach = grown(boxes[static_cast<std::size_t>(order[i])], tolerance);
     for (std::size_t j = i + 1; j < order.size() && low(order[j]) <= reach.max().x(); ++j) {
-      if (!reach.intersects(parts[static_cast<std::size_t>(order[j])].box)) continue;
+      if (!reach.intersects(boxes[static_cast<std::size_t>(order[j])])) continue;
       pairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
     }
   }
@@ -66,11 +49,36 @@ std::vector<std::array<int, 2>> near_pairs(const std::vector<Part>& parts, doubl
   return pairs;
 }
 
+// Into how many pieces the sides of a face are cut.
+int pieces_of(double longest, double spacing) {
+  return std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, kMaxPieces);
+}
+
+}  // namespace
+
+struct TouchingSearch::Part {
+  std::vector<int> faces;
+  AlignedBox3d box;
+  std::unique_ptr<MovingSurface> surface;
+};
+
+// What two parts have of one another.
+struct TouchingSearch::Found {
+  double spacing = 0;
+  std::vector<double> longest;  // side of each face that was looked from
+  std::vector<TouchingPoints> touching;
+
+  bool holds_for(double other) const {
+    return spacing == other || (spacing > 0 && std::ranges::all_of(longest, [&](double length) {
+                                  return pieces_of(length, spacing) == pieces_of(length, other);
+                                }));
+  }
+};
+
 // Looks from one part at another.
-class PartSearch {
+class TouchingSearch::OfPart {
  public:
-  PartSearch(const Mesh& mesh, const Part& from, const Part& to, double tolerance, double spacing,
-             std::vector<TouchingPoints>& found)
+  OfPart(const Mesh& mesh, const Part& from, const Part& to, double tolerance, double spacing, Found& found)
       : mesh_(mesh), from_(from), to_(to), tolerance_(tolerance), spacing_(spacing), found_(found) {}
 
   void run(const std::array<int, 2>& parts, bool swapped) {
@@ -101,7 +109,7 @@ class PartSearch {
     const Vector3d second = at(touching.points[1]);
     touching.middle = 0.5 * (first + second);
     touching.gap = first - second;
-    found_.push_back(touching);
+    found_.touching.push_back(touching);
   }
 
   // Whether any of the face may touch.
@@ -116,7 +124,8 @@ class PartSearch {
   void look_from_points(int face, const AlignedBox3d& reach) {
     double longest = 0;
     for (int k = 0; k < 3; ++k) longest = std::max(longest, (corner(face, k) - corner(face, (k + 1) % 3)).norm());
-    const int pieces = std::clamp(static_cast<int>(std::ceil(longest / spacing_)), 1, kMaxPieces);
+    found_.longest.push_back(longest);
+    const int pieces = pieces_of(longest, spacing_);
     for (int i = 0; i <= pieces; ++i) {
       for (int j = 0; i + j <= pieces; ++j) {
         const FacePoint own{face, Vector3d(i, j, pieces - i - j) / pieces};
@@ -169,7 +178,7 @@ class PartSearch {
   const Part& from_;
   const Part& to_;
   double tolerance_, spacing_;
-  std::vector<TouchingPoints>& found_;
+  Found& found_;
   std::array<int, 2> parts_{};
   bool swapped_ = false;
   int likely_ = -1;
@@ -177,34 +186,64 @@ class PartSearch {
   std::unordered_set<std::uint64_t> edges_;  // looked along: both ends
 };
 
-}  // namespace
-
-std::vector<TouchingPoints> touching_points(const Mesh& mesh, const std::vector<int>& part_of_face, double tolerance,
-                                            double spacing, const RunContext& context) {
-  std::vector<Part> parts = parts_of(mesh, part_of_face);
-  const std::vector<std::array<int, 2>> pairs = near_pairs(parts, tolerance);
-  std::vector<char> asked(parts.size(), 0);
-  for (const auto& pair : pairs) {
+TouchingSearch::TouchingSearch(const Mesh& mesh, const std::vector<int>& part_of_face, double tolerance,
+                               const RunContext& context)
+    : mesh_(mesh), tolerance_(tolerance) {
+  std::vector<AlignedBox3d> boxes;
+  for (std::size_t f = 0; f < part_of_face.size(); ++f) {
+    const auto part = static_cast<std::size_t>(part_of_face[f]);
+    if (parts_.size() <= part) parts_.resize(part + 1);
+    parts_[part].faces.push_back(static_cast<int>(f));
+    parts_[part].box.extend(box_of(mesh, static_cast<int>(f)));
+  }
+  for (const Part& part : parts_) boxes.push_back(part.box);
+  pairs_ = near_pairs(boxes, tolerance);
+  std::vector<char> asked(parts_.size(), 0);
+  for (const auto& pair : pairs_) {
     for (const int part : pair) asked[static_cast<std::size_t>(part)] = 1;
   }
-  parallel_for(context, parts.size(), [&](std::size_t begin, std::size_t end) {
+  parallel_for(context, parts_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      if (asked[p] != 0) parts[p].surface = std::make_unique<MovingSurface>(mesh, parts[p].faces);
+      if (asked[p] != 0) parts_[p].surface = std::make_unique<MovingSurface>(mesh, parts_[p].faces);
     }
   });
-  std::vector<std::vector<TouchingPoints>> found(pairs.size());
-  parallel_for(context, pairs.size(), [&](std::size_t begin, std::size_t end) {
+  known_ = std::make_shared<const std::vector<Found>>(pairs_.size());
+}
+
+TouchingSearch::~TouchingSearch() = default;
+
+std::vector<TouchingPoints> TouchingSearch::points(double spacing, const RunContext& context) const {
+  std::shared_ptr<const std::vector<Found>> known;
+  {
+    const std::lock_guard lock(mutex_);
+    known = known_;
+  }
+  auto found = std::make_shared<std::vector<Found>>(pairs_.size());
+  parallel_for(context, pairs_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       context.check();
-      const Part& a = parts[static_cast<std::size_t>(pairs[i][0])];
-      const Part& b = parts[static_cast<std::size_t>(pairs[i][1])];
-      PartSearch(mesh, a, b, tolerance, spacing, found[i]).run(pairs[i], false);
-      PartSearch(mesh, b, a, tolerance, spacing, found[i]).run(pairs[i], true);
+      Found& now = (*found)[i];
+      if ((*known)[i].holds_for(spacing)) {
+        now = (*known)[i];
+        continue;
+      }
+      now.spacing = spacing;
+      const Part& a = parts_[static_cast<std::size_t>(pairs_[i][0])];
+      const Part& b = parts_[static_cast<std::size_t>(pairs_[i][1])];
+      OfPart(mesh_, a, b, tolerance_, spacing, now).run(pairs_[i], false);
+      OfPart(mesh_, b, a, tolerance_, spacing, now).run(pairs_[i], true);
     }
   });
   std::vector<TouchingPoints> result;
-  for (const auto& some : found) result.insert(result.end(), some.begin(), some.end());
+  for (const Found& some : *found) result.insert(result.end(), some.touching.begin(), some.touching.end());
+  const std::lock_guard lock(mutex_);
+  known_ = std::move(found);
   return result;
+}
+
+std::vector<TouchingPoints> touching_points(const Mesh& mesh, const std::vector<int>& part_of_face, double tolerance,
+                                            double spacing, const RunContext& context) {
+  return TouchingSearch(mesh, part_of_face, tolerance, context).points(spacing, context);
 }
 
 }  // namespace orbifit

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +24,33 @@ struct TouchingPoints {
   std::array<FacePoint, 2> points;  ///< on either
   Eigen::Vector3d middle;           ///< between them
   Eigen::Vector3d gap;              ///< from the second to the first
+};
+
+/// Where parts of a mesh touch, looked for with one spacing after another: of two parts that both spacings ask for the
+/// same points of, what is known is told again. Const calls may run on several threads.
+class TouchingSearch {
+ public:
+  /// Arguments as touching_points() has them. \param mesh  kept by reference
+  TouchingSearch(const Mesh& mesh, const std::vector<int>& part_of_face, double tolerance, const RunContext& context);
+  TouchingSearch(const TouchingSearch&) = delete;
+  TouchingSearch& operator=(const TouchingSearch&) = delete;
+  TouchingSearch(TouchingSearch&&) = delete;
+  TouchingSearch& operator=(TouchingSearch&&) = delete;
+  ~TouchingSearch();
+
+  std::vector<TouchingPoints> points(double spacing, const RunContext& context) const;
+
+ private:
+  struct Part;
+  struct Found;
+  class OfPart;
+
+  const Mesh& mesh_;
+  double tolerance_;
+  std::vector<Part> parts_;
+  std::vector<std::array<int, 2>> pairs_;  // of parts whose boxes come near one another
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const std::vector<Found>> known_;  // of the pairs, as they were last looked for
 };
 
 /// Where parts of a mesh touch: where an edge of one passes through a face of another, and where one has points within

@@ -294,7 +294,8 @@ class OrbitSampler {
 
 SymmetricSampling sample_symmetrically(const Mesh& mesh, const RegionMap& regions, GroupWords& words,
                                        const SamplingOptions& options, const RunContext& context) {
-  return SymmetricSampler(mesh, regions).sample(words, options, context);
+  const AbuttingPlaces borders(mesh, regions);
+  return SymmetricSampler(mesh, regions, borders).sample(words, options, context);
 }
 
 SymmetricSampling SymmetricSampler::sample(GroupWords& words, const SamplingOptions& options,

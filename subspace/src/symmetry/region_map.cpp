@@ -109,10 +109,12 @@ const MovingSurface& RegionMap::surface(int place) const {
   return *surface;
 }
 
-void RegionMap::prepare() const {
-  for (int place = 0; place < places(); ++place) {
-    if (!whole(place) && !at(place).faces.empty()) surface(place);
-  }
+void RegionMap::prepare(const RunContext& context) const {
+  parallel_for(context, static_cast<std::size_t>(places()), [&](std::size_t begin, std::size_t end) {
+    for (auto place = static_cast<int>(begin); place < static_cast<int>(end); ++place) {
+      if (!whole(place) && !at(place).faces.empty()) surface(place);
+    }
+  });
 }
 
 double RegionMap::distance(const Vector3d& point, int place, double most, int* likely) const {

@@ -51,7 +51,7 @@ class RegionMap : public DomainMap {
   double distance(const Eigen::Vector3d& point, int place, double most, int* likely = nullptr) const;
 
   /// Builds the places' trees now rather than when one is first needed.
-  void prepare() const;
+  void prepare(const RunContext& context) const;
 
  private:
   RegionMap(const Mesh& mesh, const SymmetryAnnotation& annotation, const std::vector<Lattice>& lattices);

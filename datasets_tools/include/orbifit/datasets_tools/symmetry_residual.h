@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -56,5 +57,25 @@ struct SymmetryReport {
 /// deformed mesh's counts differ
 SymmetryReport symmetry_residual(const Mesh& mesh, const SymmetryAnnotation& annotation, const Mesh* deformed,
                                  CarriedMotions motions, RunContext& context);
+
+/// The same in two steps: how points are paired at rest, which takes longest, is found before there is a deformed
+/// shape.
+class SymmetryPairs {
+ public:
+  /// References are kept.
+  SymmetryPairs(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
+  SymmetryPairs(SymmetryPairs&&) noexcept;
+  SymmetryPairs& operator=(SymmetryPairs&&) = delete;
+  ~SymmetryPairs();
+
+  SymmetryReport residual(const Mesh* deformed, CarriedMotions motions, const RunContext& context) const;
+
+ private:
+  struct OfRegions;
+
+  const Mesh& mesh_;
+  const SymmetryAnnotation& annotation_;
+  std::unique_ptr<const OfRegions> pairs_;
+};
 
 }  // namespace orbifit

@@ -31,7 +31,7 @@ class BorderCheck {
         domains_(domains),
         images_(images),
         context_(context),
-        sets_(closed_sets_of_vertices(mesh, domains, images)),
+        sets_(closed_sets_of_vertices(mesh, domains, images, context)),
         of_place_(static_cast<std::size_t>(domains.places())) {
     for (int place = 0; place < domains.places(); ++place) {
       for (const Motion& motion : domains.elements(place)) {
@@ -119,17 +119,6 @@ std::vector<int> faces_around(const Mesh& mesh, const std::vector<int>& faces, c
   return result;
 }
 
-// Asks at once, on all threads, where the motions of the places take their vertices.
-void ask_images(const ShapeSurface& surface, const DomainMap& domains, const std::vector<std::vector<int>*>& faces,
-                const RunContext& context) {
-  const auto all = static_cast<std::size_t>(surface.mesh.faces.rows());
-  if (std::ranges::all_of(faces, [&](const std::vector<int>* each) { return each->size() == all; })) return;
-  for (int place = 0; place < domains.places(); ++place) {
-    const std::vector<int> vertices = vertices_of_faces(surface.mesh, *faces[static_cast<std::size_t>(place)]);
-    for (const Motion& motion : domains.elements(place)) surface.vertex_images.of(motion).ask(vertices, context);
-  }
-}
-
 // What a place would give up.
 struct Loss {
   int place;
@@ -170,7 +159,6 @@ bool close_borders(const ShapeSurface& surface, SymmetryAnnotation& annotation, 
   bool any = false;
   while (true) {
     const DomainMap domains(mesh, annotation, instance_motions(annotation));
-    if (!any) ask_images(surface, domains, faces, context);
     std::vector<Conflict> conflicts = BorderCheck(mesh, domains, surface.vertex_images, context).run();
     bool taken = false;
     while (const std::optional<Loss> loss = least_loss(mesh, faces, domains, conflicts)) {

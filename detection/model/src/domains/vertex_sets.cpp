@@ -137,7 +137,8 @@ class SetClosure {
         points_(std::move(points)),
         queued_(points_.root.size(), 0) {}
 
-  PointSets run() {
+  PointSets run(const RunContext& context) {
+    ask_images(context);
     for (std::size_t v = 0; v < points_.root.size(); ++v) {
       if (points_.root[v] != static_cast<int>(v)) continue;
       queue_.push_back(static_cast<int>(v));
@@ -168,12 +169,24 @@ class SetClosure {
     if (std::exchange(queued_[static_cast<std::size_t>(root)], 1) == 0) queue_.push_back(root);
   }
 
-  int image(int vertex, int place, int element) {
-    auto& of = of_place_[static_cast<std::size_t>(place)];
-    if (of.empty()) {
-      for (const Motion& motion : domains_.elements(place)) of.push_back(&images_.of(motion));
+  // Asks at once, on all threads, where the motions of each place take its vertices.
+  void ask_images(const RunContext& context) {
+    std::vector<std::vector<int>> vertices(of_place_.size());
+    for (int v = 0; v < static_cast<int>(points_.root.size()); ++v) {
+      if (root_of(v) != v) continue;
+      for (const int place : domains_.set_places(set_of(v))) vertices[static_cast<std::size_t>(place)].push_back(v);
     }
-    return (*of[static_cast<std::size_t>(element)])(vertex);
+    for (int place = 0; place < domains_.places(); ++place) {
+      for (const Motion& motion : domains_.elements(place)) {
+        VertexImages::Images& images = images_.of(motion);
+        images.ask(vertices[static_cast<std::size_t>(place)], context);
+        of_place_[static_cast<std::size_t>(place)].push_back(&images);
+      }
+    }
+  }
+
+  int image(int vertex, int place, int element) {
+    return (*of_place_[static_cast<std::size_t>(place)][static_cast<std::size_t>(element)])(vertex);
   }
 
   // The vertices nearest to a position; others near it are there for themselves.
@@ -231,7 +244,7 @@ class SetClosure {
   const Mesh& mesh_;
   const DomainMap& domains_;
   VertexImages& images_;
-  std::vector<std::vector<VertexImages::Images*>> of_place_;  // by place and element, once asked for
+  std::vector<std::vector<VertexImages::Images*>> of_place_;  // by place and element
   Points normals_;
   double rounding_;
   PointSets points_;
@@ -241,12 +254,13 @@ class SetClosure {
 
 }  // namespace
 
-std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images) {
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images,
+                                         const RunContext& context) {
   PointSets points = point_sets(mesh, domains);
   bool partial = false;
   for (int place = 0; place < domains.places(); ++place) partial = partial || !domains.whole(place);
   if (!partial) return by_vertex(points);
-  return by_vertex(SetClosure(mesh, domains, images, std::move(points)).run());
+  return by_vertex(SetClosure(mesh, domains, images, std::move(points)).run(context));
 }
 
 }  // namespace orbifit

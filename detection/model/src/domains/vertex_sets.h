@@ -23,6 +23,7 @@ std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains);
 /// vertex, the image of its set and the other's are one. Regions are drawn face by face, and where one ends a face
 /// earlier than its image, the vertices of both are decided alike here, once for all of an orbit.
 /// \param images  of the mesh's vertices
-std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images);
+std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images,
+                                         const RunContext& context);
 
 }  // namespace orbifit

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,20 +13,28 @@ namespace orbifit {
 class VertexGrid {
  public:
   VertexGrid(const Points& vertices, double tolerance)
-      : vertices_(vertices),
-        tolerance_(tolerance),
+      : tolerance_(tolerance),
         origin_(vertices.rows() > 0 ? Eigen::Vector3d(vertices.row(0)) : Eigen::Vector3d(0, 0, 0)) {
     const double extent = vertices.rows() > 0 ? (vertices.rowwise() - vertices.row(0)).cwiseAbs().maxCoeff() : 0;
     width_ = std::max(8 * tolerance, extent / kMaxCells);
+    const auto count = static_cast<std::size_t>(vertices.rows());
     std::size_t size = 16;
-    while (size < 2 * static_cast<std::size_t>(vertices.rows())) size *= 2;
-    heads_.assign(size, -1);
-    next_.assign(static_cast<std::size_t>(vertices.rows()), -1);
-    for (auto v = static_cast<int>(vertices.rows()) - 1; v >= 0; --v) {
+    while (size < 2 * count) size *= 2;
+    // Those of one slot follow one another, ascending.
+    std::vector<std::size_t> slots;
+    slots.reserve(count);
+    first_.assign(size + 1, 0);
+    for (Eigen::Index v = 0; v < vertices.rows(); ++v) {
       const Eigen::Vector3d scaled = (vertices.row(v).transpose() - origin_) / width_;
-      int& head = heads_[slot(floor(scaled))];
-      next_[static_cast<std::size_t>(v)] = head;
-      head = v;
+      slots.push_back(slot(size, {whole(scaled[0]), whole(scaled[1]), whole(scaled[2])}));
+      ++first_[slots.back() + 1];
+    }
+    for (std::size_t k = 0; k < size; ++k) first_[k + 1] += first_[k];
+    std::vector<int> next(first_.begin(), first_.end() - 1);
+    entries_.resize(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      const auto at = static_cast<std::size_t>(next[slots[v]]++);
+      entries_[at] = {vertices.row(static_cast<Eigen::Index>(v)).transpose(), static_cast<int>(v)};
     }
   }
 
@@ -36,20 +44,24 @@ class VertexGrid {
     const Eigen::Vector3d scaled = (place - origin_) / width_;
     if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) return;  // farther than any vertex
     const double margin = tolerance_ / width_;
-    const Eigen::Vector3d low = (scaled.array() - margin).floor();
-    const Eigen::Vector3d high = (scaled.array() + margin).floor();
+    Cell low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = whole(scaled[static_cast<Eigen::Index>(k)] - margin);
+      high[k] = whole(scaled[static_cast<Eigen::Index>(k)] + margin);
+    }
     std::size_t seen[8];
     int count = 0;
-    for (double x = low[0]; x <= high[0]; ++x) {
-      for (double y = low[1]; y <= high[1]; ++y) {
-        for (double z = low[2]; z <= high[2]; ++z) {
-          const std::size_t at = slot({x, y, z});
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const std::size_t at = slot(first_.size() - 1, {x, y, z});
           bool again = false;
           for (int i = 0; i < count; ++i) again = again || seen[i] == at;
           if (again) continue;
           seen[count++] = at;
-          for (int v = heads_[at]; v >= 0; v = next_[static_cast<std::size_t>(v)]) {
-            if ((vertices_.row(v).transpose() - place).squaredNorm() <= tolerance_ * tolerance_) visit(v);
+          const Entry* const end = entries_.data() + first_[at + 1];
+          for (const Entry* entry = entries_.data() + first_[at]; entry != end; ++entry) {
+            if ((entry->place - place).squaredNorm() <= tolerance_ * tolerance_) visit(entry->vertex);
           }
         }
       }
@@ -57,25 +69,35 @@ class VertexGrid {
   }
 
  private:
+  using Cell = std::array<std::int64_t, 3>;
+  struct Entry {
+    Eigen::Vector3d place;
+    int vertex;
+  };
+
   // To each side: numbers of cells up to twice that are whole, and the next one is another number.
   static constexpr double kMaxCells = 0x1p50;
 
-  static Eigen::Vector3d floor(const Eigen::Vector3d& point) { return point.array().floor(); }
-
-  std::size_t slot(const Eigen::Vector3d& cell) const {
-    std::uint64_t value = 0;
-    for (int k = 0; k < 3; ++k) {
-      value = (value ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[k]))) * 0x9e3779b97f4a7c15ULL;
-      value ^= value >> 31U;
-    }
-    return value & (heads_.size() - 1);
+  // The number rounded down; std::floor() is a call.
+  static std::int64_t whole(double number) {
+    const auto towards_zero = static_cast<std::int64_t>(number);
+    return towards_zero - (static_cast<double>(towards_zero) > number ? 1 : 0);
   }
 
-  const Points& vertices_;
+  static std::size_t slot(std::size_t slots, const Cell& cell) {
+    std::uint64_t value = 0;
+    for (const std::int64_t coordinate : cell) {
+      value = (value ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15ULL;
+      value ^= value >> 31U;
+    }
+    return value & (slots - 1);
+  }
+
   double tolerance_;
   double width_ = 0;
   Eigen::Vector3d origin_;
-  std::vector<int> heads_, next_;
+  std::vector<int> first_;  // entry of each slot, and their number at the end
+  std::vector<Entry> entries_;
 };
 
 }  // namespace orbifit
