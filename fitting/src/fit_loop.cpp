@@ -137,7 +137,8 @@ void FitLoop::add_pulls(const FitState& state, const Stage& now, Matches& matche
 double FitLoop::energy(const FitState& state, const Matches& matches, double share, const Stage& now) const {
   const double regularity = system_.regularity(state.q) + system_.growth_cost(std::log(unit(state)));
   const double result = share * matches.energy + matches.pull_energy + now.stiffness * regularity +
-                        system_.symmetry_energy(state.q) + system_.contact_energy(state.q);
+                        system_.symmetry_energy(state.q) +
+                        contact_share(now.stiffness) * system_.contact_energy(state.q);
   return result / (unit(state) * unit(state));
 }
 

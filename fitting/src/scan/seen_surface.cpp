@@ -15,6 +15,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kMaxViews = 64;
+// Of the reach: what stands nearer before a point is the same surface, which need not lie where it should. Where points
+// are pulled less is: what any part of the template hides there must not be.
+constexpr double kSameSurface = 0.5;
+constexpr double kSameSurfacePulled = 0.05;
 
 // The points of each viewpoint; viewpoints of moving scanners, one a point, are not told apart.
 std::vector<std::pair<Vector3d, std::vector<int>>> points_by_viewpoint(const Points& points, const Points& viewpoints) {
@@ -98,7 +102,7 @@ bool SeenSurface::through(const Vector3d& point, double reach) const {
 // What viewpoints saw that have the point before them, and yet did not see it: the most certain. The template itself
 // may stand in between.
 SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& normal, const Occluder& surface,
-                                         const Similarity& pose, double reach) const {
+                                         const Similarity& pose, double reach, double same) const {
   constexpr double kGrazing = 0.25;  // cosine: flatter rays see little
   const Vector3d point = pose(own);
   const Similarity back = inverse(pose);
@@ -109,7 +113,7 @@ SeenSurface::Sight SeenSurface::expected(const Vector3d& own, const Vector3d& no
     if (std::abs(ray.dot(normal)) < kGrazing * distance) continue;
     const Sight sight = look(view, point, reach);
     if (sight <= result) continue;
-    const double start = 0.5 * reach / pose.scale;
+    const double start = same * reach / pose.scale;
     if (start >= distance || !surface.occluded(own, ray, start, distance)) result = sight;
     if (result == Sight::through) break;
   }
@@ -144,7 +148,8 @@ SeenSurface::Coverage SeenSurface::coverage(const SurfaceSamples& samples, const
       ++result.seen;
       continue;
     }
-    const Sight sight = views_.empty() ? Sight::nothing : expected(own, samples.normals.row(i), surface, pose, reach);
+    const Sight sight =
+        views_.empty() ? Sight::nothing : expected(own, samples.normals.row(i), surface, pose, reach, kSameSurface);
     if (sight == Sight::through) ++result.through;
     if (sight == Sight::nothing) ++result.nothing;
   }
@@ -165,7 +170,7 @@ SeenSurface::Look SeenSurface::look(const SurfaceSamples& samples, const Occlude
         seen[i] = 1;
         continue;
       }
-      const Sight sight = expected(own, samples.normals.row(row), surface, pose, reach);
+      const Sight sight = expected(own, samples.normals.row(row), surface, pose, reach, kSameSurfacePulled);
       if (sight != Sight::hidden) all[i] = {static_cast<int>(i), near.index, near.distance, sight == Sight::through};
     }
   });

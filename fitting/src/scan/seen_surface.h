@@ -101,7 +101,7 @@ class SeenSurface {
   enum class Sight { hidden, nothing, through };  // what a view has where a point is that it should have seen
   Sight look(const View& view, const Eigen::Vector3d& point, double reach) const;
   Sight expected(const Eigen::Vector3d& own, const Eigen::Vector3d& normal, const Occluder& surface,
-                 const Similarity& pose, double reach) const;
+                 const Similarity& pose, double reach, double same) const;
 
   std::vector<View> views_;
   PointIndex index_;

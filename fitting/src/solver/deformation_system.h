@@ -41,7 +41,8 @@ class DeformationSystem {
   DeformationSystem& operator=(const DeformationSystem&) = delete;
   virtual ~DeformationSystem() = default;
 
-  /// Minimises stiffness (regularity(q) + growth_cost(grown + gamma)) + symmetry_energy(q) + contact_energy(q)
+  /// Minimises stiffness (regularity(q) + growth_cost(grown + gamma)) + symmetry_energy(q)
+  ///           + contact_share(stiffness) contact_energy(q)
   ///           + sum of w <n, x + gamma (x - c) + u - (s + omega x (s - c) + tau)>^2 + pulls
   ///           + damping (|q - around|^2 + |(gamma, omega, tau)|^2)
   ///           + a millionth of the rigid part of all samples' displacements, squared, which prefers the pose to a
@@ -61,7 +62,7 @@ class DeformationSystem {
   /// What a system that does not keep the symmetries exactly adds for them.
   virtual double symmetry_energy(const Eigen::VectorXd&) const { return 0; }
 
-  /// What it adds for parts that are to go on touching, as turned now.
+  /// What it adds, times contact_share(), for parts that are to go on touching, as turned now.
   virtual double contact_energy(const Eigen::VectorXd&) const { return 0; }
 
   /// CorotatedEnergy::value() of the deformation q.
@@ -93,6 +94,13 @@ class DeformationSystem {
     return reference_.rows() == 0 ? samples_at(q) : Points(samples_at(q) - reference_);
   }
 };
+
+/// Of kContactWeight what a contact weighs, relative to one sample's share of the data: that it touches is known of the
+/// template, as its shape is, so data that ask for it part or slide the joint as easily as they bend the shape. No
+/// firmer than the data while these are to pull the whole template to its pose: a joint turns an iteration late.
+constexpr double contact_share(double stiffness) {
+  return stiffness < 1 ? stiffness : 1;
+}
 
 /// Of the squared rigid part of the samples' displacements, relative to one sample's share of the data: see
 /// DeformationSystem::solve(). Not of all of them: what no data hold would stay with the pose where the rest leaves it.

@@ -40,10 +40,10 @@ FitSystem::FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch,
       step_{bounding_box_centre(mesh.vertices), diagonal(mesh.vertices)},
       contacts_(std::move(contacts), subspace, kContactWeight),
       stiffness_matrix_(restricted(subspace->basis.columns, energy_.matrix()).triangularView<Eigen::Lower>()),
+      contact_matrix_(contacts_.gram().triangularView<Eigen::Lower>()),
       hold_matrix_(diagonal_matrix(VectorXd::Constant(unknowns(), kHoldStill * static_cast<double>(samples())))),
       rigid_(std::sqrt(kPreferPose) * (subspace->basis.columns.transpose() * rigid_modes(subspace->sampling.points))) {
   if (reference_.rows() > 0) reference_pull_ = energy_.matrix() * reference_;
-  hold_matrix_ += Sparse(contacts_.gram().triangularView<Eigen::Lower>());
 }
 
 double FitSystem::contact_energy(const VectorXd& q) const {
@@ -69,7 +69,9 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   VectorXd diagonal(all);
   diagonal << VectorXd::Constant(dof, hold.damping),
       VectorXd::Constant(all - dof, kHoldPose * all_samples + hold.damping);
-  NormalEquations normal{hold.stiffness * stiffness_matrix_ + hold_matrix_, VectorXd::Zero(all)};
+  const double firm = contact_share(hold.stiffness);
+  NormalEquations normal{hold.stiffness * stiffness_matrix_ + firm * contact_matrix_ + hold_matrix_,
+                         VectorXd::Zero(all)};
   if (step_.grows) {
     const double cost = hold.stiffness * growth_cost(1) / (step_.length * step_.length);
     const Eigen::Index growth = all - step_.common();
@@ -85,7 +87,7 @@ FitSystem::Solution FitSystem::solve(const std::vector<Correspondence>& pairs, d
   if (hold.damping > 0) normal.side.head(dof) += hold.damping * hold.around;
   VectorXd contact_pull = VectorXd::Zero(dof);
   contacts_.add_pull([&](int sample) { return rotations()[static_cast<std::size_t>(sample)]; }, contact_pull);
-  normal.side.head(dof) += contact_pull;
+  normal.side.head(dof) += firm * contact_pull;
 
   Eigen::MatrixXd rigid = Eigen::MatrixXd::Zero(all, rigid_.cols());
   rigid.topRows(dof) = rigid_;

@@ -22,7 +22,7 @@ namespace orbifit {
 class FitSystem final : public DeformationSystem {
  public:
   /// References are kept. One system may serve one fit after another: what it knows of vertices stays.
-  /// \param contacts  to be kept, each with the weight of kContactWeight samples
+  /// \param contacts  to be kept, of kContactWeight samples each times contact_share()
   /// \param reference  displacement of the samples, #S by 3, that costs nothing and from which the energy counts, held
   ///   there where nothing else says where samples go; no rows: the rest shape's, which nothing but its shape holds
   FitSystem(const Subspace& subspace, const Mesh& mesh, double stretch, std::vector<Contact> contacts = {},
@@ -46,7 +46,8 @@ class FitSystem final : public DeformationSystem {
   ScanStep step_;
   ContactEnergy contacts_;
   Eigen::SparseMatrix<double> stiffness_matrix_;  // lower half
-  Eigen::SparseMatrix<double> hold_matrix_;       // the contacts', and what holds coordinates that move nothing
+  Eigen::SparseMatrix<double> contact_matrix_;    // likewise
+  Eigen::SparseMatrix<double> hold_matrix_;       // what holds coordinates that move nothing
   Eigen::MatrixXd rigid_;                         // what prefers the pose: its square is added
   Points reference_pull_;                         // of the energy towards the reference, unturned; no rows: none
   NormalSolver solver_;                           // of the last system

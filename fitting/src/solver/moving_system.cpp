@@ -162,12 +162,12 @@ void MovingSystem::add_regularity(const Linearised& at, double stiffness, Normal
   normal.side.segment(dof, ways) += at.turn_columns.transpose() * pull;
 }
 
-void MovingSystem::add_contacts(const Linearised& at, NormalEquations& normal) const {
+void MovingSystem::add_contacts(const Linearised& at, double stiffness, NormalEquations& normal) const {
   if (contacts_.empty()) return;
   const Index dof = subspace_.degrees_of_freedom();
   const Index all = normal.side.size();
   const SmallTurns small{regions_, at.turns, at.turn_columns};
-  const ContactRows contacts = contact_rows_at(contacts_, kContactWeight, subspace_, at.now,
+  const ContactRows contacts = contact_rows_at(contacts_, contact_share(stiffness) * kContactWeight, subspace_, at.now,
                                                at.deformed.vertices - mesh_.vertices, rotations(), &small);
   const VectorXd off = contacts.right - contacts.rows.leftCols(dof) * at.now.q;
   Eigen::SparseMatrix<double> rows = contacts.rows.sparseView();
@@ -200,7 +200,7 @@ MovingSystem::Solution MovingSystem::solve(const std::vector<Correspondence>& pa
   const Index all = dof + ways + step_.unknowns();
   NormalEquations normal{Eigen::SparseMatrix<double>(all, all), VectorXd::Zero(all)};
   add_regularity(at, hold.stiffness, normal);
-  add_contacts(at, normal);
+  add_contacts(at, hold.stiffness, normal);
   add_holds(at, hold.damping, normal);
   add_data(rows, at.deformed, step_, pairs, share, scan_points, pulls, context, normal);
   // Prefers the pose to a deformation that does the same.

@@ -62,7 +62,7 @@ class MovingSystem final : public DeformationSystem {
   Linearised linearised(const Eigen::VectorXd& q, const RunContext& context) const;
   VertexRows rows_at(const Linearised& at, const std::vector<int>& touched, const RunContext& context) const;
   void add_regularity(const Linearised& at, double stiffness, NormalEquations& normal) const;
-  void add_contacts(const Linearised& at, NormalEquations& normal) const;
+  void add_contacts(const Linearised& at, double stiffness, NormalEquations& normal) const;
   void add_holds(const Linearised& at, double damping, NormalEquations& normal) const;
   // By increments of the coordinates and angles, of which no more than are small are made.
   Eigen::VectorXd moved_by(Eigen::VectorXd change, const Linearised& at, const Eigen::VectorXd& around) const;
