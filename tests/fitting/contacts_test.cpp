@@ -56,7 +56,7 @@ TEST_P(FittedStool, KeepsItsContacts) {
       opened[with ? 1 : 0] = std::max(opened[with ? 1 : 0], gap.norm() / diagonal(result.fitted.vertices));
     }
   }
-  EXPECT_LT(opened[1], 2e-3);
+  EXPECT_LT(opened[1], 1e-3);
   EXPECT_GT(opened[0], 3 * opened[1]);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -95,11 +96,15 @@ class DeformationSystem {
   }
 };
 
+/// How much firmer than the shape a joint is: with 1 in place of 10 parts come apart where a view misleads, with a
+/// hundred a wheel that is smaller sticks in its arch and drags what no view sees along.
+constexpr double kFirmJoint = 10;
+
 /// Of kContactWeight what a contact weighs, relative to one sample's share of the data: that it touches is known of the
-/// template, as its shape is, so data that ask for it part or slide the joint as easily as they bend the shape. No
-/// firmer than the data while these are to pull the whole template to its pose: a joint turns an iteration late.
+/// template, as its shape is, so data that ask for it part or slide the joint as they bend the shape. No firmer than
+/// the data while these are to pull the whole template to its pose: a joint turns an iteration late.
 constexpr double contact_share(double stiffness) {
-  return stiffness < 1 ? stiffness : 1;
+  return std::min(1.0, kFirmJoint * stiffness);
 }
 
 /// Of the squared rigid part of the samples' displacements, relative to one sample's share of the data: see
