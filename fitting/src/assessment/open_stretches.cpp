@@ -20,12 +20,12 @@ using Eigen::Vector3d;
 
 struct StretchPolicy {
   int points = 600;           // of the scan: the mean error of as many is known to a twentieth
-  int samples = 3000;         // of the surface: legs of a tenth of its area have 300
+  int samples = 6000;         // of the surface: legs of a tenth of its area have 600
   int rounds = 8;             // of ICP: what follows a stretch is a small motion
   double least = 0.05;        // stretch: less is what fits of noisy scans are off by
   int doublings = 2;          // of it: a fifth is as much as shapes of one kind differ
   double worse = 0.1;         // of the mean error: two of its standard errors
-  double uncovered = 0.005;   // of the samples: fifteen, as may change sides at silhouettes
+  double uncovered = 0.005;   // of the samples: thirty, as may change sides at silhouettes
   double least_error = 1e-3;  // of the diagonal: a scan without noise is not more exact than the fit
   double together = 0.1;      // cosine: axes that a group takes to one another by more belong together
 };
