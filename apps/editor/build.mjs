@@ -29,7 +29,21 @@ const workerCode = {
     setup.onLoad({ filter: /.*/, namespace: "worker-code" }, () => ({ contents: worker, loader: "text" }));
   }
 };
-const packed = bytes => Buffer.from(gzip(bytes, { level: 9, memLevel: 9 })).toString("base64");
+// As page.html's unpacked() reads it.
+const packed = bytes => {
+  const zipped = Buffer.from(gzip(bytes, { level: 9, memLevel: 9 }));
+  const rest = (4 - zipped.length % 4) % 4;
+  const whole = Buffer.concat([zipped, Buffer.alloc(rest)]);
+  const letter = digit => String.fromCharCode(digit + 35 === 60 ? 120 : digit + 35);
+  const letters = [letter(rest)];
+  for (let i = 0; i < whole.length; i += 4) {
+    let value = whole.readUInt32BE(i);
+    const five = [];
+    for (let k = 0; k < 5; ++k, value = Math.floor(value / 85)) five.unshift(letter(value % 85));
+    letters.push(...five);
+  }
+  return letters.join("");
+};
 const script = packed(Buffer.from(await bundled("main.ts", { format: "iife", plugins: [workerCode] })));
 const style = (await bundled("style.css", {})).trim();
 const core = packed(readFileSync(join(folder, "editor_core.wasm")));

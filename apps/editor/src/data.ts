@@ -19,11 +19,12 @@ export function embedded(id: string): { name: string; source: string; data: Uint
   return { name, source: element.dataset.source || name, data };
 }
 
+/** What the element with this id has packed; of page.html. */
+declare function unpacked(id: string): Promise<Response>;
+
 export async function coreBytes(): Promise<Uint8Array> {
-  const found = embedded("core");
-  if (!found) throw new Error("the page has no core: it was not built whole");
-  const stream = new Blob([found.data as BlobPart]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  if (!document.getElementById("core")) throw new Error("the page has no core: it was not built whole");
+  return new Uint8Array(await (await unpacked("core")).arrayBuffer());
 }
 
 export function download(name: string, data: Uint8Array | string, type = "application/octet-stream"): void {
