@@ -27,6 +27,8 @@ class VertexImages {
   /// \param most_remembered  images; those of more motions are looked up each time
   VertexImages(const Points& vertices, double tolerance, std::size_t most_remembered = kMostRemembered)
       : vertices_(vertices), grid_(vertices, tolerance), most_remembered_(most_remembered) {}
+  VertexImages(const VertexImages&) = delete;
+  VertexImages& operator=(const VertexImages&) = delete;
 
   const VertexGrid& grid() const { return grid_; }
 
