@@ -16,6 +16,7 @@
 #include "evidence/importance.h"
 #include "support/found_region.h"
 #include "support/trimmed_regions.h"
+#include "support/yielding_borders.h"
 
 namespace orbifit {
 
@@ -131,7 +132,9 @@ SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mes
                                    Explanation* explanation, const RunContext& context) {
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
   std::vector<Region> measured = found.regions;
-  ConsistentAnnotation kept = consistent_annotation(surface, found, context);
+  SymmetryAnnotation yielding = found;
+  yield_to_parts(prepared, surface, yielding, explanation, context);
+  ConsistentAnnotation kept = consistent_annotation(surface, yielding, context);
   kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
   note_left_out(kept.left_out, explanation);
   return sorted(mesh, std::move(kept.annotation), kept.left_out.size(), context);
@@ -146,7 +149,9 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
   Remaining now = possible;
   int chances = 1;  // each is as much work as all before it
   for (bool first = true;; first = !first) {
-    const SymmetryAnnotation listed = without_what_follows(prepared, now.found, context);
+    SymmetryAnnotation listed = without_what_follows(prepared, now.found, context);
+    Explanation yielding;
+    yield_to_parts(prepared, surface, listed, &yielding, context);
     ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
     if (kept.left_out.empty()) {
       kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
@@ -154,6 +159,7 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
     }
     std::erase_if(kept.left_out, [&](const LeftOut& each) { return is_image(each, listed); });
     if (kept.left_out.empty()) {
+      if (explanation != nullptr) std::ranges::move(yielding.notes, std::back_inserter(explanation->notes));
       note_left_out(now.left_out, explanation);
       return sorted(mesh, std::move(kept.annotation), now.left_out.size(), context);
     }

@@ -23,6 +23,9 @@ struct EvidencePolicy {
   /// faces are too large for its group, and loses on with each face that goes. With half in place of a tenth 3 % fewer
   /// of a remesh's groups are found.
   double trimmed = 0.1;
+  /// Share of its border, by length, that may lie within smooth surface (smooth_border_share()) where a region is one
+  /// that ends where the shape does.
+  double smooth_border = 0.2;
   /// Tolerances by which the facets of a round region may lie inside what they stand for: with more of it they
   /// themselves, not faces that belong to something else, are what misses.
   double sagitta = 0.5;

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "evidence/chance_symmetry.h"
+#include "evidence/policy.h"
 #include "group/axis_orders.h"
 #include "group/verification.h"
 #include "primitives/featureless.h"
@@ -363,9 +364,8 @@ bool LineRegionSearch::mere_plates(const std::vector<int>& faces) const {
 // Whether the region, of few motions, ends where no part does, within a larger one of as many: chance keeps something
 // under any of them. Of many motions it keeps little.
 bool LineRegionSearch::ends_anywhere(const FoundRegion& region, std::size_t first) const {
-  constexpr double kMaxSmooth = 0.2;  // of the border
-  constexpr double kWithin = 0.9;     // of the region's area
-  constexpr int kFew = 8;             // motions
+  constexpr double kWithin = 0.9;  // of the region's area
+  constexpr int kFew = 8;          // motions
   constexpr int kSeveral = 16;
   constexpr double kMuchOfSeveral = 0.75;  // of the mesh's area
   const PointGroup& group = region.placement.group;
@@ -381,7 +381,8 @@ bool LineRegionSearch::ends_anywhere(const FoundRegion& region, std::size_t firs
   bool held = false;
   for (std::size_t r = first; r < said_.size() && !held; ++r) held = holds(r);
   if (!held) return false;
-  return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) > kMaxSmooth;
+  return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) >
+         kEvidencePolicy.smooth_border;
 }
 
 // Whether what is known to keep all of the surface holds the group.
