@@ -58,7 +58,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMinShare = 0.002;  // of the mesh's area: smaller regions and patterns say little
 constexpr std::size_t kMaxRegions = 300;
 constexpr double kMinNoise = 3e-4;     // of the diagonal
 constexpr double kMinTurned = 0.006;   // of the area, that speaks for a rotation of pieces
@@ -218,11 +217,12 @@ class Detector {
   }
 
   PartRegionOptions part_options(bool pieces) const {
-    return {options_.tolerance, kMinShare, pieces, options_.explanation, [this] { return late(); }, motions_of_whole()};
+    return {options_.tolerance,        kLeastArea,        pieces, options_.explanation,
+            [this] { return late(); }, motions_of_whole()};
   }
 
   ComponentSurvey survey_of(const PreparedMesh& partition) const {
-    return survey_components(partition, options_.tolerance, kMinShare, limited_);
+    return survey_components(partition, options_.tolerance, kLeastArea, limited_);
   }
 
   PartRegions find_in_parts(const PreparedMesh& partition, ComponentSurvey survey, bool pieces) const {
@@ -383,7 +383,7 @@ class Detector {
     fitted_axes_ = revolution_axes(partition, options_.tolerance, limited_);
     axes.insert(axes.end(), fitted_axes_.begin(), fitted_axes_.end());
     const std::vector<Line> distinct = distinct_lines(axes);
-    RevolutionRegionOptions turned{options_.tolerance,        kMinShare,         fine, options_.explanation,
+    RevolutionRegionOptions turned{options_.tolerance,        kLeastArea,        fine, options_.explanation,
                                    [this] { return late(); }, motions_of_whole()};
     RevolutionRegions found =
         find_revolution_regions(partition, *prepared_.index, distinct, regions_, turned, limited_);
@@ -529,7 +529,7 @@ SymmetryAnnotation detected(const Mesh& as_given, const CanonicalPose& pose, con
   const auto late = [&] { return spent(options, start, 1); };
   trim_regions(prepared, options.tolerance, BorderMoves::both_ways, context, found.regions, options.explanation, late);
   if (!late()) {
-    const PartRegionOptions parts{options.tolerance, kMinShare, false, options.explanation, late, {}};
+    const PartRegionOptions parts{options.tolerance, kLeastArea, false, options.explanation, late, {}};
     std::ranges::move(find_region_patterns(prepared, found.regions, found.patterns, parts, context),
                       std::back_inserter(found.patterns));
   }

@@ -32,8 +32,6 @@ using Eigen::Vector3d;
 using Family = PointGroup::Family;
 using About = RegionHint::About;
 
-constexpr double kGuideSlack = 2.5;  // tolerances, while the axis is not refined yet
-
 bool polyhedral(const PointGroup& group) {
   return !group.has_axis() && group.order() >= 12;
 }
@@ -98,7 +96,7 @@ class Guide {
     const GroupPlacement any{{Family::Cinfv, 1}, frame_about(hint_.direction), point_};
     const SurfacePatch patch = surroundings(prepared_, whole_, any, hint_.seeds, options_.tolerance, context_);
     if (continuous_about(patch, hint_.direction, point_)) return any.group;
-    const std::vector<int> orders = rotation_orders(patch, hint_.direction, point_, kGuideSlack);
+    const std::vector<int> orders = rotation_orders(patch, hint_.direction, point_, kScreenSlack);
     const std::vector<RankedOrder> ranked = rank_orders(patch, orders, hint_.direction, point_);
     if (!ranked.empty()) return {Family::Cn, ranked.front().order};
     return {Family::Cn, orders.empty() ? 2 : orders.front()};
@@ -176,7 +174,8 @@ class Guide {
         const GroupPlacement placement{group, frame, centre};
         double least = 1;
         for (const Matrix3d& linear : generators(group, frame)) {
-          least = std::min(least, kept_share(patch, Motion::about(linear, centre), kGuideSlack * patch.tolerance, 300));
+          least =
+              std::min(least, kept_share(patch, Motion::about(linear, centre), kScreenSlack * patch.tolerance, 300));
         }
         if (least <= most) continue;
         most = least;

@@ -73,8 +73,7 @@ bool some_of_a_grid(const PointGroup& group, const std::vector<int>& parts, cons
 }
 
 std::optional<RevolutionFit> revolution_of(const SurfacePatch& patch) {
-  constexpr double kAngle = 0.1;  // radians
-  return fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kAngle);
+  return fit_axis_of_revolution(patch.samples.points, patch.samples.normals, {}, kRevolutionAngle);
 }
 
 bool turned(const RevolutionFit& fit) {

@@ -92,7 +92,6 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
                     std::vector<FoundRegion>& regions, Explanation* explanation) {
   constexpr double kMinKept = 0.8;  // of its samples: it was verified with the discs, and is not to fail for borders
   constexpr double kMaxOfFinite = 0.5;  // with less beside the discs, a region of a finite group is about the rest
-  constexpr double kMinShare = 0.002;   // of the mesh's area: a smaller rest says little
   constexpr int kDiscSamples = 1000;
   if (std::ranges::none_of(regions, about_axis)) return;
   CutDiscs discs(prepared);
@@ -104,7 +103,7 @@ void drop_cut_discs(const PreparedMesh& prepared, double tolerance, const RunCon
     const double share = area / region.area;
     bool drop = discs.little_else(region, faces);
     if (!drop) {
-      if (!turned && (share > kMaxOfFinite || area < kMinShare * prepared.area)) return false;
+      if (!turned && (share > kMaxOfFinite || area < kLeastArea * prepared.area)) return false;
       const SurfacePatch patch = make_patch(prepared, faces, kDiscSamples, tolerance, context, "discs");
       const Verification rest = verify_group(patch, region.placement, context);
       if (!turned && !passes(rest)) return false;

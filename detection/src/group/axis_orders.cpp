@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kScreenShare = 0.80;  // of the samples, while the axis is not refined yet
 constexpr int kOrderSamples = 96;
 constexpr int kHighestScreenedOrder = 180;
 // A rotation that moves no point by more than this many tolerances cannot be told from none.

@@ -17,6 +17,10 @@ double radius_about(const SurfacePatch& patch, const Eigen::Vector3d& axis, cons
 std::vector<int> rotation_orders(const SurfacePatch& patch, const Eigen::Vector3d& axis, const Eigen::Vector3d& centre,
                                  double slack);
 
+/// A look while an axis is not refined yet: tolerances, and the share of the samples that must be kept.
+inline constexpr double kScreenSlack = 2.5;
+inline constexpr double kScreenShare = 0.80;
+
 struct RankedOrder {
   int order = 1;
   double share = 0;  ///< of the samples kept by the worst of the multiples tried

@@ -9,6 +9,7 @@
 
 #include "group/verification.h"
 #include "surface/creases.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -170,7 +171,8 @@ SurfacePatch surroundings(const PreparedMesh& prepared, const std::shared_ptr<co
     patch.samples.points.row(i) = fragment.centroid;
     patch.samples.normals.row(i) = prepared.normals.row(fragment.face);
     patch.samples.faces.push_back(fragment.face);
-    patch.at_crease.push_back(near_crease(prepared, fragment.centroid, fragment.face, 3 * patch.tolerance) ? 1 : 0);
+    patch.at_crease.push_back(
+        near_crease(prepared, fragment.centroid, fragment.face, kCreaseReach * patch.tolerance) ? 1 : 0);
     patch.moments.radius = std::max(patch.moments.radius, (fragment.centroid - patch.moments.centroid).norm());
   }
   return patch;

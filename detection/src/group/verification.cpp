@@ -246,6 +246,12 @@ double kept_share(const SurfacePatch& patch, const Motion& motion, double tolera
   return chosen.empty() ? 0 : static_cast<double>(kept) / static_cast<double>(chosen.size());
 }
 
+bool fits_as_well(double residual_there, double residual_here) {
+  constexpr double kAsWell = 1.5;
+  constexpr double kNegligible = 1e-9;
+  return residual_there <= kAsWell * residual_here + kNegligible;
+}
+
 Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context,
                           std::size_t queries) {
   const std::size_t least = std::min<std::size_t>(100, queries / 60);

@@ -56,6 +56,9 @@ double kept_share(const SurfacePatch& patch, const Motion& motion, double tolera
 
 inline constexpr int kResidualSamples = 1000;  ///< of a region, at most as many as its residual asks for
 
+/// Whether a region fits a group there about as well as here, so that its placement may move to where others say.
+bool fits_as_well(double residual_there, double residual_here);
+
 /// Distances between g(S) and S over samples and motions, in the mesh's diagonal.
 /// \param queries how many pairs of a sample and a motion to measure, about
 Residual measure_residual(const SurfacePatch& patch, const std::vector<Motion>& motions, const RunContext& context,

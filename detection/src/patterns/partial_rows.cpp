@@ -19,6 +19,7 @@ constexpr int kMaxOfRegion = 24;       // elements
 constexpr int kMaxAround = 120;        // elements
 constexpr double kMinDeciding = 0.02;  // of the region's area
 constexpr double kMinShared = 0.5;
+constexpr double kParallel = 0.01;   // radians
 constexpr double kMaxShared = 0.97;  // more: the element keeps the region
 constexpr double kShift = 4;         // tolerances that a translation moves at least
 
@@ -67,7 +68,6 @@ class RowTest {
 
   // Products of an element of the region's group and one of its image's: translations, and of two mirrors rotations.
   std::vector<Motion> steps_of(const Motion& around) const {
-    constexpr double kAngle = 0.01;  // radians
     std::vector<Motion> result;
     const bool mirror = placement_.group.family == PointGroup::Family::Cs;
     const Motion back = inverse(around);
@@ -76,7 +76,7 @@ class RowTest {
       const Motion image = around * theirs * back;
       for (const Motion& mine : own_) {
         const Motion step = mine * image;
-        const bool turns = (step.linear - Matrix3d::Identity()).norm() > kAngle;
+        const bool turns = (step.linear - Matrix3d::Identity()).norm() > kParallel;
         if (turns ? mirror : (step(centroid) - centroid).norm() > kShift * patch_.tolerance) result.push_back(step);
       }
     }
@@ -123,10 +123,9 @@ class RowTest {
 // Whether the region's group is, but for where it is, of the other's, or any few in an arc have it: then it says no
 // more than that they repeat.
 bool of_its_kind(const GroupPlacement& other, const GroupPlacement& region) {
-  constexpr double kAngle = 0.01;  // radians
   if (region.group.family == PointGroup::Family::Cs) return true;
   const Vector3d origin = Vector3d::Zero();
-  return contains_group({other.group, other.frame, origin}, {region.group, region.frame, origin}, origin, 1, kAngle);
+  return contains_group({other.group, other.frame, origin}, {region.group, region.frame, origin}, origin, 1, kParallel);
 }
 
 bool finite_of(const FoundRegion& region, int most) {

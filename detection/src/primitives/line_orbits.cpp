@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "surface/thresholds.h"
+
 namespace orbifit {
 
 namespace {
@@ -14,13 +16,12 @@ constexpr int kLooksOfOrbit = 3;
 }  // namespace
 
 LineOrbits::LineOrbits(const std::vector<Line>& lines, const std::vector<Motion>& motions, double tolerance) {
-  constexpr double kAngle = 0.03;  // radians
   std::vector<Line> firsts;
   for (const Line& line : lines) {
     const auto is_image = [&](const Line& first) {
       return std::ranges::any_of(motions, [&](const Motion& motion) {
         const Eigen::Vector3d direction = motion.linear * line.direction;
-        return direction.cross(first.direction).norm() < kAngle &&
+        return direction.cross(first.direction).norm() < kSameDirection &&
                (motion(line.point) - first.point).cross(first.direction).norm() < tolerance;
       });
     };

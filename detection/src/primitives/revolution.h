@@ -25,6 +25,9 @@ struct RevolutionFit {
   bool spherical = false;  ///< the normals meet in a point: every line through it is an axis
 };
 
+/// Radians by which normals of a surface of revolution may miss its axis where nothing else is known of it.
+inline constexpr double kRevolutionAngle = 0.1;
+
 /// The axis about which oriented points turn into themselves: every normal meets the axis of a surface of revolution,
 /// so n . (v + w x p) = 0 for its infinitesimal rotation (v, w), a linear complex without pitch (Pottmann and Randrup
 /// 1998). Weighted least squares in w and v with |w| = 1, reweighted by the speed |v + w x p|, which turns the residual

@@ -18,13 +18,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kMinShare = 0.001;      // of the mesh's area that a part, or all its copies, must have
-constexpr double kSameDirection = 0.03;  // radians
-constexpr std::size_t kMaxPairs = 24;    // members of a class of which all pairs are looked at
+constexpr double kMinShare = 0.001;    // of the mesh's area that a part, or all its copies, must have
+constexpr std::size_t kMaxPairs = 24;  // members of a class of which all pairs are looked at
 constexpr std::size_t kNeighbours = 6;
 constexpr std::size_t kMaxAxes = 60;
 constexpr std::size_t kMaxPlanes = 40;
-constexpr double kRevolutionAngle = 0.1;  // radians
 
 // What a motion that carries one part onto another must carry along.
 struct Shape {

@@ -11,7 +11,9 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/grid_cell.h"
 #include "resolution/proxy_faces.h"
+#include "surface/surface_patch.h"
 #include "surface/vertex_clusters.h"
 
 namespace orbifit {
@@ -21,17 +23,8 @@ namespace {
 using Eigen::Vector3d;
 using Corners = ClusteredMesh::Corners;
 
-constexpr double kWeldTolerance = 1e-7;  // of the diagonal, as when preparing
-constexpr double kTurned = 0.5;          // cosine: more than that a face must not turn
-constexpr int kRounds = 4;               // of splitting clusters at turned faces, and at tears
-
-struct CornersHash {
-  std::size_t operator()(const Corners& corners) const {
-    std::size_t hash = 0;
-    for (const int corner : corners) hash = (hash ^ static_cast<std::size_t>(corner)) * 0x9e3779b97f4a7c15ULL;
-    return hash ^ (hash >> 29U);
-  }
-};
+constexpr double kTurned = 0.5;  // cosine: more than that a face must not turn
+constexpr int kRounds = 4;       // of splitting clusters at turned faces, and at tears
 
 class Coarsening {
  public:
@@ -108,7 +101,7 @@ class Coarsening {
   std::vector<char> find_folds() {
     like_.assign(sites_.of_face.size(), -1);
     std::vector<char> senses(like_.size(), 0);  // bit 0: as the first, bit 1: the other
-    std::unordered_map<Corners, int, CornersHash> known;
+    std::unordered_map<Corners, int, CellHash> known;
     for (std::size_t f = 0; f < like_.size(); ++f) {
       Corners key = corners_of(static_cast<int>(f));
       std::ranges::sort(key);

@@ -19,8 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPiece = 0.5;                      // size, tolerances
-constexpr double kSmoothCosine = 0.90630778703665;  // 25 degrees: beyond is a crease, where regions end for good
+constexpr double kPiece = 0.5;  // size, tolerances
 
 }  // namespace
 
@@ -64,7 +63,7 @@ std::vector<int> RegionBorder::along_border(const FoundRegion& region, std::vect
         const bool beyond = in[number] == 0 &&
                             prepared_.components.component_of_face[number] ==
                                 prepared_.components.component_of_face[static_cast<std::size_t>(face)] &&
-                            normal.dot(prepared_.normals.row(other)) > kSmoothCosine;
+                            normal.dot(prepared_.normals.row(other)) > kAlikeNormals;
         if (!beyond) continue;
         take(face);
         take(other);

@@ -16,6 +16,7 @@
 #include "support/own_group.h"
 #include "surface/components.h"
 #include "surface/creases.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -171,15 +172,12 @@ class CarryBack {
   // Moves the region to where it is consistent with others, unless it fits far less well there, and verifies it. What
   // is to be said against it; empty where it stands.
   std::string accept(FoundRegion& region, const GroupPlacement& goal) const {
-    constexpr double kAsWell = 1.5;
-    constexpr double kNegligible = 1e-9;
     SurfacePatch patch = make_patch(fine_, region.faces, is_whole(region) ? options_.samples : kPartSamples,
                                     options_.tolerance, context_, "transfer");
     mark_creases(patch.samples, patch.tolerance, patch.at_crease);
     mark_creases(patch.part_samples, patch.tolerance, patch.part_at_crease);
     const GroupPlacement alone = region.placement;
-    if (largest_residual(patch, goal) <= kAsWell * largest_residual(patch, alone) + kNegligible)
-      region.placement = goal;
+    if (fits_as_well(largest_residual(patch, goal), largest_residual(patch, alone))) region.placement = goal;
     Verification verification = verify_group(patch, region.placement, context_);
     if (!passes(verification)) {
       region.placement = alone;
@@ -200,7 +198,7 @@ class CarryBack {
       if (at_crease[s] != 0) continue;
       const Vector3d point = coarse_of_fine(samples.points.row(static_cast<Eigen::Index>(s)));
       const int face = coarse_.proxy_face[static_cast<std::size_t>(samples.faces[s])];
-      at_crease[s] = near_crease(prepared_, point, face, 3 * tolerance) ? 1 : 0;
+      at_crease[s] = near_crease(prepared_, point, face, kCreaseReach * tolerance) ? 1 : 0;
     }
   }
 

@@ -29,6 +29,8 @@ using Family = PointGroup::Family;
 
 constexpr int kMaxElements = 120;
 constexpr int kSpreadSamples = 500;
+constexpr double kSameMotion = 0.5;  // tolerances
+constexpr double kSameFaces = 0.85;  // of two regions' faces: common area by that of the union
 
 /// Regions, and which of them are images of which.
 class Completion {
@@ -41,13 +43,10 @@ class Completion {
         context_(context),
         regions_(regions),
         centroids_(face_centroids(prepared.mesh)),
-        near_(centroids_) {
-    for (const FoundRegion& region : regions) moments_.push_back(surface_moments(prepared, region.faces));
-  }
+        near_(centroids_) {}
 
   void run() {
     std::ranges::stable_sort(regions_, std::greater<>(), &FoundRegion::area);
-    moments_.clear();
     for (const FoundRegion& region : regions_) moments_.push_back(surface_moments(prepared_, region.faces));
     for (std::size_t r = 0; r < regions_.size() && !late(); ++r) {
       const PointGroup& group = regions_[r].placement.group;
@@ -101,12 +100,11 @@ class Completion {
   };
 
   std::vector<Coset> cosets_of(std::size_t q, const std::vector<Motion>& motions) const {
-    constexpr double kSame = 0.5;  // tolerances
     const GroupElements own(regions_[q].placement);
     const SurfaceMoments& mine = moments_[q];
     std::vector<Coset> result;
     const auto in_own = [&](const Motion& motion) {
-      return own.hold(motion, mine.centroid, mine.radius, kSame * tolerance_of(q));
+      return own.hold(motion, mine.centroid, mine.radius, kSameMotion * tolerance_of(q));
     };
     for (const Motion& motion : motions) {
       const auto known = std::ranges::find_if(result, [&](const Coset& coset) {
@@ -123,13 +121,12 @@ class Completion {
 
   // Motions by which the region has not been carried before: regions within one another share many.
   std::vector<Motion> untried(std::size_t q, const std::vector<Motion>& motions) {
-    constexpr double kSame = 0.5;  // tolerances
     tried_.resize(regions_.size());
     const SurfaceMoments& mine = moments_[q];
     std::vector<Motion> fresh;
     std::ranges::copy_if(motions, std::back_inserter(fresh), [&](const Motion& motion) {
       return std::ranges::none_of(tried_[q], [&](const Motion& known) {
-        return motion_distance(motion, known, mine.centroid, mine.radius) <= kSame * tolerance_of(q);
+        return motion_distance(motion, known, mine.centroid, mine.radius) <= kSameMotion * tolerance_of(q);
       });
     });
     tried_[q].insert(tried_[q].end(), fresh.begin(), fresh.end());
@@ -151,7 +148,7 @@ class Completion {
       const Image& image = images[i];
       const bool itself =
           cosets[i].keeps ||
-          (image.same ? *image.same == q : !image.within && overlap(image.faces, regions_[q].faces) > 0.85);
+          (image.same ? *image.same == q : !image.within && overlap(image.faces, regions_[q].faces) > kSameFaces);
       if (itself) stabiliser.insert(stabiliser.end(), cosets[i].motions.begin(), cosets[i].motions.end());
       motions.push_back(cosets[i].motions.front());
     }
@@ -171,7 +168,7 @@ class Completion {
       const std::vector<int>& faces = images[i].faces;
       const GroupPlacement goal = carried(regions_[q].placement, motions[i]);
       if (images[i].within) take(*images[i].within, goal);
-      if (faces.empty() || overlap(faces, regions_[q].faces) > 0.85) continue;
+      if (faces.empty() || overlap(faces, regions_[q].faces) > kSameFaces) continue;
       if (const std::optional<std::size_t> known = find(goal, faces)) {
         take(*known, goal);
       } else if (regions_.size() < options_.most && holds(goal, faces)) {
@@ -194,7 +191,7 @@ class Completion {
     const GroupPlacement goal = carried(regions_[q].placement, motion);
     const SurfaceMoments& mine = moments_[q];
     const Vector3d centroid = motion(mine.centroid);
-    const double reach = 1.5 * tolerance_of(q);
+    const double reach = image_reach(q);
     const auto contains = [&](std::size_t k) {
       return contains_group(regions_[k].placement, goal, centroid, mine.radius, reach);
     };
@@ -220,7 +217,7 @@ class Completion {
   // The share of a few faces of the region that the motion carries onto the surface.
   double share_on(std::size_t q, const SurfaceIndex& surface, const Motion& motion) const {
     constexpr std::size_t kLooks = 24;
-    const double reach = 1.5 * tolerance_of(q);
+    const double reach = image_reach(q);
     const std::vector<int>& faces = regions_[q].faces;
     std::size_t hits = 0;
     for (std::size_t i = 0; i < kLooks; ++i) {
@@ -323,12 +320,11 @@ class Completion {
   // Moves a region's group, unless the region fits it far less well there: a group that is exact by itself is not bent
   // to one around it that is not.
   void place(std::size_t region, const GroupPlacement& goal) {
-    constexpr double kNegligible = 1e-9;
-    constexpr double kAsWell = 1.5;
+    constexpr double kSamePlacement = 1e-9;
     constexpr std::size_t kQueries = 1500;
     const FoundRegion& now = regions_[region];
     const SurfaceMoments& moments = moments_[region];
-    if (!contains_group(now.placement, goal, moments.centroid, moments.radius, kNegligible)) {
+    if (!contains_group(now.placement, goal, moments.centroid, moments.radius, kSamePlacement)) {
       Surface& surface = surface_of(region);
       const auto fit = [&](const GroupPlacement& placement) {
         const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
@@ -336,7 +332,7 @@ class Completion {
       };
       if (!surface.fit) surface.fit = fit(now.placement);
       const double there = fit(goal);
-      if (there > kAsWell * *surface.fit + kNegligible || !holds(goal, surface.patch)) return;
+      if (!fits_as_well(there, *surface.fit) || !holds(goal, surface.patch)) return;
       surface.fit = there;
     }
     regions_[region].placement = goal;

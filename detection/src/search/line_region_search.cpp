@@ -121,14 +121,13 @@ void LineRegionSearch::add_turning_axis(const Line& axis) {
 // Whether a mirror or half-turn, or a rotation about another line, leaves the axis where it is. What turns about the
 // axis itself is judged by whole pieces.
 bool LineRegionSearch::leaves(const GroupPlacement& placement, const Line& axis) const {
-  constexpr double kAngle = 0.03;  // radians
   const Eigen::Vector3d line = placement.frame.col(2);
   const bool mirror = placement.group.family == PointGroup::Family::Cs;
-  const bool along = line.cross(axis.direction).norm() < kAngle;
+  const bool along = line.cross(axis.direction).norm() < kSameDirection;
   if (!mirror && along) return false;
   const double far = 2 * surface_.tolerance;
   return std::ranges::all_of(judged_motions(placement.group, placement.frame, placement.centre), [&](const Motion& g) {
-    return (g.linear * axis.direction).cross(axis.direction).norm() < kAngle &&
+    return (g.linear * axis.direction).cross(axis.direction).norm() < kSameDirection &&
            (g(axis.point) - axis.point).cross(axis.direction).norm() < far;
   });
 }

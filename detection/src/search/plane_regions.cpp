@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "search/line_region_search.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -24,8 +25,7 @@ constexpr Eigen::Index kSecondLook = 400;
 constexpr std::size_t kMaxFound = 400;
 constexpr std::size_t kMaxClimbed = 100;
 constexpr std::size_t kMaxPlanes = 24;
-constexpr double kSameDirection = 0.03;  // radians
-constexpr double kSamePlace = 1.5;       // tolerances
+constexpr double kSamePlace = 1.5;  // tolerances
 
 /// The share of some samples that speak for a mirror.
 class Mirrored {
@@ -85,8 +85,7 @@ class Mirrored {
 
 // Whether the axis lies in the plane, roughly.
 bool holds(const Line& plane, const Line& axis, double tolerance) {
-  constexpr double kAngle = 0.03;  // radians
-  return std::abs(plane.direction.dot(axis.direction)) <= kAngle &&
+  return std::abs(plane.direction.dot(axis.direction)) <= kSameDirection &&
          std::abs(plane.direction.dot(axis.point - plane.point)) <= 2 * tolerance;
 }
 

@@ -16,7 +16,9 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kSliver = 0.002;  // of the mesh's area
+constexpr double kSliver = 0.002;      // of the mesh's area
+constexpr double kExact = 0.01;        // residual, tolerances, at most
+constexpr double kFarFromExact = 0.2;  // residual, tolerances, at least
 
 // A few faces tell most pairs of regions apart.
 bool plainly_outside(const std::vector<int>& inner, const std::vector<int>& outer) {
@@ -98,10 +100,9 @@ bool less_exact_with_pieces(const PreparedMesh& prepared, double tolerance, cons
 
 // Whether components that are exact were taken into others that are far from it.
 bool less_exact(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
-  constexpr double kNegligible = 0.01;  // tolerances
-  constexpr double kFarOff = 0.2;
-  return !outer.of_pieces && !inner.of_pieces && largest_residual(prepared, tolerance, outer) > kFarOff * tolerance &&
-         largest_residual(prepared, tolerance, inner) < kNegligible * tolerance;
+  return !outer.of_pieces && !inner.of_pieces &&
+         largest_residual(prepared, tolerance, outer) > kFarFromExact * tolerance &&
+         largest_residual(prepared, tolerance, inner) < kExact * tolerance;
 }
 
 bool same_faces(const PreparedMesh& prepared, const FoundRegion& a, const FoundRegion& b) {
@@ -175,10 +176,8 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const Found
 }
 
 bool by_coincidence(double area, double residual, double area_around, double residual_around, double tolerance) {
-  constexpr double kMax = 0.5;          // of what is around: the larger part of a shape is no coincidence
-  constexpr double kNegligible = 0.01;  // tolerances
-  constexpr double kFarOff = 0.2;
-  return area < kMax * area_around && residual_around < kNegligible * tolerance && residual > kFarOff * tolerance;
+  constexpr double kMax = 0.5;  // of what is around: the larger part of a shape is no coincidence
+  return area < kMax * area_around && residual_around < kExact * tolerance && residual > kFarFromExact * tolerance;
 }
 
 void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<FoundRegion>& regions,

@@ -25,7 +25,6 @@ constexpr double kSmallPiece = 0.01;  // of the mesh's area: no plate that other
 constexpr double kMaxOfSmall = 0.5;   // of a small piece, which then belongs wherever it is cut
 constexpr double kSpacing = 4;        // of a face's points, tolerances
 constexpr int kMaxCuts = 6;           // of an edge
-constexpr double kCreaseReach = 3;    // tolerances, as in verification
 
 std::vector<int> with_area(const PreparedMesh& prepared) {
   std::vector<int> faces;

@@ -20,7 +20,6 @@ using Eigen::Vector3d;
 
 constexpr double kPointSpacing = 4;   // of a face's sample points, tolerances
 constexpr int kMaxEdgeCuts = 8;       // of each edge
-constexpr double kNearCrease = 3;     // tolerances, as in verification
 constexpr double kMaxFarOff = 0.03;   // of a face's points, off the surface
 constexpr double kMaxOnOthers = 0.5;  // of a face's points, on faces that are out
 
@@ -69,7 +68,7 @@ class OrbitTest {
     const int any = surface.nearest(motion(point), tolerance_).face;
     if (any < 0) return -1;
     const bool degenerate = prepared_.normals.row(face).squaredNorm() < 0.5;
-    return degenerate || near_crease(prepared_, point, face, kNearCrease * tolerance_) ? any : -1;
+    return degenerate || near_crease(prepared_, point, face, kCreaseReach * tolerance_) ? any : -1;
   }
 
   const PreparedMesh& prepared_;

@@ -9,6 +9,7 @@
 
 #include "group/axis_orders.h"
 #include "support/region_growth.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -18,10 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Family = PointGroup::Family;
 
-constexpr double kGroupSlack = 2.5;    // tolerances, while directions are not refined yet
-constexpr double kScreenShare = 0.80;  // of the samples, likewise
 constexpr int kGroupSamples = 96;
-constexpr double kSameDirection = 0.03;    // radians
 constexpr std::size_t kMaxRotations = 40;  // axes: I has 31; beyond, the patch is nearly a ball
 constexpr int kMaxFailures = 40;           // to fit a rotation: so many look right on nearly a ball only
 constexpr double kClassifyTolerance = 0.02;
@@ -134,7 +132,7 @@ class GroupSearch {
   bool continuous() const { return best_ && best_->placement.group.continuous(); }
 
   bool screen_passes(const Matrix3d& linear) const {
-    return kept_share(patch_, Motion::about(linear, centre_), kGroupSlack * patch_.tolerance, kGroupSamples,
+    return kept_share(patch_, Motion::about(linear, centre_), kScreenSlack * patch_.tolerance, kGroupSamples,
                       kScreenShare) >= kScreenShare;
   }
 
@@ -245,7 +243,7 @@ class GroupSearch {
     parallel_for(context_, shares.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const Motion motion = Motion::about(element(direction(static_cast<int>(k))), centre_);
-        shares[k] = kept_share(patch_, motion, kGroupSlack * patch_.tolerance, kGroupSamples, kPhaseShare);
+        shares[k] = kept_share(patch_, motion, kScreenSlack * patch_.tolerance, kGroupSamples, kPhaseShare);
       }
     });
     std::vector<std::pair<double, int>> peaks;
@@ -274,7 +272,7 @@ class GroupSearch {
   };
 
   std::vector<int> orders_about(const Vector3d& axis) const {
-    return rotation_orders(patch_, axis, centre_, kGroupSlack);
+    return rotation_orders(patch_, axis, centre_, kScreenSlack);
   }
 
   // Of axis number a. Several threads look about those after it as well.

@@ -14,6 +14,7 @@
 
 #include "base/random.h"
 #include "surface/creases.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -21,8 +22,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double kWeldTolerance = 1e-7;
 
 // Faces with the same welded corners as an earlier one of their component carry no area of their own: a sheet modelled
 // with two sides would else weigh double and pull the centroid away from the axis.
@@ -191,7 +190,7 @@ SurfacePatch make_patch(const PreparedMesh& prepared, std::vector<int> faces, in
   SurfacePatch patch = sample_patch(prepared, std::move(faces), samples, tolerance, context, stream);
   const std::vector<int> visible = visible_faces(prepared, patch.faces);
   patch.index = std::make_shared<const SurfaceIndex>(prepared.index->part(visible));
-  const double reach = 3 * patch.tolerance;
+  const double reach = kCreaseReach * patch.tolerance;
   patch.at_crease = at_creases(prepared, patch.samples, reach, context);
   Random random(context.seed, std::string(stream) + " parts");
   patch.part_samples = samples_of_parts(prepared, visible, patch.moments.area, random);

@@ -17,11 +17,13 @@
 
 namespace orbifit {
 
+inline constexpr double kWeldTolerance = 1e-7;  ///< of the diagonal: vertices that are nearer are one
+
 /// A mesh made ready for detection: moved so that its box is centred on the origin and its diagonal is 1.
 struct PreparedMesh {
   Mesh mesh;                       ///< normalised; faces in the order of the input
   Similarity input_of_normalised;  ///< carries the normalised mesh back to where it was given
-  Weld weld;                       ///< at 1e-7 of the diagonal
+  Weld weld;                       ///< at kWeldTolerance
   Components components;           ///< touching_parts()
   Points normals;                  ///< #F by 3
   Eigen::VectorXd areas;           ///< #F; 0 for faces that repeat one of their component (two-sided sheets)

@@ -2,11 +2,20 @@
 
 namespace orbifit {
 
-/// Cosines of the angles within which the normals of a surface and of its image agree.
+/// Cosines of the angles within which the normals of a surface and of its image agree. Beyond the first is a crease.
 inline constexpr double kAlikeNormals = 0.90630778703665;  ///< 25 degrees: where a symmetry is verified
 inline constexpr double kNearNormals = 0.8;                ///< 37 degrees: the motion may be a little off yet
 inline constexpr double kOfWhole = 0.999;                  ///< of the mesh's area: the whole but for specks
 inline constexpr double kFacetNormals = 0.64;              ///< 50 degrees: between facets of small round parts
+
+/// Tolerances within which a point is next to a crease: its image may lie on either side.
+inline constexpr double kCreaseReach = 3;
+
+/// Radians between directions below which two lines, or the normals of two planes, are taken for one before a fit.
+inline constexpr double kSameDirection = 0.03;
+
+/// Of the mesh's area: smaller regions and patterns say little.
+inline constexpr double kLeastArea = 0.002;
 
 /// The highest order of a finite rotation that is looked for; beyond it a shape counts as turned.
 inline constexpr int kHighestOrder = 72;

@@ -12,6 +12,7 @@
 
 #include "base/disjoint_sets.h"
 #include "geometry/grid_cell.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -27,9 +28,8 @@ constexpr double kFlat = 0.1;         // root mean square distance from the plan
 constexpr double kLeftOfNoise = 0.5;  // of its standard deviation, after it was taken out
 constexpr double kOneSided = 0.35;    // length of the mean normal: less, and both sides of something are in one cell
 constexpr double kSmooth = 0.97;      // the same where there is no crease: none must arise
-constexpr double kCreaseCosine = 0.90630778703665;  // 25 degrees
-constexpr double kDetermined = 1e-3;                // of the largest eigenvalue: below, planes leave a direction open
-constexpr double kFarthest = 0.8;                   // of a place from the mean of its sites, in cells
+constexpr double kDetermined = 1e-3;  // of the largest eigenvalue: below, planes leave a direction open
+constexpr double kFarthest = 0.8;     // of a place from the mean of its sites, in cells
 
 }  // namespace
 
@@ -135,7 +135,7 @@ void VertexClustering::find_creases() {
     const std::vector<int>& around = prepared_.faces_of_vertex[static_cast<std::size_t>(sites_.group[s])];
     for (const int face : around) {
       for (const int other : around) {
-        if (other <= face || std::abs(prepared_.normals.row(face).dot(prepared_.normals.row(other))) >= kCreaseCosine)
+        if (other <= face || std::abs(prepared_.normals.row(face).dot(prepared_.normals.row(other))) >= kAlikeNormals)
           continue;
         int common = 0;
         for (const int a : sites_.of_face[static_cast<std::size_t>(face)]) {

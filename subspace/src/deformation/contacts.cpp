@@ -191,16 +191,6 @@ class Kept {
 
  private:
   using Cell = std::array<std::int64_t, 5>;  // both parts, and the cell in space
-  struct CellHash {
-    std::size_t operator()(const Cell& cell) const {
-      std::uint64_t value = 0;
-      for (const std::int64_t coordinate : cell) {
-        value = (value ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15ULL;
-        value ^= value >> 31U;
-      }
-      return value;
-    }
-  };
 
   const Candidate& at(int number) const { return candidates_[static_cast<std::size_t>(number)]; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace orbifit {
@@ -20,5 +21,18 @@ template <class Point>
 std::array<std::int64_t, 3> grid_cell(const Point& point, double width) {
   return {grid_cell(point[0] / width), grid_cell(point[1] / width), grid_cell(point[2] / width)};
 }
+
+/// Of a few whole numbers, such as those of a cell: each is mixed in by Fibonacci hashing (Knuth 1998, section 6.4).
+struct CellHash {
+  template <class Numbers>
+  std::size_t operator()(const Numbers& numbers) const {
+    std::uint64_t hash = 0;
+    for (const auto number : numbers) {
+      hash = (hash ^ static_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15ULL;
+      hash ^= hash >> 31U;
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
 
 }  // namespace orbifit

@@ -7,6 +7,8 @@
 
 #include "orbifit/model/mesh.h"
 
+#include "geometry/grid_cell.h"
+
 namespace orbifit {
 
 /// Finds the vertices within a small distance of a place, by hashing cells a few times as wide.
@@ -84,14 +86,7 @@ class VertexGrid {
     return towards_zero - (static_cast<double>(towards_zero) > number ? 1 : 0);
   }
 
-  static std::size_t slot(std::size_t slots, const Cell& cell) {
-    std::uint64_t value = 0;
-    for (const std::int64_t coordinate : cell) {
-      value = (value ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15ULL;
-      value ^= value >> 31U;
-    }
-    return value & (slots - 1);
-  }
+  static std::size_t slot(std::size_t slots, const Cell& cell) { return CellHash{}(cell) & (slots - 1); }
 
   double tolerance_;
   double width_ = 0;
