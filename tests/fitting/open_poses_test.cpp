@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "orbifit/model/annotation.h"
+
 #include "support/cuboid.h"
 
 namespace orbifit {
@@ -93,6 +95,19 @@ TEST_F(OpenPoses, AreNotThoseThatAViewpointContradicts) {
   place(half_turn(Vector3d::UnitZ()));
   const Vector3d from(9, 4, 2);
   EXPECT_TRUE(open({1, 3, 5}, &from).empty());
+}
+
+TEST_F(OpenPoses, LowerTheConfidenceOfAFit) {
+  const Mesh& mesh = result_.fitted;
+  PointCloud scan;
+  scan.points = scan_of_faces(mesh, tube_).points;
+  FitOptions options;
+  options.place = true;
+  const SymmetryAnnotation none = empty_annotation(mesh, 0.005);
+  const FitResult found = fit({mesh, none, scan, Similarity{}}, options, RunContext{});
+  ASSERT_TRUE(found.converged) << found.stopped_because;
+  EXPECT_NEAR(found.open_distance(), kKnob / diagonal(mesh.vertices), 0.02);
+  EXPECT_LE(found.confidence, found.inlier_ratio * (1 - found.open_stretch()) * (1 - found.open_distance()) + 1e-12);
 }
 
 }  // namespace
