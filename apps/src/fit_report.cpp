@@ -52,6 +52,16 @@ nlohmann::ordered_json pose_to_json(const Similarity& pose) {
           {"translation", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
 }
 
+nlohmann::ordered_json open_poses_json(const FitResult& result) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const OpenPose& open : result.open_poses) {
+    const Similarity there = Similarity{1, open.move.linear, open.move.translation} * result.pose;
+    list.push_back(
+        {{"pose", pose_to_json(there)}, {"apart", open.apart}, {"apart_at", {open.at.x(), open.at.y(), open.at.z()}}});
+  }
+  return list;
+}
+
 // Which groups the scan supports; those that it cannot judge are left out.
 ReportTable group_table(const FitResult& result, const SymmetryReport& symmetry) {
   ReportTable table{{"region", "group", "pairs", "disagreement", "rms with the group", "rms without", "the scan"}, {}};
@@ -221,6 +231,7 @@ nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, cons
           {"cut_off", result.cut_off},
           {"own_size", result.own_size},
           {"open_stretches", open_stretches_json(result)},
+          {"open_poses", open_poses_json(result)},
           {"confidence", result.confidence},
           {"rms", result.rms},
           {"landmark_rms", result.landmark_rms},

@@ -11,6 +11,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "assessment/fit_assessment.h"
+#include "assessment/open_poses.h"
 #include "assessment/open_stretches.h"
 #include "fit_loop.h"
 #include "fit_systems.h"
@@ -282,14 +283,18 @@ void refine_and_judge(const Trial& trial, const FitOptions& options, const RunCo
   if (judges || refines) clock.finished(judges ? "groups" : "refinement");
 }
 
-// A size that the scan leaves open is the template's, or chance's: the fit is the less to be relied on.
-void tell_open_size(const PlacedScan& start, const FitOptions& options, const RunContext& context, FitResult& result) {
+// What the scan leaves open, of size and pose, is the template's then, or chance's: the fit is the less to be relied
+// on.
+void tell_what_is_open(const PlacedScan& start, const FitOptions& options, const RunContext& context,
+                       FitResult& result) {
   if (!result.converged) return;
   std::vector<Motion> moves;  // beyond those by which the start's scan is one
   for (std::size_t k = 0; k < result.others.size(); ++k) moves.push_back(result.others[k] * inverse(start.others[k]));
-  result.open_stretches =
-      open_stretches(with_others_moved(start, moves), start.views->silhouette.seen(), options, context, result);
-  result.confidence *= 1 - result.open_stretch();
+  const PreparedScan scan = with_others_moved(start, moves);
+  const SeenSurface& seen = start.views->silhouette.seen();
+  result.open_stretches = open_stretches(scan, seen, options, context, result);
+  result.open_poses = open_poses(scan, seen, options, context, result);
+  result.confidence *= (1 - result.open_stretch()) * (1 - std::min(1.0, result.open_distance()));
 }
 
 // How near the fit has brought the vertices to the targets. What it says of a landmark in the end counts, not whether
@@ -324,7 +329,7 @@ FitResult fit(const FitInput& given, const FitOptions& options, const RunContext
   }
   conclude(options, result);
   refine_and_judge(trial, options, context, clock, result);
-  tell_open_size(trial.best.start, options, context, result);
+  tell_what_is_open(trial.best.start, options, context, result);
   tell_landmarks(input, context, result);
   result.field_residual =
       worst_field_residual(result.subspace, input.mesh, result.rest_annotation, result.state(), context);

@@ -1,7 +1,6 @@
 #include "orbifit/fitting/fit_verdict.h"
 
 #include <algorithm>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -27,15 +26,7 @@ class Verdict : public testing::Test {
     result_.inlier_ratio = result_.confidence = 0.95;
   }
 
-  std::vector<std::string> verdict() const { return fit_verdict(model_.mesh, result_); }
-
-  static Placement placement(const Similarity& pose, double inliers) {
-    Placement result;
-    result.pose = pose;
-    result.inlier_ratio = inliers;
-    result.visible_coverage = 1;
-    return result;
-  }
+  std::vector<std::string> verdict() const { return fit_verdict(result_); }
 
   GeneratedModel model_;
   FitResult result_;
@@ -54,6 +45,19 @@ TEST_F(Verdict, FallsWithTheConfidence) {
   result_.converged = false;
   result_.stopped_because = "only 25 % of the scan is explained";
   EXPECT_EQ(verdict().front(), "The fit failed: only 25 % of the scan is explained.");
+}
+
+TEST_F(Verdict, NamesWhatLowersTheConfidenceMost) {
+  const Eigen::Matrix3d all = Eigen::Matrix3d::Identity();
+  result_.confidence = 0.75;
+  result_.open_stretches = {{all, 0, 0.2}};
+  EXPECT_EQ(verdict().front(),
+            "The fit explains most of the scan: 95 % of the points that were used lie on it. The confidence is 75 %, "
+            "above all for its size, which the scan leaves open.");
+  result_.open_poses = {{Motion{}, 0.3, {0, 0, 0}}};
+  EXPECT_TRUE(tells(verdict(), "above all for its pose"));
+  result_.inlier_ratio = 0.6;
+  EXPECT_TRUE(tells(verdict(), "above all for points that do not lie on it"));
 }
 
 TEST_F(Verdict, SaysThatTheSizeIsTheTemplatesOwn) {
@@ -103,15 +107,15 @@ TEST_F(Verdict, TellsWhichGroupsTheScanContradicts) {
   EXPECT_EQ(verdict()[1], sentence + "; it was dropped.");
 }
 
-TEST_F(Verdict, TellsPosesApartThatAreOthers) {
-  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  result_.placements = {placement({}, 0.95), placement({1, axis_rotation(z, std::numbers::pi), {0, 0, 0}}, 0.95)};
-  EXPECT_EQ(verdict().size(), 1U) << "the table's half-turn takes it onto itself";
-  result_.placements.push_back(
-      placement({1, axis_rotation(Eigen::Vector3d::UnitX(), std::numbers::pi), {0, 0, 0.7}}, 0.94));
-  EXPECT_TRUE(tells(verdict(), "Another pose explains the scan about as well"));
-  result_.placements.back().inlier_ratio = 0.6;
-  EXPECT_EQ(verdict().size(), 1U);
+TEST_F(Verdict, TellsWhereToLookToTellPosesApart) {
+  result_.open_poses = {{Motion{}, 0.2, {0, 0, 0.7}}};
+  EXPECT_EQ(verdict()[1],
+            "Another pose explains the scan as well. A view of where they differ most would tell them apart: around "
+            "(0, 0, 0.7).");
+  result_.open_poses.resize(5, {Motion{}, 0.1, {1, 2, 3}});
+  EXPECT_EQ(verdict()[1],
+            "5 other poses explain the scan as well. A view of where they differ most would tell them apart: around "
+            "(0, 0, 0.7), (1, 2, 3), (1, 2, 3).");
 }
 
 // A ball over the table, as far from it as things are that may be the table's.
@@ -140,7 +144,7 @@ TEST(UnexplainedPart, LowersTheConfidenceAndIsSaidWithItsPlace) {
   EXPECT_GT(after.unexplained_part, 0.02);
   EXPECT_LT(after.confidence, before.confidence - after.unexplained_part);
   EXPECT_LT((after.unexplained_at - centre).norm(), 0.05 * size);
-  EXPECT_TRUE(tells(fit_verdict(model.mesh, after), "A connected part of the scan"));
+  EXPECT_TRUE(tells(fit_verdict(after), "A connected part of the scan"));
 }
 
 }  // namespace

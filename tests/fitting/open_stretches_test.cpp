@@ -1,48 +1,15 @@
 #include "assessment/open_stretches.h"
 
-#include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>
+
+#include "support/cuboid.h"
 
 namespace orbifit {
 namespace {
 
 using Eigen::Vector3d;
-
-const Vector3d kSides(3, 2, 1);
-
-// A cuboid about the origin, six faces of 24 x 24 cells each, those of one direction together: low x, high x, low y,
-// ...
-Mesh cuboid() {
-  constexpr int kCells = 24;
-  Mesh mesh;
-  mesh.vertices.resize(6 * (kCells + 1) * (kCells + 1), 3);
-  mesh.faces.resize(6 * 2 * kCells * kCells, 3);
-  int vertex = 0, face = 0;
-  for (int side = 0; side < 6; ++side) {
-    const int axis = side / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const int first = vertex;
-    for (int i = 0; i <= kCells; ++i) {
-      for (int k = 0; k <= kCells; ++k) {
-        Vector3d point;
-        point[axis] = (side % 2 - 0.5) * kSides[axis];
-        point[a] = (static_cast<double>(i) / kCells - 0.5) * kSides[a];
-        point[b] = (static_cast<double>(k) / kCells - 0.5) * kSides[b];
-        mesh.vertices.row(vertex++) = point.transpose();
-      }
-    }
-    for (int i = 0; i < kCells; ++i) {
-      for (int k = 0; k < kCells; ++k) {
-        const int corner = first + i * (kCells + 1) + k, next = corner + kCells + 1;
-        const bool out = side % 2 == 1;
-        mesh.faces.row(face++) << corner, out ? next : next + 1, out ? next + 1 : next;
-        mesh.faces.row(face++) << corner, out ? next + 1 : corner + 1, out ? corner + 1 : next + 1;
-      }
-    }
-  }
-  return mesh;
-}
 
 class OpenStretches : public testing::Test {
  protected:
@@ -58,15 +25,7 @@ class OpenStretches : public testing::Test {
   // Of a scan of some sides, taken from a place or nobody knows whence.
   std::vector<OpenStretch> open(const std::vector<int>& sides, const Vector3d* from = nullptr,
                                 const FitOptions& options = {}) const {
-    const Eigen::Index each = result_.fitted.vertices.rows() / 6;
-    PreparedScan scan;
-    scan.points.resize(each * std::ssize(sides), 3);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      scan.points.middleRows(each * static_cast<Eigen::Index>(i), each) =
-          result_.fitted.vertices.middleRows(each * sides[i], each);
-    }
-    scan.normals = Points::Zero(scan.points.rows(), 3);
-    scan.spacing = 1.0 / 24;
+    const PreparedScan scan = scan_of_faces(result_.fitted, sides);
     PointCloud cloud;
     cloud.points = scan.points;
     if (from != nullptr) cloud.viewpoints = from->transpose().replicate(scan.points.rows(), 1);

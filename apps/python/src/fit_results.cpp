@@ -23,6 +23,7 @@ py::dict figures_of(const FitResult& result) {
   figures["cut_off"] = result.cut_off;
   figures["own_size"] = result.own_size;
   figures["open_stretch"] = result.open_stretch();
+  figures["open_distance"] = result.open_distance();
   figures["confidence"] = result.confidence;
   figures["landmark_rms"] = result.landmark_rms;
   figures["detail_rms"] = result.detail_rms;
@@ -168,7 +169,7 @@ void define_fit_result(py::module_& module) {
       .def_property_readonly(
           "stopped_because", [](const KeptFit& kept) { return kept.result.stopped_because; }, "In words.")
       .def_property_readonly(
-          "verdict", [](const KeptFit& kept) { return fit_verdict(*kept.mesh, kept.result); },
+          "verdict", [](const KeptFit& kept) { return fit_verdict(kept.result); },
           "What a person should know of it, a sentence each: whether to rely on it, and what to look at.")
       .def_property_readonly(
           "confidence", [](const KeptFit& kept) { return kept.result.confidence; }, "In [0, 1].")

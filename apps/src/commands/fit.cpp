@@ -221,7 +221,7 @@ int run_fit(const CLI::App& app, FitArguments& arguments, CommandContext& contex
   const FitResult result = prepare_and_fit(arguments, annotation, input, context.run, pairs);
   if (!pairs || !result.dropped.empty()) pairs.emplace(mesh, result.rest_annotation, context.run);
   const SymmetryReport symmetry = pairs->residual(&result.fitted, CarriedMotions::moving, context.run);
-  const std::vector<std::string> verdict = fit_verdict(mesh, result);
+  const std::vector<std::string> verdict = fit_verdict(result);
   context.run.check();
   // A fit that failed leaves its report, which says why, but no mesh that could be taken for a result.
   if (!arguments.report.empty()) write_file(arguments.report, fit_to_json(verdict, result, symmetry).dump(2) + "\n");

@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
-
-#include "symmetry/moving_surface.h"
+#include <utility>
 
 namespace orbifit {
 
@@ -18,9 +17,7 @@ struct VerdictPolicy {
   double mostly = 0.7;  // confidence: below this a person would not call it a fit
   double part = 0.02;   // share of the scan: a handle, where an outlier is a point
   double unseen = 0.3;  // share of the surface: more than the underside that no scanner sees
-  double tie = 0.95;    // share of its placement's score: two standard errors of shares of some 1500 points
-  double apart = 0.03;  // of the diagonal: poses that differ less are one
-  int places = 3;       // of where poses differ: nobody looks at more
+  std::size_t places = 3;  // of where poses differ: nobody looks at more
 };
 constexpr VerdictPolicy kVerdictPolicy;
 
@@ -36,43 +33,26 @@ std::string place(const Eigen::Vector3d& point) {
   return text;
 }
 
+// What lowers the confidence most, as FitResult::confidence has it.
+std::string weakest_point(const FitResult& result) {
+  const std::pair<double, const char*> losses[] = {
+      {1 - result.inlier_ratio, "points that do not lie on it"},
+      {1 - result.visible_coverage, "surface that should have been seen and was not"},
+      {result.torn_off / (result.overlap + result.torn_off), "what was left out of the scan"},
+      {result.open_stretch(), "its size, which the scan leaves open"},
+      {result.open_distance(), "its pose, of which the scan allows others"}};
+  return std::ranges::max_element(losses, {}, &std::pair<double, const char*>::first)->second;
+}
+
 std::string of_the_whole(const FitResult& result) {
   if (!result.converged) return "The fit failed: " + result.stopped_because + ".";
   const std::string explained = percent(result.inlier_ratio) + " of the points that were used lie on it";
   if (result.confidence >= kVerdictPolicy.well) return "The fit explains the scan: " + explained + ".";
-  if (result.confidence >= kVerdictPolicy.mostly) return "The fit explains most of the scan: " + explained + ".";
-  return "The fit is doubtful: " + explained + ", and the confidence is " + percent(result.confidence) + ".";
+  const std::string doubt = explained + ". The confidence is " + percent(result.confidence) + ", above all for " +
+                            weakest_point(result) + ".";
+  if (result.confidence >= kVerdictPolicy.mostly) return "The fit explains most of the scan: " + doubt;
+  return "The fit is doubtful: " + doubt;
 }
-
-// Where a pose puts the template farthest from where the fitted one has it.
-struct Difference {
-  double distance = 0;  // of the diagonal
-  Eigen::Vector3d at = Eigen::Vector3d::Zero();
-};
-
-class Differences {
- public:
-  // The mesh is kept by reference.
-  explicit Differences(const Mesh& mesh) : mesh_(mesh), surface_(mesh), size_(diagonal(mesh.vertices)) {}
-
-  Difference between(const Similarity& pose, const Similarity& best) const {
-    constexpr Eigen::Index kVertices = 3000;
-    const Similarity back = inverse(best);
-    Difference result;
-    const Eigen::Index step = std::max<Eigen::Index>(1, mesh_.vertices.rows() / kVertices);
-    for (Eigen::Index v = 0; v < mesh_.vertices.rows(); v += step) {
-      const Eigen::Vector3d there = pose(mesh_.vertices.row(v).transpose());
-      const double distance = surface_.nearest(back(there)).distance / size_;
-      if (distance > result.distance) result = {distance, there};
-    }
-    return result;
-  }
-
- private:
-  const Mesh& mesh_;
-  MovingSurface surface_;
-  double size_;
-};
 
 // What people call a dimension of a shape: by its rank among those across it.
 std::string dimension(const Mesh& shape, const Eigen::Vector3d& axis) {
@@ -120,32 +100,20 @@ void add_open_size(const FitResult& result, std::vector<std::string>& told) {
     told.push_back("The scan leaves the size open:" + ways + ". Stretched so, it explains the scan as well.");
 }
 
-void add_ties(const Mesh& mesh, const FitResult& result, std::vector<std::string>& told) {
-  if (result.placements.size() < 2) return;
-  const Differences differences(mesh);
-  std::vector<double> from_result;
-  for (const Placement& each : result.placements) {
-    from_result.push_back(differences.between(each.pose, result.pose).distance);
-  }
-  const auto nearest = std::ranges::min_element(from_result) - from_result.begin();
-  const Placement& own = result.placements[static_cast<std::size_t>(nearest)];
-  int others = 0;
+void add_open_poses(const FitResult& result, std::vector<std::string>& told) {
+  const std::size_t count = result.open_poses.size();
+  if (count == 0) return;
   std::string places;
-  for (const Placement& other : result.placements) {
-    if (other.score() < kVerdictPolicy.tie * own.score()) continue;
-    const Difference apart = differences.between(other.pose, own.pose);
-    if (apart.distance < kVerdictPolicy.apart) continue;
-    if (++others <= kVerdictPolicy.places) places += (places.empty() ? "" : ", ") + place(apart.at);
+  for (std::size_t i = 0; i < std::min(count, kVerdictPolicy.places); ++i) {
+    places += (i == 0 ? "" : ", ") + place(result.open_poses[i].at);
   }
-  if (others == 0) return;
-  told.push_back((others == 1 ? "Another pose explains" : std::to_string(others) + " other poses explain") +
-                 " the scan about as well. A view of where they differ most would tell them apart: around " + places +
-                 ".");
+  told.push_back((count == 1 ? "Another pose explains" : std::to_string(count) + " other poses explain") +
+                 " the scan as well. A view of where they differ most would tell them apart: around " + places + ".");
 }
 
 }  // namespace
 
-std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) {
+std::vector<std::string> fit_verdict(const FitResult& result) {
   std::vector<std::string> told{of_the_whole(result)};
   if (result.unexplained_part > kVerdictPolicy.part) {
     told.push_back("A connected part of the scan, " + percent(result.unexplained_part) +
@@ -166,7 +134,7 @@ std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result) 
   }
   if (result.own_size) told.push_back("The template has kept its own size: the scan asks for no other.");
   add_open_size(result, told);
-  if (result.converged) add_ties(mesh, result, told);
+  add_open_poses(result, told);
   for (const GroupAgreement& group : result.groups) {
     if (!group.disagrees) continue;
     const auto& regions = result.rest_annotation.regions;

@@ -105,6 +105,13 @@ struct OpenStretch {
   double most() const { return std::max(shorter, longer); }
 };
 
+/// Another pose of a fitted surface in which it explains the scan as well.
+struct OpenPose {
+  Motion move;                                   ///< from where it was fitted to there, scan's frame
+  double apart = 0;                              ///< the farthest that it then lies from there, of its diagonal
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< where that is, scan's frame: a view of it tells the poses apart
+};
+
 struct FitResult {
   Mesh fitted;                         ///< template's connectivity, scan's frame
   SymmetryAnnotation rest_annotation;  ///< the template's, as it was kept
@@ -149,8 +156,16 @@ struct FitResult {
   std::vector<OpenStretch> open_stretches;
   /// The largest of them, a share; 0 for none.
   double open_stretch() const { return open_stretches.empty() ? 0 : open_stretches.front().most(); }
-  /// inlier_ratio * visible_coverage, less what was torn off, once more the unexplained part, and the largest open
-  /// stretch, in [0, 1]
+  /// Where else the scan has the fitted surface as well; asked where the pose was found, of a fit that did not fail.
+  std::vector<OpenPose> open_poses;
+  /// How far the surface may be from where it was fitted by the farthest of them, of the diagonal; 0 for none.
+  double open_distance() const {
+    double most = 0;
+    for (const OpenPose& open : open_poses) most = std::max(most, open.apart);
+    return most;
+  }
+  /// inlier_ratio * visible_coverage, less what was torn off, once more the unexplained part, the largest open stretch
+  /// and the open distance, in [0, 1]
   double confidence = 0;
   double landmark_rms =
       0;  ///< of handles and the landmarks that were not left out, fraction of the fitted mesh's diagonal

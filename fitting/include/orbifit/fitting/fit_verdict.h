@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "orbifit/fitting/fit.h"
-#include "orbifit/model/mesh.h"
 
 namespace orbifit {
 
@@ -12,7 +11,6 @@ namespace orbifit {
 /// connected part of the scan it leaves unexplained and where, what was not seen, which other poses the scan supports
 /// as well and where to look to tell them apart, and which groups the scan contradicts. Places are in the scan's frame
 /// and units.
-/// \param mesh  the template
-std::vector<std::string> fit_verdict(const Mesh& mesh, const FitResult& result);
+std::vector<std::string> fit_verdict(const FitResult& result);
 
 }  // namespace orbifit
