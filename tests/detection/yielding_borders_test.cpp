@@ -17,10 +17,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kCells = 80;          // along each side of a sheet of side 1
-constexpr double kPeg = 4.0 / 80;   // half of a side of its top
-constexpr double kFoot = 5.0 / 80;  // and of its foot
-const Vector2d kPegAt(16.0 / 80, 12.0 / 80);
+constexpr int kCells = 80;                   // along each side of a sheet of side 1
+constexpr double kPeg = 4.0 / 80;            // half of a side of its top
+constexpr double kFoot = 5.0 / 80;           // and of its foot
+const Vector2d kPegAt(24.0 / 80, 8.0 / 80);  // so far from mirrors that its images are apart
 
 double from_peg(const Vector2d& point, const Vector2d& peg) {
   return (point - peg).cwiseAbs().maxCoeff();
@@ -81,7 +81,11 @@ SymmetryAnnotation annotated(const Mesh& mesh, const PointGroup& group, const st
 void yield(const Mesh& mesh, SymmetryAnnotation& annotation, Explanation* explanation = nullptr) {
   const RunContext context;
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, annotation.tolerance, context);
-  yield_to_parts(prepare(mesh), surface, annotation, explanation, context);
+  const std::vector<char> ends_within =
+      ending_within_surface(prepare(mesh), annotation.regions, annotation.tolerance, context);
+  EXPECT_EQ(ends_within.front(), 1);  // the disc
+  for (std::size_t i = 1; i < ends_within.size(); ++i) EXPECT_EQ(ends_within[i], 0);
+  yield_to_parts(surface, ends_within, annotation, explanation, context);
 }
 
 class YieldingBorders : public testing::TestWithParam<const char*> {

@@ -53,11 +53,11 @@ TEST_F(Verdict, NamesWhatLowersTheConfidenceMost) {
   result_.open_stretches = {{all, 0, 0.2}};
   EXPECT_EQ(verdict().front(),
             "The fit explains most of the scan: 95 % of the points that were used lie on it. The confidence is 75 %, "
-            "above all for its size, which the scan leaves open.");
+            "lowered most by its size, which the scan leaves open.");
   result_.open_poses = {{Motion{}, 0.3, {0, 0, 0}}};
-  EXPECT_TRUE(tells(verdict(), "above all for its pose"));
+  EXPECT_TRUE(tells(verdict(), "lowered most by its pose"));
   result_.inlier_ratio = 0.6;
-  EXPECT_TRUE(tells(verdict(), "above all for points that do not lie on it"));
+  EXPECT_TRUE(tells(verdict(), "lowered most by points that do not lie on it"));
 }
 
 TEST_F(Verdict, SaysThatTheSizeIsTheTemplatesOwn) {

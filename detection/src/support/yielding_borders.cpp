@@ -20,22 +20,18 @@ namespace {
 
 class YieldingBorders {
  public:
-  YieldingBorders(const PreparedMesh& prepared, const ShapeSurface& surface, const SymmetryAnnotation& annotation)
+  YieldingBorders(const ShapeSurface& surface, const std::vector<char>& ends_within,
+                  const SymmetryAnnotation& annotation)
       : annotation_(annotation),
+        ends_within_(ends_within),
         tolerance_(annotation.tolerance * surface.diagonal),
         shapes_(ConsistencySearch::shapes_of(surface, annotation)) {
-    const std::vector<std::array<FaceSide, 3>> sides = face_sides(prepared);
-    const double reach = annotation.tolerance * diagonal(prepared.mesh.vertices);
-    for (const Region& region : annotation.regions) {
-      places_.push_back(place_of(region));
-      ends_anywhere_.push_back(smooth_border_share(prepared, sides, region.faces, reach) >
-                               kEvidencePolicy.smooth_border);
-    }
+    for (const Region& region : annotation.regions) places_.push_back(place_of(region));
   }
 
   // The faces that a region keeps; nothing where it keeps all, or would keep too few.
   std::optional<std::vector<int>> kept(std::size_t region) {
-    if (!ends_anywhere_[region] || !places_[region]) return std::nullopt;
+    if (!ends_within(region) || !places_[region]) return std::nullopt;
     const int shape = shape_of(region);
     std::vector<int> taken;
     for (std::size_t part = 0; part < annotation_.regions.size(); ++part) {
@@ -47,16 +43,20 @@ class YieldingBorders {
     std::ranges::sort(taken);
     taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
     std::vector<int> rest = shapes_.without_orbit(shape, taken, *places_[region]);
-    if (shapes_.area_of(rest) < ConsistencyPolicy{}.left * shapes_.area(shape)) return std::nullopt;
+    if (shapes_.area_of(rest) < policy_.left * shapes_.area(shape)) return std::nullopt;
     return rest;
   }
 
  private:
+  bool ends_within(std::size_t region) const {
+    return ends_within_[static_cast<std::size_t>(annotation_.regions[region].id)] != 0;
+  }
+
   static int shape_of(std::size_t region) { return static_cast<int>(region); }
 
   // Whether the other is a part that the region touches, and neither holds the other.
   bool is_beside(std::size_t region, std::size_t other) const {
-    if (other == region || ends_anywhere_[other] || !places_[other]) return false;
+    if (other == region || ends_within(other) || !places_[other]) return false;
     const int shape = shape_of(region);
     const int part = shape_of(other);
     return shapes_.touch(shape, part) && !shapes_.within(part, shape) && !shapes_.within(shape, part);
@@ -83,18 +83,33 @@ class YieldingBorders {
   }
 
   const SymmetryAnnotation& annotation_;
+  const std::vector<char>& ends_within_;  // by id
   ConsistencyPolicy policy_;
   double tolerance_;     // mesh units
   RegionShapes shapes_;  // the regions' come first, in their order
   std::vector<std::optional<GroupPlace>> places_;
-  std::vector<bool> ends_anywhere_;
 };
 
 }  // namespace
 
-void yield_to_parts(const PreparedMesh& prepared, const ShapeSurface& surface, SymmetryAnnotation& annotation,
+std::vector<char> ending_within_surface(const PreparedMesh& prepared, const std::vector<Region>& regions,
+                                        double tolerance, const RunContext& context) {
+  const std::vector<std::array<FaceSide, 3>> sides = face_sides(prepared);
+  const double reach = tolerance * diagonal(prepared.mesh.vertices);
+  std::vector<char> result(regions.size(), 0);
+  parallel_for(context, regions.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      context.check();
+      const double smooth = smooth_border_share(prepared, sides, regions[i].faces, reach);
+      result[i] = smooth > kEvidencePolicy.smooth_border ? 1 : 0;
+    }
+  });
+  return result;
+}
+
+void yield_to_parts(const ShapeSurface& surface, const std::vector<char>& ends_within, SymmetryAnnotation& annotation,
                     Explanation* explanation, const RunContext& context) {
-  YieldingBorders borders(prepared, surface, annotation);
+  YieldingBorders borders(surface, ends_within, annotation);
   std::vector<std::optional<std::vector<int>>> kept;
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) {
     context.check();

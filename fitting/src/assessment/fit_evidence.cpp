@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-struct EvidencePolicy {
+struct FitEvidencePolicy {
   int points = 600;           // of the scan: the mean error of as many is known to a twentieth
   int samples = 6000;         // of the surface: legs of a tenth of its area have 600
   int rounds = 8;             // of ICP: what follows a stretch is a small motion
@@ -24,7 +24,7 @@ struct EvidencePolicy {
   double uncovered = 0.005;   // of the samples: thirty, as may change sides at silhouettes
   double least_error = 1e-3;  // of the diagonal: a scan without noise is not more exact than the fit
 };
-constexpr EvidencePolicy kEvidencePolicy;
+constexpr FitEvidencePolicy kPolicy;
 
 // The fitted surface stretched about a point: what is asked of it is asked of the surface as it is.
 class Stretched {
@@ -60,15 +60,15 @@ class Stretched {
 }  // namespace
 
 bool Evidence::as_good(const Evidence& other) const {
-  const double most = error * (1 + kEvidencePolicy.worse) + kEvidencePolicy.least_error * kEvidencePolicy.least_error;
-  return other.error <= most && other.missed <= missed + kEvidencePolicy.uncovered;
+  const double most = error * (1 + kPolicy.worse) + kPolicy.least_error * kPolicy.least_error;
+  return other.error <= most && other.missed <= missed + kPolicy.uncovered;
 }
 
 FitEvidence::FitEvidence(const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,
                          const RunContext& context, const Mesh& fitted, Asked asked)
     : scan_(scan), seen_(seen), surface_(fitted), areas_(face_areas(fitted)), size_(diagonal(fitted.vertices)) {
   const auto count = static_cast<int>(scan.points.rows());
-  const int step = std::max(1, count / kEvidencePolicy.points);
+  const int step = std::max(1, count / kPolicy.points);
   for (int i = 0; i < count; i += step) {
     if (asked == Asked::all || surface_.index.within(scan.points.row(i), 2 * options.inlier_distance * size_)) {
       points_.push_back(i);
@@ -76,7 +76,7 @@ FitEvidence::FitEvidence(const PreparedScan& scan, const SeenSurface& seen, cons
   }
   reach_ = std::max(2 * options.inlier_distance * size_, 2 * scan.spacing);
   Random random(context.seed, "stretches of a fit");
-  samples_ = sample_surface(fitted, kEvidencePolicy.samples, random);
+  samples_ = sample_surface(fitted, kPolicy.samples, random);
   centre_.setZero();
   for (Index f = 0; f < areas_.size(); ++f) {
     centre_ += areas_[f] * fitted.vertices(fitted.faces.row(f), Eigen::all).colwise().mean().transpose();
@@ -98,7 +98,7 @@ Matrix3d FitEvidence::axes() const {
 Evidence FitEvidence::of(const Matrix3d& along, double share, const Similarity& start) const {
   const Stretched surface(surface_, centre_, along, share);
   Similarity move = start;
-  for (int round = 0; round < kEvidencePolicy.rounds; ++round) {
+  for (int round = 0; round < kPolicy.rounds; ++round) {
     PoseSystem system(size_, centre_);
     for (const int i : points_) {
       const Vector3d point = move(scan_.points.row(i).transpose());
@@ -121,7 +121,7 @@ Evidence FitEvidence::of(const Matrix3d& along, double share, const Similarity& 
     samples.normals.row(i) = surface.normal(samples_.normals.row(i).transpose()).transpose();
   }
   const SeenSurface::Coverage found = seen_.coverage(samples, surface, inverse(move), reach_).without_cut_off();
-  result.missed = static_cast<double>(found.through + found.nothing) / kEvidencePolicy.samples;
+  result.missed = static_cast<double>(found.through + found.nothing) / kPolicy.samples;
   return result;
 }
 

@@ -38,7 +38,7 @@ std::string weakest_point(const FitResult& result) {
   const std::pair<double, const char*> losses[] = {
       {1 - result.inlier_ratio, "points that do not lie on it"},
       {1 - result.visible_coverage, "surface that should have been seen and was not"},
-      {result.torn_off / (result.overlap + result.torn_off), "what was left out of the scan"},
+      {result.torn_off > 0 ? result.torn_off / (result.overlap + result.torn_off) : 0, "what was left out of the scan"},
       {result.open_stretch(), "its size, which the scan leaves open"},
       {result.open_distance(), "its pose, of which the scan allows others"}};
   return std::ranges::max_element(losses, {}, &std::pair<double, const char*>::first)->second;
@@ -48,7 +48,7 @@ std::string of_the_whole(const FitResult& result) {
   if (!result.converged) return "The fit failed: " + result.stopped_because + ".";
   const std::string explained = percent(result.inlier_ratio) + " of the points that were used lie on it";
   if (result.confidence >= kVerdictPolicy.well) return "The fit explains the scan: " + explained + ".";
-  const std::string doubt = explained + ". The confidence is " + percent(result.confidence) + ", above all for " +
+  const std::string doubt = explained + ". The confidence is " + percent(result.confidence) + ", lowered most by " +
                             weakest_point(result) + ".";
   if (result.confidence >= kVerdictPolicy.mostly) return "The fit explains most of the scan: " + doubt;
   return "The fit is doubtful: " + doubt;
