@@ -230,6 +230,7 @@ nlohmann::ordered_json fit_to_json(const std::vector<std::string>& verdict, cons
           {"covered", result.visible_coverage},
           {"cut_off", result.cut_off},
           {"own_size", result.own_size},
+          {"growth", result.growth},
           {"open_stretches", open_stretches_json(result)},
           {"open_poses", open_poses_json(result)},
           {"confidence", result.confidence},

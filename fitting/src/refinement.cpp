@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "orbifit/model/errors.h"
+#include "orbifit/model/mesh.h"
 
 #include "basis/subspace_parts.h"
 #include "fit_systems.h"
@@ -75,6 +76,15 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
   }
 }
 
+// Root mean square distance of a surface from its centre: with each face's area at the face's centre.
+double spread(const Mesh& mesh) {
+  const Eigen::VectorXd areas = face_areas(mesh);
+  Eigen::MatrixXd centres = Eigen::MatrixXd::Zero(mesh.faces.rows(), 3);
+  for (int corner = 0; corner < 3; ++corner) centres += mesh.vertices(mesh.faces.col(corner), Eigen::all) / 3;
+  const Eigen::RowVector3d centre = areas.transpose() * centres / areas.sum();
+  return std::sqrt(areas.dot((centres.rowwise() - centre).rowwise().squaredNorm()) / areas.sum());
+}
+
 }  // namespace
 
 void refine(const FitInput& input, const PlacedScan& start, const FitOptions& options, const RunContext& context,
@@ -90,6 +100,7 @@ void refine(const FitInput& input, const PlacedScan& start, const FitOptions& op
 #ifndef ORBIFIT_PORTABLE
   if (options.detail) add_detail(input, start, options, context, result);
 #endif
+  result.growth = spread(result.fitted) / (result.pose.scale * spread(input.mesh)) - 1;
   result.own_size = options.place && !options.fixed_scale && result.pose.scale == input.pose.scale;
   for (std::size_t k = 0; k < start.others.size(); ++k) result.others[k] = result.others[k] * start.others[k];
 }

@@ -64,6 +64,9 @@ TEST_F(Verdict, SaysThatTheSizeIsTheTemplatesOwn) {
   EXPECT_FALSE(tells(verdict(), "own size"));
   result_.own_size = true;
   EXPECT_TRUE(tells(verdict(), "The template has kept its own size: the scan asks for no other."));
+  result_.growth = -0.06;
+  EXPECT_FALSE(tells(verdict(), "own size"));
+  EXPECT_TRUE(tells(verdict(), "its new shape is 6 % smaller"));
 }
 
 TEST_F(Verdict, TellsWhatTheScanLeavesOpenOfTheSize) {

@@ -48,6 +48,21 @@ double apart(const Mesh& shape, const Mesh& other) {
   return std::sqrt((put - to).colwise().squaredNorm().mean()) / diagonal(shape.vertices);
 }
 
+// Root mean square distance of a surface from its centre.
+double spread(const Mesh& mesh) {
+  double area = 0, squared = 0;
+  Vector3d sum = Vector3d::Zero();
+  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
+    const Eigen::Matrix3d corners = mesh.vertices(mesh.faces.row(face), Eigen::all);
+    const Vector3d centre = corners.colwise().mean();
+    const double of_face = (corners.row(1) - corners.row(0)).cross(corners.row(2) - corners.row(0)).norm() / 2;
+    area += of_face;
+    sum += of_face * centre;
+    squared += of_face * centre.squaredNorm();
+  }
+  return std::sqrt(squared / area - (sum / area).squaredNorm());
+}
+
 struct Case {
   const char* model;
   std::map<std::string, double> lengths;  // of the shape that differs
@@ -74,6 +89,7 @@ TEST_P(SimplestFit, TakesNoSensorsErrorForShape) {
   ASSERT_TRUE(result.converged) << result.stopped_because;
   EXPECT_EQ(result.pose.scale, 1);
   EXPECT_TRUE(result.own_size);
+  EXPECT_LT(std::abs(result.growth), 0.002);
   EXPECT_LT(apart(result.fitted, template_.mesh), 0.001);
 }
 
@@ -83,6 +99,7 @@ TEST_P(SimplestFit, FollowsAShapeThatDiffersByMore) {
   ASSERT_TRUE(result.converged) << result.stopped_because;
   EXPECT_LT(apart(result.fitted, other), 0.5 * apart(template_.mesh, other));
   EXPECT_EQ(result.own_size, result.pose.scale == 1);
+  EXPECT_NEAR(result.pose.scale * (1 + result.growth), spread(result.fitted) / spread(template_.mesh), 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, SimplestFit,

@@ -22,6 +22,7 @@ py::dict figures_of(const FitResult& result) {
   figures["visible_coverage"] = result.visible_coverage;
   figures["cut_off"] = result.cut_off;
   figures["own_size"] = result.own_size;
+  figures["growth"] = result.growth;
   figures["open_stretch"] = result.open_stretch();
   figures["open_distance"] = result.open_distance();
   figures["confidence"] = result.confidence;

@@ -13,10 +13,11 @@ namespace {
 
 // What is worth a sentence.
 struct VerdictPolicy {
-  double well = 0.9;    // confidence: a tenth of the evidence is against it, as much as noise and outliers make of it
-  double mostly = 0.7;  // confidence: below this a person would not call it a fit
-  double part = 0.02;   // share of the scan: a handle, where an outlier is a point
-  double unseen = 0.3;  // share of the surface: more than the underside that no scanner sees
+  double well = 0.9;     // confidence: a tenth of the evidence is against it, as much as noise and outliers make of it
+  double mostly = 0.7;   // confidence: below this a person would not call it a fit
+  double part = 0.02;    // share of the scan: a handle, where an outlier is a point
+  double unseen = 0.3;   // share of the surface: more than the underside that no scanner sees
+  double growth = 0.01;  // of the size: what a tape measure shows
   std::size_t places = 3;  // of where poses differ: nobody looks at more
 };
 constexpr VerdictPolicy kVerdictPolicy;
@@ -100,6 +101,16 @@ void add_open_size(const FitResult& result, std::vector<std::string>& told) {
     told.push_back("The scan leaves the size open:" + ways + ". Stretched so, it explains the scan as well.");
 }
 
+void add_own_size(const FitResult& result, std::vector<std::string>& told) {
+  if (!result.own_size) return;
+  const double growth = std::abs(result.growth);
+  told.push_back(growth < kVerdictPolicy.growth
+                     ? "The template has kept its own size: the scan asks for no other."
+                     : "The template has kept its own scale, but its new shape is " + percent(growth) +
+                           (result.growth > 0 ? " larger: " : " smaller: ") +
+                           "if the object is known to be as large as the template, the fit is wrong by that.");
+}
+
 void add_open_poses(const FitResult& result, std::vector<std::string>& told) {
   const std::size_t count = result.open_poses.size();
   if (count == 0) return;
@@ -132,7 +143,7 @@ std::vector<std::string> fit_verdict(const FitResult& result) {
     told.push_back(percent(result.hidden_fraction) +
                    " of the surface was not seen: there symmetry and the template's shape decide.");
   }
-  if (result.own_size) told.push_back("The template has kept its own size: the scan asks for no other.");
+  add_own_size(result, told);
   add_open_size(result, told);
   add_open_poses(result, told);
   for (const GroupAgreement& group : result.groups) {
