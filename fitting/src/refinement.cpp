@@ -76,13 +76,19 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
   }
 }
 
-// Root mean square distance of a surface from its centre: with each face's area at the face's centre.
+// Root mean square distance of a surface from its centre.
 double spread(const Mesh& mesh) {
   const Eigen::VectorXd areas = face_areas(mesh);
-  Eigen::MatrixXd centres = Eigen::MatrixXd::Zero(mesh.faces.rows(), 3);
-  for (int corner = 0; corner < 3; ++corner) centres += mesh.vertices(mesh.faces.col(corner), Eigen::all) / 3;
-  const Eigen::RowVector3d centre = areas.transpose() * centres / areas.sum();
-  return std::sqrt(areas.dot((centres.rowwise() - centre).rowwise().squaredNorm()) / areas.sum());
+  const auto corner = [&](int k) -> Eigen::MatrixXd { return mesh.vertices(mesh.faces.col(k), Eigen::all); };
+  const Eigen::MatrixXd middles = (corner(0) + corner(1) + corner(2)) / 3;
+  const Eigen::RowVector3d centre = areas.transpose() * middles / areas.sum();
+  const auto squared = [&](const Eigen::MatrixXd& points) -> Eigen::VectorXd {
+    return (points.rowwise() - centre).rowwise().squaredNorm();
+  };
+  // A quadratic function's mean over a triangle.
+  const Eigen::VectorXd means =
+      (squared(corner(0)) + squared(corner(1)) + squared(corner(2)) + 9 * squared(middles)) / 12;
+  return std::sqrt(areas.dot(means) / areas.sum());
 }
 
 }  // namespace

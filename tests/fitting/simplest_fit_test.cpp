@@ -48,17 +48,17 @@ double apart(const Mesh& shape, const Mesh& other) {
   return std::sqrt((put - to).colwise().squaredNorm().mean()) / diagonal(shape.vertices);
 }
 
-// Root mean square distance of a surface from its centre.
+// Root mean square distance of a surface from its centre: by its second moments.
 double spread(const Mesh& mesh) {
   double area = 0, squared = 0;
   Vector3d sum = Vector3d::Zero();
   for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
     const Eigen::Matrix3d corners = mesh.vertices(mesh.faces.row(face), Eigen::all);
-    const Vector3d centre = corners.colwise().mean();
+    const Vector3d total = corners.colwise().sum();
     const double of_face = (corners.row(1) - corners.row(0)).cross(corners.row(2) - corners.row(0)).norm() / 2;
     area += of_face;
-    sum += of_face * centre;
-    squared += of_face * centre.squaredNorm();
+    sum += of_face * total / 3;
+    squared += of_face * (corners.squaredNorm() + total.squaredNorm()) / 12;
   }
   return std::sqrt(squared / area - (sum / area).squaredNorm());
 }
