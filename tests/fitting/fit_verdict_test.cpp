@@ -66,7 +66,7 @@ TEST_F(Verdict, SaysThatTheSizeIsTheTemplatesOwn) {
   EXPECT_TRUE(tells(verdict(), "The template has kept its own size: the scan asks for no other."));
   result_.growth = -0.06;
   EXPECT_FALSE(tells(verdict(), "own size"));
-  EXPECT_TRUE(tells(verdict(), "its new shape is 6 % smaller"));
+  EXPECT_TRUE(tells(verdict(), "its deformed shape is 6 % smaller"));
 }
 
 TEST_F(Verdict, TellsWhatTheScanLeavesOpenOfTheSize) {

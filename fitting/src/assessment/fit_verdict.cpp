@@ -106,7 +106,7 @@ void add_own_size(const FitResult& result, std::vector<std::string>& told) {
   const double growth = std::abs(result.growth);
   told.push_back(growth < kVerdictPolicy.growth
                      ? "The template has kept its own size: the scan asks for no other."
-                     : "The template has kept its own scale, but its new shape is " + percent(growth) +
+                     : "The template has kept its scale, but its deformed shape is " + percent(growth) +
                            (result.growth > 0 ? " larger: " : " smaller: ") +
                            "if the object is known to be as large as the template, the fit is wrong by that.");
 }
