@@ -3,11 +3,12 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "orbifit/model/errors.h"
-#include "orbifit/model/mesh.h"
 
 #include "basis/subspace_parts.h"
+#include "domains/piece_moments.h"
 #include "fit_systems.h"
 #include "fit_trial.h"
 #include "resolution/detail.h"
@@ -78,17 +79,11 @@ void refine_from_start(const FitInput& input, const PlacedScan& start, const Fit
 
 // Root mean square distance of a surface from its centre.
 double spread(const Mesh& mesh) {
-  const Eigen::VectorXd areas = face_areas(mesh);
-  const auto corner = [&](int k) -> Eigen::MatrixXd { return mesh.vertices(mesh.faces.col(k), Eigen::all); };
-  const Eigen::MatrixXd middles = (corner(0) + corner(1) + corner(2)) / 3;
-  const Eigen::RowVector3d centre = areas.transpose() * middles / areas.sum();
-  const auto squared = [&](const Eigen::MatrixXd& points) -> Eigen::VectorXd {
-    return (points.rowwise() - centre).rowwise().squaredNorm();
-  };
-  // A quadratic function's mean over a triangle.
-  const Eigen::VectorXd means =
-      (squared(corner(0)) + squared(corner(1)) + squared(corner(2)) + 9 * squared(middles)) / 12;
-  return std::sqrt(areas.dot(means) / areas.sum());
+  const std::vector<int> one_set(static_cast<std::size_t>(mesh.faces.rows()), 0);
+  const Eigen::Vector3d origin = mesh.vertices.colwise().mean();
+  const PieceMoments moments = moments_of_sets(mesh, one_set, 1, origin).front();
+  const Eigen::Vector3d centre = moments.first / moments.area;
+  return std::sqrt(moments.second.trace() / moments.area - centre.squaredNorm());
 }
 
 }  // namespace

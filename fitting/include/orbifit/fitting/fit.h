@@ -137,8 +137,8 @@ struct FitResult {
   std::vector<FitIteration> iterations;
   /// Whether any size was allowed and the template has kept its own, since the scan asks for no other.
   bool own_size = false;
-  /// By how much its deformation has made it larger, beside the template in its pose: of the root mean square distance
-  /// of its surface from the surface's centre, the ratio less one.
+  /// By how much the deformation has made it larger than the template in its pose: the ratio, less one, of the
+  /// surfaces' root mean square distances from their centres, without unit. 0 of a fit that failed.
   double growth = 0;
   int iterations_in_all = 0;  ///< with those of fits that were not kept
   bool converged = false;
