@@ -740,6 +740,56 @@ TEST(ConsistentAnnotation, RegionsBeyondTheToleranceGiveWay) {
   }
 }
 
+// Blocks in a row, of which the last was broken: the row's mirror leaves it and its image out. It could not keep the
+// first block's group else, of which it has no image, nor then the others'.
+TEST(ConsistentAnnotation, ARegionLeavesOutWhatHasLostItsImage) {
+  constexpr int kPairs = 3;
+  const Mesh block = body({0.3, 0.3, 0.5}, 4);  // whose triangles its mirrors take to one another
+  const auto middle = [](const Mesh& of, Eigen::Index face) {
+    double sum = 0;
+    for (const int vertex : of.faces.row(face)) sum += of.vertices(vertex, 0);
+    return sum / 3;
+  };
+  Mesh mesh;
+  std::vector<int> row;  // what the mirror keeps
+  std::vector<std::vector<int>> blocks;
+  SymmetryAnnotation annotation;
+  for (int k = -kPairs; k <= kPairs; ++k) {
+    if (k == 0) continue;
+    Mesh part = placed(block, {Eigen::Matrix3d::Identity(), Vector3d(k, 0, 0)});
+    std::vector<Eigen::Index> left;
+    for (Eigen::Index f = 0; f < part.faces.rows(); ++f) {
+      if (k < kPairs || middle(part, f) < kPairs) left.push_back(f);
+    }
+    part.faces = Triangles(part.faces(left, Eigen::all));
+    blocks.push_back(append(mesh, part));
+    for (const int face : blocks.back()) {
+      if (k > -kPairs || middle(mesh, face) > -kPairs) row.push_back(face);
+    }
+    if (k == kPairs) continue;
+    annotation.regions.push_back(make_region(PointGroup::parse("D4h").value(), {static_cast<double>(k), 0, 0},
+                                             frame_about(Vector3d::UnitZ()), blocks.back(), "block"));
+  }
+  annotation.regions.push_back(
+      make_region(PointGroup::parse("Cs").value(), Vector3d::Zero(), frame_about(Vector3d::UnitX()), row, "row"));
+  SymmetryAnnotation given = empty_annotation(mesh, 0.005);
+  given.regions = annotation.regions;
+  for (std::size_t i = 0; i < given.regions.size(); ++i) given.regions[i].id = static_cast<int>(i);
+  set_parents(given.regions);
+  const ConsistentAnnotation result = consistent_annotation(mesh, given, RunContext{});
+  ASSERT_EQ(result.annotation.regions.size(), given.regions.size()) << said(result);
+  std::vector<int> inner;
+  for (std::size_t i = 1; i + 1 < blocks.size(); ++i) inner.insert(inner.end(), blocks[i].begin(), blocks[i].end());
+  for (const Region& region : result.annotation.regions) {
+    if (region.name == "row") {
+      EXPECT_EQ(region.faces, inner);
+    } else {
+      EXPECT_EQ(region.faces.size(), static_cast<std::size_t>(block.faces.rows()));
+    }
+  }
+  expect_exact(mesh, result.annotation);
+}
+
 // Wheels of one axle that nothing else relates, each with a lug: they lie on nearly one line, and each turns about its
 // own, or its mirror would not keep it.
 TEST(ConsistentAnnotation, WheelsOfOneAxleTurnEachAboutItsOwn) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,17 @@ namespace orbifit {
 namespace {
 
 using Excluded = std::map<Claim, std::string>;
+using Yielded = std::map<std::size_t, std::vector<int>>;  // by region: the faces that it keeps
+
+// How what contradicts one another is kept apart.
+struct Concessions {
+  Excluded excluded;
+  Yielded yielded;
+
+  friend bool operator<(const Concessions& a, const Concessions& b) {
+    return std::tie(a.excluded, a.yielded) < std::tie(b.excluded, b.yielded);
+  }
+};
 
 class Choice {
  public:
@@ -24,6 +36,7 @@ class Choice {
       : mesh_(surface.mesh),
         annotation_(annotation),
         context_(context),
+        surface_(surface),
         shapes_(ConsistencySearch::shapes_of(surface, annotation)) {}
 
   std::optional<ConsistentAnnotation> run() {
@@ -33,9 +46,10 @@ class Choice {
       for (std::size_t i = 0; i < annotation_.regions.size(); ++i) savings_[{false, i}] = search.saving({false, i});
       for (std::size_t i = 0; i < annotation_.patterns.size(); ++i) savings_[{true, i}] = search.saving({true, i});
     }
-    best_ = search(excluded_);
+    best_ = search(conceded_);
     while (prefer_a_pattern()) {
     }
+    yield_to_all();
     while (improve()) {
     }
     readmit();
@@ -44,9 +58,20 @@ class Choice {
   }
 
  private:
-  ConsistencyOutcome search(const Excluded& excluded) {
-    return ConsistencySearch(mesh_, annotation_, shapes_, excluded, preferred_, context_).run();
+  ConsistencyOutcome search(const Concessions& conceded) {
+    if (conceded.yielded.empty()) {
+      return ConsistencySearch(mesh_, annotation_, shapes_, conceded.excluded, preferred_, context_).run();
+    }
+    SymmetryAnnotation yielding = annotation_;
+    for (const auto& [region, faces] : conceded.yielded) yielding.regions[region].faces = faces;
+    RegionShapes shapes = ConsistencySearch::shapes_of(surface_, yielding);
+    ConsistencyOutcome result =
+        ConsistencySearch(mesh_, yielding, shapes, conceded.excluded, preferred_, context_).run();
+    work_ += shapes.work();
+    return result;
   }
+
+  bool has_time() const { return work_ + shapes_.work() < ConsistencyPolicy{}.work; }
 
   double saving(const std::vector<Claim>& family) const {
     double sum = 0;
@@ -70,10 +95,10 @@ class Choice {
     std::ranges::stable_sort(refused, std::greater<>(), &Refused::saving);
     for (const Refused& each : refused) {
       const Claim& claim = each.claims.front();
-      if (shapes_.work() >= ConsistencyPolicy{}.work) return false;
+      if (!has_time()) return false;
       if (!claim.pattern || !tried_patterns_.insert(claim.number).second) continue;
       preferred_.insert(claim.number);
-      if (take(excluded_, search(excluded_))) return true;
+      if (take(conceded_, search(conceded_))) return true;
       preferred_.erase(claim.number);
     }
     return false;
@@ -90,24 +115,77 @@ class Choice {
     for (const Refused& each : refused) {
       if (each.against.empty()) continue;
       const auto cost = [&](const std::vector<Claim>& family) { return saving(family); };
-      changes.push_back({each.saving - cost(*std::ranges::min_element(each.against, {}, cost)), &each});
+      const double least = cost(*std::ranges::min_element(each.against, {}, cost));
+      Yielded yielded = conceded_.yielded;
+      const double yielding = yield(each, yielded).value_or(least);
+      changes.push_back({each.saving - std::min(least, yielding), &each});
     }
     std::ranges::stable_sort(changes, std::greater<>(), &Change::gain);
     return std::ranges::any_of(changes, [&](const Change& change) { return kept_instead(*change.refused); });
   }
 
-  // Leaves out what bars the first of the refused claims, of several that which saves least, until nothing does or it
-  // would cost more than it brings.
+  // Lets what bars refused claims leave the faces that have lost their image, with all images under its group.
+  // \return what that costs; nothing where it cannot be, since less would be left than a region must keep, or where it
+  // has none of the faces
+  std::optional<double> yield(const Refused& refused, Yielded& yielded) {
+    if (!refused.bar) return std::nullopt;
+    const Claim& bar = refused.bar->claim;
+    const Region& region = annotation_.regions[bar.number];
+    const std::optional<GroupPlace> place = place_of(region);
+    if (!place) return std::nullopt;
+    const auto known = yielded.find(bar.number);
+    const int count = shapes_.count();
+    const int now = shapes_.add(known == yielded.end() ? region.faces : known->second);
+    const std::vector<int> taken = shapes_.faces_at(now, shapes_.add(refused.bar->faces));
+    std::vector<int> rest = taken.empty() ? std::vector<int>{} : shapes_.without_orbit(now, taken, *place);
+    const double before = shapes_.area(now);
+    shapes_.keep(count);
+    const double given = shapes_.area(static_cast<int>(bar.number));
+    const double left = shapes_.area_of(rest);
+    if (taken.empty() || left < ConsistencyPolicy{}.left * given) return std::nullopt;
+    yielded[bar.number] = std::move(rest);
+    return savings_.at(bar) * (before - left) / given;
+  }
+
+  // Lets whatever bars refused claims leave faces to all of them at once, as long as each brings more than it costs;
+  // what bars them then is known only once it has.
+  void yield_to_all() {
+    Concessions trial = conceded_;
+    std::vector<Refused> refused = best_.refused;
+    while (has_time()) {
+      const Yielded before = trial.yielded;
+      std::ranges::stable_sort(refused, std::greater<>(), &Refused::saving);
+      for (const Refused& each : refused) {
+        Yielded yielded = trial.yielded;
+        const std::optional<double> cost = yield(each, yielded);
+        if (cost && *cost < each.saving) trial.yielded = std::move(yielded);
+      }
+      if (trial.yielded == before || !tried_.emplace(trial).second) return;
+      const ConsistencyOutcome outcome = search(trial);
+      take(trial, outcome);
+      refused = outcome.refused;
+    }
+  }
+
+  // Lets what bars the first of the refused claims leave faces, or leaves out, of several that do, that which saves
+  // least, until nothing does or it would cost more than it brings.
   bool kept_instead(Refused refused) {
     const Claim wanted = refused.claims.front();
-    Excluded trial = excluded_;
+    Concessions trial = conceded_;
     double cost = 0;
-    while (!refused.against.empty() && shapes_.work() < ConsistencyPolicy{}.work) {
+    while (!refused.against.empty() && has_time()) {
       const auto least = std::ranges::min_element(refused.against, {}, [&](const auto& f) { return saving(f); });
-      cost += saving(*least);
+      Yielded yielded = trial.yielded;
+      const std::optional<double> yielding = yield(refused, yielded);
+      const bool yields = yielding && *yielding < saving(*least);
+      cost += yields ? *yielding : saving(*least);
       if (cost >= best_.refused_saving()) return false;
-      const std::string reason = "it contradicts " + name_of(wanted) + ", which saves more";
-      for (const Claim& claim : *least) trial.emplace(claim, reason);
+      if (yields) {
+        trial.yielded = std::move(yielded);
+      } else {
+        const std::string reason = "it contradicts " + name_of(wanted) + ", which saves more";
+        for (const Claim& claim : *least) trial.excluded.emplace(claim, reason);
+      }
       if (!tried_.emplace(trial).second) return false;
       ConsistencyOutcome outcome = search(trial);
       if (take(trial, outcome)) return true;
@@ -123,34 +201,40 @@ class Choice {
   }
 
   // \return whether what the outcome keeps saves more than the best so far
-  bool take(const Excluded& excluded, const ConsistencyOutcome& outcome) {
+  bool take(const Concessions& conceded, const ConsistencyOutcome& outcome) {
     if (!(outcome.saving > (1 + 1e-9) * best_.saving)) return false;
     best_ = outcome;
-    excluded_ = excluded;
+    conceded_ = conceded;
     return true;
   }
 
   // What was left out on the way and does no harm.
   void readmit() {
-    const Excluded all = excluded_;
-    for (const auto& [claim, reason] : all) {
-      if (shapes_.work() >= ConsistencyPolicy{}.work) return;
-      Excluded trial = excluded_;
-      trial.erase(claim);
-      if (trial.size() != excluded_.size() && tried_.emplace(trial).second) take(trial, search(trial));
+    const auto without = [&](const auto& given_up) {
+      Concessions trial = conceded_;
+      if (given_up(trial) && has_time() && tried_.emplace(trial).second) take(trial, search(trial));
+    };
+    const Concessions all = conceded_;
+    for (const auto& each : all.excluded) {
+      without([&](Concessions& c) { return c.excluded.erase(each.first) > 0; });
+    }
+    for (const auto& each : all.yielded) {
+      without([&](Concessions& c) { return c.yielded.erase(each.first) > 0; });
     }
   }
 
   const Mesh& mesh_;
   const SymmetryAnnotation& annotation_;
   const RunContext& context_;
-  RegionShapes shapes_;
-  Excluded excluded_;
+  const ShapeSurface& surface_;
+  RegionShapes shapes_;   // of the annotation as it is
+  std::size_t work_ = 0;  // that others took
+  Concessions conceded_;
   std::set<std::size_t> preferred_;       // patterns with which all else is to agree
   std::set<std::size_t> tried_patterns_;  // that were, or would have been
   std::map<Claim, double> savings_;       // of all claims, whole
   ConsistencyOutcome best_;
-  std::set<Excluded> tried_;
+  std::set<Concessions> tried_;
 };
 
 }  // namespace

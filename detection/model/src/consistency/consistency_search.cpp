@@ -94,7 +94,7 @@ void ConsistencySearch::leave_out_pattern(std::size_t number, const std::string&
 }
 
 void ConsistencySearch::refuse(std::vector<Claim> claims, const Refusal& refusal) {
-  Refused refused{std::move(claims), refusal.reason, 0, {}};
+  Refused refused{std::move(claims), refusal.reason, 0, {}, {}};
   for (const Claim& claim : refused.claims) {
     refused.saving += saving(claim);
     if (claim.pattern) {
@@ -108,7 +108,14 @@ void ConsistencySearch::refuse(std::vector<Claim> claims, const Refusal& refusal
     return std::ranges::any_of(
         family, [&](const Claim& claim) { return std::ranges::find(refused.claims, claim) != refused.claims.end(); });
   });
+  if (refusal.bar && may_leave_faces(*refusal.bar)) refused.bar = refusal.bar;
   refused_.push_back(std::move(refused));
+}
+
+// Whether the bar is a region of the annotation, which may leave faces to others. Those of the whole never do.
+bool ConsistencySearch::may_leave_faces(const Bar& bar) const {
+  return !bar.claim.pattern && bar.claim.number < regions_.size() && regions_[bar.claim.number].source < 0 &&
+         !is_everything(bar.claim);
 }
 
 // The families of claims that are in the way of something, without those of the whole, which are never given up.

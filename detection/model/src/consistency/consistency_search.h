@@ -48,12 +48,20 @@ struct ConsistencyPolicy {
   std::size_t work = 20000000;
 };
 
+/// A region whose motions take part of a claim past an end of the surface, as where it was cut or something broke off,
+/// and the faces that it could leave, so that it says nothing of what has lost its image.
+struct Bar {
+  Claim claim;
+  std::vector<int> faces;  ///< ascending
+};
+
 /// Claims that stand or fall together: a region and those that the groups around take it to; or a pattern.
 struct Refused {
   std::vector<Claim> claims;  ///< not empty
   std::string reason;
   double saving = 0;                        ///< what they would have saved
   std::vector<std::vector<Claim>> against;  ///< families that are in the way, of which leaving out one may do
+  std::optional<Bar> bar;                   ///< or letting this leave faces
 };
 
 /// What one search keeps.
@@ -164,6 +172,7 @@ class ConsistencySearch {
     std::optional<std::size_t> across{};  // the region that overlaps `shape`, where neither holds the other
     int shape = -1;
     std::vector<std::size_t> first{};  // regions to be placed before it can be
+    std::optional<Bar> bar{};
   };
   using Verdict = std::optional<Refusal>;  // nothing: it can
 
@@ -175,7 +184,7 @@ class ConsistencySearch {
   void place_family(std::size_t first);
   bool give_up_alike(const Family& family, std::size_t regions_before, int shapes_before, GivenUp& given_up);
   void note_given_up(const Family& family, const std::vector<Claim>& takers);
-  void refuse_family(const Family& family, std::size_t regions_before, const GivenUp& given_up, const Refusal& refusal);
+  void refuse_family(const Family& family, std::size_t regions_before, const GivenUp& given_up, Refusal refusal);
   bool trim(std::size_t region, int other);
   bool trim_alike(const Family& family);
   Verdict gather(std::size_t first, Family& family);
@@ -194,6 +203,7 @@ class ConsistencySearch {
   void refuse(std::vector<Claim> claims, const Refusal& refusal);
   std::vector<Claim> family_of(const Claim& claim) const;
   std::vector<std::vector<Claim>> against(const std::vector<Claim>& claims) const;
+  bool may_leave_faces(const Bar& bar) const;
   bool is_everything(const Claim& claim) const;
   double credit(const Region& region) const;
   double saving(std::size_t region) const;

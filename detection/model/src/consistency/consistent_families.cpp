@@ -88,7 +88,11 @@ ConsistencySearch::Verdict ConsistencySearch::add_image(const Move& move, std::s
   const Member member = family.members[at];
   const int shape = regions_[member.region].shape;
   const Refusal nowhere{"the group of " + name_of(move) + " takes it where there is no such region", {mover_of(move)}};
-  if (!shapes_.within(shape, move.domain)) return Refusal{nowhere.reason, nowhere.by, member.region, move.domain};
+  if (!shapes_.within(shape, move.domain)) {
+    Refusal across{nowhere.reason, nowhere.by, member.region, move.domain};
+    if (shapes_.past_the_end(shape, move.motion)) across.bar = Bar{mover_of(move), shapes_.faces(shape)};
+    return across;
+  }
   const GroupPlace& first = *regions_[family.members.front().region].place;
   const Motion way = move.motion * member.way;
   const GroupPlace place = image_of(first, way);

@@ -145,7 +145,7 @@ bool ConsistencySearch::trim_alike(const Family& family) {
 
 // What a family gave up counts as refused: without what takes it, all of it could be kept.
 void ConsistencySearch::note_given_up(const Family& family, const std::vector<Claim>& takers) {
-  Refused refused{{}, "it gives up what others take of it", 0, against(takers)};
+  Refused refused{{}, "it gives up what others take of it", 0, against(takers), {}};
   for (const Member& member : family.members) {
     if (regions_[member.region].source >= 0) continue;
     refused.claims.push_back({false, member.region});
@@ -175,9 +175,13 @@ bool ConsistencySearch::give_up_alike(const Family& family, std::size_t regions_
 }
 
 void ConsistencySearch::refuse_family(const Family& family, std::size_t regions_before, const GivenUp& given_up,
-                                      const Refusal& refusal) {
+                                      Refusal refusal) {
   for (const auto& [region, before] : given_up.before) {
     std::tie(regions_[region].shape, regions_[region].region.faces) = before;
+    if (!refusal.bar) continue;
+    std::vector<int> whole;
+    std::ranges::set_union(refusal.bar->faces, before.second, std::back_inserter(whole));
+    refusal.bar->faces = std::move(whole);
   }
   std::vector<Claim> claims;
   for (const Member& member : family.members) {
@@ -229,7 +233,7 @@ void ConsistencySearch::place_family(std::size_t first) {
   }
   placing_.erase(first);
   if (refusal) {
-    refuse_family(family, regions_before, given_up, *refusal);
+    refuse_family(family, regions_before, given_up, std::move(*refusal));
     return;
   }
   if (!given_up.before.empty()) note_given_up(family, given_up.takers);

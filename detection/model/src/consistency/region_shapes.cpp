@@ -13,6 +13,7 @@
 #include "base/disjoint_sets.h"
 #include "domains/vertex_sets.h"
 #include "geometry/grid_cell.h"
+#include "geometry/topology.h"
 
 namespace orbifit {
 
@@ -90,6 +91,26 @@ double spread(int number, int base) {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::array<bool, 3>> open_edges(const Mesh& mesh) {
+  std::vector<std::array<bool, 3>> result(static_cast<std::size_t>(mesh.faces.rows()), {false, false, false});
+  const Weld weld = weld_vertices(mesh.vertices);
+  for (const Edge& edge : welded_edges(mesh, weld)) {
+    if (edge.faces.size() != 1) continue;
+    const int face = edge.faces.front();
+    for (int k = 0; k < 3; ++k) {
+      const int corner = weld.group_of_vertex[static_cast<std::size_t>(mesh.faces(face, k))];
+      if (std::ranges::find(edge.vertices, corner) == edge.vertices.end()) {
+        result[static_cast<std::size_t>(face)][static_cast<std::size_t>(k)] = true;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& running)
     : mesh(of),
       context(running),
@@ -99,6 +120,7 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
       centroids(face_centroids(of)),
+      open(open_edges(of)),
       index(of),
       vertex_images(of.vertices, kDoublet * diagonal) {}
 
@@ -432,6 +454,25 @@ double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double 
       ++all;
   }
   return static_cast<double>(all) / static_cast<double>(known.samples.rows());
+}
+
+bool RegionShapes::past_the_end(int shape, const Motion& motion) const {
+  constexpr double kOnEdge = 1e-9;  // barycentric
+  const Points& samples = at(shape).samples;
+  work_ += static_cast<std::size_t>(samples.rows());
+  Eigen::Index past = 0;
+  for (Eigen::Index k = 0; k < samples.rows(); ++k) {
+    const Vector3d image = motion(samples.row(k).transpose());
+    if (surface_.index.within(image, surface_.near)) continue;
+    const SurfaceIndex::Nearest nearest = surface_.index.nearest(image);
+    const std::array<bool, 3>& open = surface_.open[static_cast<std::size_t>(nearest.face)];
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      if (!open[corner] || nearest.barycentric[static_cast<Eigen::Index>(corner)] > kOnEdge) continue;
+      ++past;
+      break;
+    }
+  }
+  return static_cast<double>(past) > kSliver * static_cast<double>(samples.rows());
 }
 
 Residual RegionShapes::residual(int shape, const std::vector<Motion>& motions) const {

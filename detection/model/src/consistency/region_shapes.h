@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -41,7 +42,8 @@ struct ShapeSurface {
   Eigen::Vector3d origin;            ///< of moments
   std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
   Eigen::VectorXd areas;
-  Points centroids;  ///< of faces
+  Points centroids;                       ///< of faces
+  std::vector<std::array<bool, 3>> open;  ///< by face and corner: whether its other edge has no other face
   SurfaceIndex index;
   mutable VertexImages vertex_images;
   mutable Answers<double> arrived, distances;
@@ -124,6 +126,10 @@ class RegionShapes {
 
   /// Share of the shape's samples that all the motions keep within `near` of it.
   double kept(int shape, const std::vector<Motion>& motions, double near) const;
+
+  /// Whether `motion` takes more than a sliver of the shape past an end of the surface: of all the surface, an edge
+  /// without a face beyond it is nearest then.
+  bool past_the_end(int shape, const Motion& motion) const;
 
   /// Distances of the samples' images from the shape, root mean square and largest, fractions of the diagonal.
   Residual residual(int shape, const std::vector<Motion>& motions) const;
