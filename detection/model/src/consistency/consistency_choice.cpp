@@ -124,9 +124,9 @@ class Choice {
     return std::ranges::any_of(changes, [&](const Change& change) { return kept_instead(*change.refused); });
   }
 
-  // Lets what bars refused claims leave the faces that have lost their image, with all images under its group.
-  // \return what that costs; nothing where it cannot be, since less would be left than a region must keep, or where it
-  // has none of the faces
+  // Lets the region that bars refused claims leave the faces that have lost their image, with all that its group takes
+  // them to. \return what that costs; nothing where no such region bars them, it has none of the faces, or less would
+  // be left of it than a region must keep
   std::optional<double> yield(const Refused& refused, Yielded& yielded) {
     if (!refused.bar) return std::nullopt;
     const Claim& bar = refused.bar->claim;
@@ -147,8 +147,8 @@ class Choice {
     return savings_.at(bar) * (before - left) / given;
   }
 
-  // Lets whatever bars refused claims leave faces to all of them at once, as long as each brings more than it costs;
-  // what bars them then is known only once it has.
+  // The same for all refused claims at once, of which each brings more than it costs. What bars them after that only
+  // another search tells, so this goes on until nothing more is left to them.
   void yield_to_all() {
     Concessions trial = conceded_;
     std::vector<Refused> refused = best_.refused;
@@ -167,8 +167,8 @@ class Choice {
     }
   }
 
-  // Lets what bars the first of the refused claims leave faces, or leaves out, of several that do, that which saves
-  // least, until nothing does or it would cost more than it brings.
+  // Until nothing bars the first of the refused claims, or it would cost more than it brings: lets the region that does
+  // leave faces, or leaves out what does, of several that which saves least.
   bool kept_instead(Refused refused) {
     const Claim wanted = refused.claims.front();
     Concessions trial = conceded_;

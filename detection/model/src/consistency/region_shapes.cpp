@@ -91,26 +91,6 @@ double spread(int number, int base) {
 
 }  // namespace
 
-namespace {
-
-std::vector<std::array<bool, 3>> open_edges(const Mesh& mesh) {
-  std::vector<std::array<bool, 3>> result(static_cast<std::size_t>(mesh.faces.rows()), {false, false, false});
-  const Weld weld = weld_vertices(mesh.vertices);
-  for (const Edge& edge : welded_edges(mesh, weld)) {
-    if (edge.faces.size() != 1) continue;
-    const int face = edge.faces.front();
-    for (int k = 0; k < 3; ++k) {
-      const int corner = weld.group_of_vertex[static_cast<std::size_t>(mesh.faces(face, k))];
-      if (std::ranges::find(edge.vertices, corner) == edge.vertices.end()) {
-        result[static_cast<std::size_t>(face)][static_cast<std::size_t>(k)] = true;
-      }
-    }
-  }
-  return result;
-}
-
-}  // namespace
-
 ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& running)
     : mesh(of),
       context(running),
@@ -120,9 +100,27 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
       centroids(face_centroids(of)),
-      open(open_edges(of)),
       index(of),
       vertex_images(of.vertices, kDoublet * diagonal) {}
+
+const std::vector<std::array<bool, 3>>& ShapeSurface::open_edges() const {
+  if (open_edges_) return *open_edges_;
+  std::vector<std::array<bool, 3>>& result = open_edges_.emplace();
+  const Weld weld = weld_vertices(mesh.vertices);
+  for (const Edge& edge : welded_edges(mesh, weld)) {
+    if (edge.faces.size() != 1) continue;
+    if (result.empty()) result.resize(static_cast<std::size_t>(mesh.faces.rows()));
+    const int face = edge.faces.front();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int vertex = mesh.faces(face, static_cast<Eigen::Index>(k));
+      const int corner = weld.group_of_vertex[static_cast<std::size_t>(vertex)];
+      if (std::ranges::find(edge.vertices, corner) == edge.vertices.end()) {
+        result[static_cast<std::size_t>(face)][k] = true;
+      }
+    }
+  }
+  return result;
+}
 
 int RegionShapes::add(const std::vector<int>& faces) {
   work_ += faces.size();
@@ -457,7 +455,8 @@ double RegionShapes::kept(int shape, const std::vector<Motion>& motions, double 
 }
 
 bool RegionShapes::past_the_end(int shape, const Motion& motion) const {
-  constexpr double kOnEdge = 1e-9;  // barycentric
+  const std::vector<std::array<bool, 3>>& open = surface_.open_edges();
+  if (open.empty()) return false;
   const Points& samples = at(shape).samples;
   work_ += static_cast<std::size_t>(samples.rows());
   Eigen::Index past = 0;
@@ -465,9 +464,10 @@ bool RegionShapes::past_the_end(int shape, const Motion& motion) const {
     const Vector3d image = motion(samples.row(k).transpose());
     if (surface_.index.within(image, surface_.near)) continue;
     const SurfaceIndex::Nearest nearest = surface_.index.nearest(image);
-    const std::array<bool, 3>& open = surface_.open[static_cast<std::size_t>(nearest.face)];
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      if (!open[corner] || nearest.barycentric[static_cast<Eigen::Index>(corner)] > kOnEdge) continue;
+    if (nearest.face < 0) continue;
+    const std::array<bool, 3>& edges = open[static_cast<std::size_t>(nearest.face)];
+    for (std::size_t corner = 0; corner < 3; ++corner) {  // a point on an edge has no share of the corner opposite
+      if (!edges[corner] || nearest.barycentric[static_cast<Eigen::Index>(corner)] > 0) continue;
       ++past;
       break;
     }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -42,14 +43,20 @@ struct ShapeSurface {
   Eigen::Vector3d origin;            ///< of moments
   std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
   Eigen::VectorXd areas;
-  Points centroids;                       ///< of faces
-  std::vector<std::array<bool, 3>> open;  ///< by face and corner: whether its other edge has no other face
+  Points centroids;  ///< of faces
   SurfaceIndex index;
   mutable VertexImages vertex_images;
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;
   mutable std::size_t faces_remembered = 0;  ///< in these
+
+  /// By face and corner: whether the edge opposite to it has no other face. Empty of a closed surface. Found when it is
+  /// first asked for, O(F log F).
+  const std::vector<std::array<bool, 3>>& open_edges() const;
+
+ private:
+  mutable std::optional<std::vector<std::array<bool, 3>>> open_edges_;
 };
 
 /// Sets of faces of one mesh, called shapes, and whether motions take one to another. What two shapes have in common by

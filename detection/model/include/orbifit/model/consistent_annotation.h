@@ -52,11 +52,11 @@ struct ConsistentAnnotation {
 /// What contradicts what is only known by then, so this is done several times: what was refused is kept instead of what
 /// barred it where that saves more, and so is what was given up. A region of order |G| saves its area log2 |G| times,
 /// as often as its group halves it, less where its residual is beyond the tolerance, by as many times; a pattern of n
-/// instances saves theirs log2 n times. Regions of the whole are never given up. Where motions of a
-/// region take part of another past an end of the surface, as where it was cut, the region leaves out all of the other,
-/// with all images of that, if that saves more, as long as half of it stays. Of regions on the same faces what both
-/// save by the same elements counts once. What a region holds of another but for a sliver at the border counts as all
-/// of it. At last regions give up faces around vertices whose images lie in regions that they do not.
+/// instances saves theirs log2 n times. Regions of the whole are never given up. Where motions of a region take part of
+/// another past an end of the surface, as where it was cut, the region leaves out all of the other, with all images of
+/// that, if that saves more, as long as half of it stays. Of regions on the same faces what both save by the same
+/// elements counts once. What a region holds of another but for a sliver at the border counts as all of it. At last
+/// regions give up faces around vertices whose images lie in regions that they do not.
 ///
 /// An annotation that is consistent comes back as it is.
 /// \pre the annotation fits the mesh (read_annotation checks it)
