@@ -1,6 +1,8 @@
 // What takes all stages together, on models of the detection suite.
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,7 @@
 
 #include "orbifit/detection/detect.h"
 
+#include "cases/spoil.h"
 #include "group/verification.h"
 #include "remeshing/remesh.h"
 #include "suite/detection_suite.h"
@@ -119,6 +122,23 @@ TEST(DetectSuite, TheSameIsFoundInAnyPose) {
     EXPECT_LT((found.regions[r].centre - motion(expected.regions[r].centre)).norm(), 1e-6 * diagonal(mesh.vertices));
   }
 }
+
+// What a turned shape has left to turn about once a piece is off it, whichever way it is cut.
+class CutVase : public testing::TestWithParam<int> {};
+
+TEST_P(CutVase, KeepsItsAxis) {
+  Mesh mesh = suite_model("vase").mesh;
+  const double size = diagonal(mesh.vertices);
+  const double turn = GetParam() * std::numbers::pi / 5;
+  const Eigen::Vector3d outwards(std::cos(turn), std::sin(turn), 0.4);
+  const Eigen::Vector3d centre = bounding_box_centre(mesh.vertices);
+  const HalfSpace removed{centre + 0.12 * size * outwards.normalized(), outwards};
+  mesh = cut(subdivided(mesh, 0.02 * size).mesh, removed).mesh;
+  RunContext context;
+  EXPECT_EQ(count_of(detect(mesh, {}, context), "Cinfv"), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Directions, CutVase, testing::Range(0, 5));
 
 }  // namespace
 }  // namespace orbifit

@@ -216,6 +216,12 @@ bool passes(const Verification& verification, const VerificationLimits& limits) 
   return objection(verification, limits).empty();
 }
 
+bool only_a_blot_fails(const Verification& verification, const VerificationLimits& limits) {
+  VerificationLimits others = limits;
+  others.cluster = 1;
+  return verification.cluster > limits.cluster && passes(verification, others);
+}
+
 std::string objection(const Verification& verification, const VerificationLimits& limits) {
   const auto percent = [](double share) {
     std::array<char, 16> text{};

@@ -47,6 +47,9 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
 
 bool passes(const Verification& verification, const VerificationLimits& limits = {});
 
+/// Whether nothing but a blot is against it: few looks see one as two or three samples, of which more looks may decide.
+bool only_a_blot_fails(const Verification& verification, const VerificationLimits& limits = {});
+
 /// Why it does not pass, in words for an explanation; empty where it does.
 std::string objection(const Verification& verification, const VerificationLimits& limits = {});
 

@@ -117,7 +117,7 @@ class RevolutionSearch {
       const Verification verification = verify_group(patch, region.placement, context_);
       reason = objection(verification);
       if (reason.empty()) return take_out_discs(patch, std::move(region));
-      if (!options_.fine) break;
+      if (!options_.fine && !only_a_blot_fails(verification)) break;
       const Line better{region.placement.centre, region.placement.frame.col(2)};
       std::vector<int> fewer =
           faces_about(better, round == 0 ? whole_ : *patch.index, kFacesSlack * continuous_tolerance(patch), kAngles);

@@ -199,13 +199,18 @@ class GroupSearch {
     return group.continuous() ? continuous_tolerance(patch_) : patch_.tolerance;
   }
 
-  // Verifies on fewer samples the larger the group; the winner is verified on all of them in the end.
+  // Verifies on fewer samples the larger the group; the winner is verified on all of them in the end. How large a blot
+  // is, of which few samples see two or three, all decide.
   bool check(const GroupPlacement& placement) const {
     if ((placement.centre - centre_).norm() > 0.1 * patch_.moments.radius) return false;
     const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-    const int samples = thorough_ ? 0 : std::max(250, 12000 / static_cast<int>(motions.size()));
     const VerificationLimits limits = limits_of(patch_);
-    return passes(verify(patch_, motions, tolerance_of(placement.group), samples, limits.joint, context_), limits);
+    const auto verified = [&](int samples) {
+      return verify(patch_, motions, tolerance_of(placement.group), samples, limits.joint, context_);
+    };
+    const Verification few = verified(thorough_ ? 0 : std::max(250, 12000 / static_cast<int>(motions.size())));
+    if (passes(few, limits)) return true;
+    return !thorough_ && only_a_blot_fails(few, limits) && passes(verified(0), limits);
   }
 
   // Refines and verifies a template; keeps it if it is larger than the best.
