@@ -47,7 +47,7 @@ Verification verify(const SurfacePatch& patch, const std::vector<Motion>& motion
 
 bool passes(const Verification& verification, const VerificationLimits& limits = {});
 
-/// Whether nothing but a blot is against it: few looks see one as two or three samples, of which more looks may decide.
+/// Whether nothing but a blot is against it. How large a blot is, few samples or angles do not tell: more may decide.
 bool only_a_blot_fails(const Verification& verification, const VerificationLimits& limits = {});
 
 /// Why it does not pass, in words for an explanation; empty where it does.

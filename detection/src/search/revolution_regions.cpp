@@ -96,8 +96,8 @@ class RevolutionSearch {
   RevolutionRegions take() { return {std::move(found_), std::move(axes_)}; }
 
  private:
-  // Collects faces about the axis and fits it to them; where the surface is fine, again with the better axis, and then
-  // within what was collected, until what is left turns.
+  // Collects faces about the axis and fits it to them; where the surface is fine, or only a blot fails, again with the
+  // better axis and more angles, and then within what was collected, until what is left turns.
   void collect_about(const Line& axis) {
     constexpr int kRounds = 6;
     RefinementOptions quick;  // all rotations move the axis together: few samples of each will do

@@ -208,9 +208,10 @@ class GroupSearch {
     const auto verified = [&](int samples) {
       return verify(patch_, motions, tolerance_of(placement.group), samples, limits.joint, context_);
     };
-    const Verification few = verified(thorough_ ? 0 : std::max(250, 12000 / static_cast<int>(motions.size())));
-    if (passes(few, limits)) return true;
-    return !thorough_ && only_a_blot_fails(few, limits) && passes(verified(0), limits);
+    const int samples = std::max(250, 12000 / static_cast<int>(motions.size()));
+    if (thorough_ || static_cast<std::size_t>(samples) >= patch_.at_crease.size()) return passes(verified(0), limits);
+    const Verification few = verified(samples);
+    return passes(few, limits) || (only_a_blot_fails(few, limits) && passes(verified(0), limits));
   }
 
   // Refines and verifies a template; keeps it if it is larger than the best.
