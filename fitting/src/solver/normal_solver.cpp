@@ -2,48 +2,29 @@
 
 namespace orbifit {
 
-namespace {
-
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// | A   B |
-// | B^T -1 |, lower half
-Eigen::SparseMatrix<double> bordered(const Eigen::SparseMatrix<double>& lower, const Eigen::MatrixXd& few) {
-  const Index size = lower.cols();
-  const Index all = size + few.cols();
-  Eigen::SparseMatrix<double> result(all, all);
-  result.reserve(lower.nonZeros() + few.size() + few.cols());
-  for (Index j = 0; j < size; ++j) {
-    result.startVec(j);
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(lower, j); entry; ++entry) {
-      result.insertBack(entry.row(), j) = entry.value();
-    }
-    for (Index k = 0; k < few.cols(); ++k) {
-      if (few(j, k) != 0) result.insertBack(size + k, j) = few(j, k);
-    }
-  }
-  for (Index k = size; k < all; ++k) {
-    result.startVec(k);
-    result.insertBack(k, k) = -1;
-  }
-  result.finalize();
-  return result;
-}
-
-}  // namespace
-
-bool NormalSolver::compute(const Eigen::SparseMatrix<double>& lower, const Eigen::MatrixXd& few) {
+bool NormalSolver::compute(const Eigen::SparseMatrix<double>& lower, const MatrixXd& few) {
   lower_ = lower;
   few_ = few;
-  factor_.compute(bordered(lower_, few_));
-  return factor_.info() == Eigen::Success;
+  if (!factor_.factorise(lower_)) return false;
+  solved_few_ = few_;
+  VectorXd column;
+  for (Index k = 0; k < few_.cols(); ++k) {
+    column = few_.col(k);
+    factor_.solve(column);
+    solved_few_.col(k) = column;
+  }
+  between_.compute(MatrixXd::Identity(few_.cols(), few_.cols()) + few_.transpose() * solved_few_);
+  return between_.info() == Eigen::Success;
 }
 
-VectorXd NormalSolver::solve_once(const VectorXd& side) const {
-  VectorXd all = VectorXd::Zero(size() + few_.cols());
-  all.head(size()) = side;
-  return factor_.solve(all).head(size());
+VectorXd NormalSolver::solve_once(VectorXd side) const {
+  factor_.solve(side);
+  if (few_.cols() > 0) side -= solved_few_ * between_.solve(few_.transpose() * side);
+  return side;
 }
 
 VectorXd NormalSolver::solve(const VectorXd& side) const {

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
+
+#include "deformation/symmetric_factor.h"
 
 namespace orbifit {
 
 /// Solves (A + B B^T) x = b for a sparse symmetric A, positive definite, and a B of few columns, which would make it
-/// dense: sparse Cholesky of A bordered by B (Vanderbei 1995: quasi-definite, so that any order of elimination will
-/// do), in an order of little fill (Amestoy, Davis, Duff 1996). The solution is refined. On a surface's A the cost
-/// grows about linearly with its size.
+/// dense: by A's factor and the matrix between the columns (Woodbury 1950). The solution is refined. On a surface's A
+/// the cost grows about linearly with its size.
 class NormalSolver {
  public:
   /// \param lower  A's lower half \param few  B, as many rows
@@ -23,11 +24,13 @@ class NormalSolver {
   Eigen::Index size() const { return lower_.cols(); }
 
  private:
-  Eigen::VectorXd solve_once(const Eigen::VectorXd& side) const;
+  Eigen::VectorXd solve_once(Eigen::VectorXd side) const;
 
   Eigen::SparseMatrix<double> lower_;
-  Eigen::MatrixXd few_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
+  SymmetricFactor factor_;               // of A
+  Eigen::MatrixXd few_;                  // B
+  Eigen::MatrixXd solved_few_;           // A^-1 B
+  Eigen::LLT<Eigen::MatrixXd> between_;  // I + B^T A^-1 B
 };
 
 }  // namespace orbifit

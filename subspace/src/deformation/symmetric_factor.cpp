@@ -1,25 +1,17 @@
 #include "deformation/symmetric_factor.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
 
+#include "deformation/supernodal_factor.h"
 #include "kernels/kernels.h"
 
 namespace orbifit {
 
 namespace {
 
-// What an entry of a sparse factor costs in a solve, in entries of a dense one, which come in order: measured on
-// Laplace matrices of 200 to 2000 unknowns.
-constexpr double kSparseCost = 4;
+constexpr double kFull = 0.25;  // of the entries: where so many are not zero, nearly all of the factor's are not
 
 }  // namespace
-
-class SymmetricFactor::Sparse : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
- public:
-  double entries() const { return static_cast<double>(m_matrix.nonZeros()); }  // known once its pattern is analysed
-  bool is_positive() const { return info() == Eigen::Success && m_diag.minCoeff() > 0; }
-};
 
 SymmetricFactor::SymmetricFactor() = default;
 SymmetricFactor::~SymmetricFactor() = default;
@@ -31,12 +23,11 @@ bool SymmetricFactor::factorise(const Eigen::SparseMatrix<double>& lower) {
   const double dense_entries = size * (size + 1) / 2;
   sparse_.reset();
   dense_.resize(0, 0);
-  if (kSparseCost * static_cast<double>(lower.nonZeros()) < dense_entries) {
-    auto sparse = std::make_unique<Sparse>();
-    sparse->analyzePattern(lower);
-    if (kSparseCost * sparse->entries() < dense_entries) {
-      sparse->factorize(lower);
-      if (!sparse->is_positive()) return false;
+  if (static_cast<double>(lower.nonZeros()) < kFull * dense_entries) {
+    auto sparse = std::make_unique<SupernodalFactor>();
+    sparse->analyse(lower);
+    if (sparse->entries() < dense_entries) {
+      if (!sparse->factorise(lower)) return false;
       sparse_ = std::move(sparse);
       return true;
     }
@@ -47,7 +38,7 @@ bool SymmetricFactor::factorise(const Eigen::SparseMatrix<double>& lower) {
 
 void SymmetricFactor::solve(Eigen::VectorXd& side) const {
   if (sparse_) {
-    side = sparse_->solve(side);
+    sparse_->solve(side);
   } else {
     kernels().cholesky_solve(dense_.data(), dense_.rows(), side.data());
   }

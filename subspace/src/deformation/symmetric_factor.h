@@ -7,6 +7,8 @@
 
 namespace orbifit {
 
+class SupernodalFactor;
+
 /// The Cholesky factor of a symmetric positive definite matrix: sparse where most of it stays zero, as that of Laplace
 /// matrices does where every sample has coordinates of its own, else dense. Solves need no memory of their own but,
 /// where it is sparse, a vector.
@@ -27,8 +29,7 @@ class SymmetricFactor {
   void solve(Eigen::VectorXd& side) const;
 
  private:
-  class Sparse;
-  std::unique_ptr<Sparse> sparse_;
+  std::unique_ptr<SupernodalFactor> sparse_;
   Eigen::MatrixXd dense_;  // lower
 };
 
