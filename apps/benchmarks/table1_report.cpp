@@ -74,7 +74,7 @@ std::string residuals(const std::vector<Table1Row>& rows) {
 
 std::string times(const std::vector<Table1Row>& rows, int threads) {
   TextTable table({"model", "build", "setup", "prefactor / paper", "ratio", "5 iter. / paper", "ratio", "lift / paper",
-                   "ratio", "floor", "lift/floor", "MB"});
+                   "ratio", "floor", "/floor", "MB"});
   for (const Table1Row& row : rows) {
     if (row.threads != threads) continue;
     table.add({row.model, figure(row.build_ms), figure(row.setup_ms), beside(row.prefactor_ms, row.paper.prefactor_ms),
@@ -118,7 +118,7 @@ constexpr const char* kTimeNotes =
     "  build: the subspace from mesh and annotation; setup: once a subspace; prefactor: once a set of handles; lift: "
     "from\n"
     "  samples to all vertices. Paper: one thread of a Xeon E5-1620 at 3.6 GHz. ratio: paper / ours.\n"
-    "  floor: the lift's own bytes (MB) streamed through memory by as many threads; lift/floor: 1x is the bound.\n";
+    "  floor: the lift's own bytes (MB) streamed through memory by as many threads; /floor: 1x is the bound.\n";
 constexpr const char* kPeerNotes =
     "  CGAL: Surface_mesh_deformation (as rigid as possible) on all vertices, without symmetry. soft: the paper's "
     "editing\n"
