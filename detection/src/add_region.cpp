@@ -10,6 +10,7 @@
 #include "support/found_region.h"
 #include "support/region_growth.h"
 #include "surface/surface_patch.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -41,7 +42,7 @@ std::optional<FoundRegion> as_found(const PreparedMesh& prepared, const Region& 
 bool subsumes(const PreparedMesh& prepared, double tolerance, const FoundRegion& outer, const FoundRegion& inner) {
   if (inner.faces.empty() || !covers(prepared, outer, inner)) return false;
   const SurfaceMoments moments = surface_moments(prepared, inner.faces);
-  const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
+  const double reach = tolerance_of_part(tolerance, moments.diagonal);
   return contains_group(outer.placement, inner.placement, moments.centroid, moments.radius, reach);
 }
 

@@ -6,12 +6,13 @@
 
 #include "base/dense.h"
 #include "group/verification.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
 bool flat(const SurfaceMoments& moments, double tolerance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] < std::pow(0.25 * tolerance * std::min(1.0, 4 * moments.diagonal), 2);
+  return solver.eigenvalues()[0] < std::pow(0.25 * tolerance_of_part(tolerance, moments.diagonal), 2);
 }
 
 bool flat_mirror_only(const SurfaceMoments& moments, const GroupPlacement& placement, double tolerance) {

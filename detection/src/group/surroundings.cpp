@@ -161,7 +161,7 @@ SurfacePatch surroundings(const PreparedMesh& prepared, const std::shared_ptr<co
     box.extend(fragment.centroid);
   }
   patch.moments.diagonal = box.isEmpty() ? 0 : box.diagonal().norm();
-  patch.tolerance = tolerance * std::min(1.0, 4 * patch.moments.diagonal);
+  patch.tolerance = tolerance_of_part(tolerance, patch.moments.diagonal);
   const std::vector<Fragment> chosen = thinned(fragments, area);
   const auto count = static_cast<Eigen::Index>(chosen.size());
   patch.samples.points.resize(count, 3);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "search/part_regions.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -29,8 +30,7 @@ class PartTable {
 
   const SurfaceMoments& moments(int part) const { return parts_.survey.moments[static_cast<std::size_t>(part)]; }
 
-  /// Small parts have smaller tolerances.
-  double tolerance_of(int part) const { return tolerance_ * std::min(1.0, 4 * moments(part).diagonal); }
+  double tolerance_of(int part) const { return tolerance_of_part(tolerance_, moments(part).diagonal); }
 
   /// Ascending.
   std::vector<int> faces_of(const std::vector<int>& parts) const {

@@ -99,7 +99,7 @@ std::vector<int> RegionBorder::refined(const FoundRegion& region, const RunConte
   std::ranges::set_union(region.faces, border, std::back_inserter(around));
   const SurfaceIndex surface(prepared_.mesh, around);
   const SurfaceMoments moments = surface_moments(prepared_, region.faces);
-  const double reach = tolerance_ * std::min(1.0, 4 * moments.diagonal);
+  const double reach = tolerance_of_part(tolerance_, moments.diagonal);
   const GroupPlacement& placement = region.placement;
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
   const std::vector<Piece> pieces = pieces_of(border);

@@ -59,7 +59,7 @@ class Completion {
   bool late() const { return options_.late && options_.late(); }
 
   double tolerance_of(std::size_t region) const {
-    return options_.tolerance * std::min(1.0, 4 * moments_[region].diagonal);
+    return tolerance_of_part(options_.tolerance, moments_[region].diagonal);
   }
 
   void carry_within(std::size_t outer) {
@@ -288,7 +288,7 @@ class Completion {
   // A region on these faces whose group holds all elements.
   std::optional<std::size_t> find(const GroupPlacement& goal, const std::vector<int>& faces) const {
     const SurfaceMoments moments = surface_moments(prepared_, faces);
-    const double tolerance = 1.5 * options_.tolerance * std::min(1.0, 4 * moments.diagonal);
+    const double tolerance = 1.5 * tolerance_of_part(options_.tolerance, moments.diagonal);
     for (std::size_t k = 0; k < regions_.size(); ++k) {
       if (regions_[k].area < 0.8 * moments.area) continue;
       if (area_outside(prepared_, faces, regions_[k].faces) > 0.1 * moments.area) continue;

@@ -194,7 +194,7 @@ class PartSearch {
       if (!holds_nearly(other, placement, parts, area) || !as_large(other.placement.group, placement.group))
         return false;
       if (!mine) mine = moments_of(parts);
-      const double tolerance = options_.tolerance * std::min(1.0, 4 * mine->diagonal);
+      const double tolerance = tolerance_of_part(options_.tolerance, mine->diagonal);
       return contains_group(other.placement, placement, mine->centroid, mine->radius, tolerance);
     });
   }

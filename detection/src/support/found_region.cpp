@@ -170,7 +170,7 @@ bool says_nothing_new_beside(const PreparedMesh& prepared, std::span<const Found
       return false;
     }
     if (!moments) moments = surface_moments(prepared, region.faces);
-    const double reach = tolerance * std::min(1.0, 4 * moments->diagonal);
+    const double reach = tolerance_of_part(tolerance, moments->diagonal);
     return contains_group(other.placement, region.placement, moments->centroid, moments->radius, 2 * reach);
   });
 }
@@ -186,7 +186,7 @@ void drop_repeats(const PreparedMesh& prepared, double tolerance, std::vector<Fo
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const FoundRegion& mine = regions[i];
     const SurfaceMoments moments = surface_moments(prepared, mine.faces);
-    const double reach = tolerance * std::min(1.0, 4 * moments.diagonal);
+    const double reach = tolerance_of_part(tolerance, moments.diagonal);
     bool repeats = false;
     for (std::size_t j = 0; j < regions.size() && !repeats; ++j) {
       if (i == j) continue;

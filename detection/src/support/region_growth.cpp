@@ -196,7 +196,7 @@ int ComponentMover::image(std::size_t component, const Motion& motion, double re
 
 double ComponentMover::reach_of(std::size_t component, const PointGroup& group) const {
   const SurfaceMoments& moments = survey_.moments[component];
-  const double reach = tolerance_ * std::min(1.0, 4 * moments.diagonal);
+  const double reach = tolerance_of_part(tolerance_, moments.diagonal);
   return group.continuous() ? std::min(reach, 2 * tolerance_ * std::max(moments.radius, 1e-9)) : reach;
 }
 

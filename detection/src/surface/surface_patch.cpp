@@ -176,7 +176,7 @@ SurfacePatch sample_patch(const PreparedMesh& prepared, std::vector<int> faces, 
   std::ranges::sort(faces);
   patch.moments = surface_moments(prepared, faces);
   patch.relative_tolerance = tolerance;
-  patch.tolerance = tolerance * std::min(1.0, 4 * patch.moments.diagonal);
+  patch.tolerance = tolerance_of_part(tolerance, patch.moments.diagonal);
   Random random(context.seed, stream);
   patch.samples =
       sample_surface(prepared.mesh, prepared.areas, prepared.normals, samples, random, visible_faces(prepared, faces));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace orbifit {
 
 /// Cosines of the angles within which the normals of a surface and of its image agree. Beyond the first is a crease.
@@ -7,6 +9,13 @@ inline constexpr double kAlikeNormals = 0.90630778703665;  ///< 25 degrees: wher
 inline constexpr double kNearNormals = 0.8;                ///< 37 degrees: the motion may be a little off yet
 inline constexpr double kOfWhole = 0.999;                  ///< of the mesh's area: the whole but for specks
 inline constexpr double kFacetNormals = 0.64;              ///< 50 degrees: between facets of small round parts
+
+/// Parts smaller than a quarter of the mesh have smaller tolerances: within that of the mesh small ones have any group.
+/// \param tolerance of the mesh \param diagonal of the part; lengths of the normalised mesh
+inline double tolerance_of_part(double tolerance, double diagonal) {
+  constexpr double kFull = 4;
+  return tolerance * std::min(1.0, kFull * diagonal);
+}
 
 /// Tolerances within which a point is next to a crease: its image may lie on either side.
 inline constexpr double kCreaseReach = 3;

@@ -105,7 +105,7 @@ VertexClustering::VertexClustering(const PreparedMesh& prepared, const Sites& si
     boxes[static_cast<std::size_t>(sites.component[s])].extend(place_of(static_cast<int>(s)));
   }
   for (const Eigen::AlignedBox3d& box : boxes) {
-    tolerances_.push_back(tolerance * std::min(1.0, 4 * (box.isEmpty() ? 0 : box.diagonal().norm())));
+    tolerances_.push_back(tolerance_of_part(tolerance, box.isEmpty() ? 0 : box.diagonal().norm()));
   }
   find_creases();
   rims_.reserve(3 * sites.of_face.size());
