@@ -508,7 +508,8 @@ SymmetryAnnotation detected(const Mesh& as_given, const CanonicalPose& pose, con
   }
   Findings found;
   if (const std::optional<CoarseMesh> coarse = proxy_mesh_of(prepared, noise, options, context)) {
-    const PreparedMesh proxy = prepare(coarse->mesh);
+    PreparedMesh proxy = prepare(coarse->mesh);
+    proxy.noise = prepared.noise;
     // Where creases end within the surface is known to the fine mesh only.
     Components segments = transferred_pieces(smooth_segments(prepared), prepared, *coarse);
     DetectOptions on_coarse = options;

@@ -89,5 +89,17 @@ TEST(SurveyComponents, RoundPartsAlignWhateverTheirTurn) {
   expect_carried(prepared, survey);
 }
 
+// The second is as long as the first to the tolerance, and the third to both; it is the first that it is a copy of.
+TEST(SurveyComponents, CopiesAreOfWhatTheyAreMostLike) {
+  const Mesh longest = test::box(1.21, 0.31, 0.31);
+  const Mesh shorter = test::box(1.17, 0.31, 0.31);
+  const Mesh between = test::box(1.2, 0.3, 0.3);
+  const PreparedMesh prepared = prepare(
+      test::joined({longest, test::moved(shorter, test::shift(0, 4, 0)), test::moved(between, test::shift(0, 8, 0))}));
+  const ComponentSurvey survey = survey_components(prepared, 0.00195, 0, RunContext{});
+  ASSERT_EQ(survey.classes.size(), 2U);
+  EXPECT_EQ(survey.classes.front().members, (std::vector<int>{0, 2}));
+}
+
 }  // namespace
 }  // namespace orbifit

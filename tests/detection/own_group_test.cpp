@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
+#include "resolution/denoise.h"
 #include "shapes.h"
 
 namespace orbifit {
@@ -57,6 +59,29 @@ TEST(OwnGroup, ATreadIsNoFacet) {
     drum.vertices.row(kSides + i).head<2>() *= 0.992;
   }
   EXPECT_EQ(symbol_of(drum), "D10h");
+}
+
+// Flat sides that are off a circle by a few times what noise leaves of them; facets of a finer drum are not.
+TEST(OwnGroup, SidesAreToldFromNoise) {
+  constexpr double kNoise = 0.004;
+  const auto symbol_with_noise = [](int sides) {
+    Mesh mesh = test::subdivided(test::prism(sides, 1, 1.4), sides == 8 ? 3 : 1);
+    Random random(4);
+    PreparedMesh prepared = prepare(mesh);
+    Points steps(static_cast<Eigen::Index>(prepared.faces_of_vertex.size()), 3);  // vertices at one place stay together
+    for (double& step : steps.reshaped()) step = kNoise * diagonal(mesh.vertices) * random.normal();
+    mesh.vertices += steps(prepared.weld.group_of_vertex, Eigen::all);
+    prepared = prepare(mesh);
+    prepared.noise = kNoise;
+    denoise(prepared, kNoise, {});
+    const RunContext context;
+    const SurfacePatch patch = make_patch(prepared, test::all_faces(mesh), 2500, 0.025, context, "test");
+    const DirectionSet screen = hemisphere_directions(2000);
+    const std::optional<OwnGroup> group = find_own_group(patch, &screen, {}, context);
+    return group ? group->placement.group.symbol() : "C1";
+  };
+  EXPECT_EQ(symbol_with_noise(8), "D8h");
+  EXPECT_EQ(symbol_with_noise(32), "Dinfh");
 }
 
 TEST(OwnGroup, NearMissesAreTold) {

@@ -73,7 +73,7 @@ double sagitta(const SurfacePatch& patch, const GroupPlacement& placement) {
       most = std::max(most, std::max(a.norm(), b.norm()) * (1 - std::sqrt(0.5 * (1 + cosine))));
     }
     const double along = round ? 0 : placement.frame.col(2).dot(prepared.normals.row(face));
-    square += prepared.areas[face] * most * most * (1 - along * along);
+    square += prepared.areas[face] * most * most * std::max(0.0, 1 - along * along);
     area += prepared.areas[face];
   }
   return std::sqrt(square / std::max(area, 1e-300));
@@ -114,19 +114,29 @@ class GroupSearch {
     int order;
   };
 
-  // What turns by any angle to the tolerance may have a tread that turns exactly by some. Facets are no treads.
+  // What turns by any angle to the tolerance may have a tread that turns exactly by some, but for noise. Facets are no
+  // treads, nor is what noise makes.
   std::optional<OwnGroup> no_treads(const DirectionSet* screen, const GroupHints& hints) {
-    constexpr double kFarLess = 0.1;
     constexpr double kFacets = 1.5;
     constexpr double kStrict = 0.3;
     const double any = largest_residual(patch_, best_->placement, context_);
-    if (any < kFacets * sagitta(patch_, best_->placement) + kNegligible * patch_.tolerance) return best_;
+    const double noise = patch_.prepared->noise;
+    if (any < std::max(kFacets * sagitta(patch_, best_->placement), noise) + kNegligible * patch_.tolerance)
+      return best_;
     SurfacePatch strict = patch_;
-    const double share = std::min(1.0, kStrict * any / patch_.tolerance);
+    const double share = std::min(1.0, std::max(kStrict * any, noise) / patch_.tolerance);
     strict.tolerance *= share;
     strict.relative_tolerance *= share;
     const std::optional<OwnGroup> some = GroupSearch(strict, context_, thorough_, true).run(screen, hints);
-    return some && largest_residual(patch_, some->placement, context_) < kFarLess * any ? some : best_;
+    return some && far_less(largest_residual(patch_, some->placement, context_), any) ? some : best_;
+  }
+
+  // Whether one group's residual is far below another's, but for what is left of noise that was taken out.
+  bool far_less(double residual, double other) const {
+    constexpr double kFarLess = 0.1;
+    constexpr double kLeft = 1.0 / 3;  // of the noise, at most
+    const double noise = patch_.prepared->noise;
+    return other > noise && residual < kFarLess * other + kLeft * noise;
   }
 
   bool continuous() const { return best_ && best_->placement.group.continuous(); }
@@ -340,7 +350,6 @@ class GroupSearch {
 
   // Of what is so small that a hexagon turns by ninths to the tolerance, the order that it has.
   GroupPlacement far_more_exact(const GroupPlacement& placement, const std::vector<RankedOrder>& others) const {
-    constexpr double kFarLess = 0.1;
     const int n = placement.group.order();
     const auto may_be = [&](int order) { return order < n && n % order != 0; };
     if (std::ranges::none_of(others, may_be, &RankedOrder::order)) return placement;
@@ -349,7 +358,7 @@ class GroupSearch {
     for (const RankedOrder& other : others) {
       if (!may_be(other.order)) continue;
       GroupPlacement lower = fitted({Family::Cn, other.order}, frame_about(placement.frame.col(2)));
-      if (largest_residual(patch_, lower, context_) < kFarLess * off && check(lower)) return lower;
+      if (far_less(largest_residual(patch_, lower, context_), off) && check(lower)) return lower;
     }
     return placement;
   }

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 #include <Eigen/Geometry>
 
@@ -37,15 +38,13 @@ Invariants invariants(const SurfaceMoments& moments) {
   return {moments.area, solver.eigenvalues().cwiseMax(0).cwiseSqrt(), moments.radius};
 }
 
-bool alike(const Invariants& a, const Invariants& b, double tolerance) {
+// Of two components, at most 1 where one may be a copy of the other.
+double difference(const Invariants& a, const Invariants& b, double tolerance, double noise) {
   const double size = std::max(a.radius, 1e-12);
-  const double relative = std::max(2 * tolerance / size, 1e-4);
-  return std::abs(a.area - b.area) <= 2 * relative * a.area && std::abs(a.radius - b.radius) <= 2 * tolerance &&
-         (a.deviations - b.deviations).cwiseAbs().maxCoeff() <= tolerance;
-}
-
-double part_tolerance(const SurfaceMoments& moments, double tolerance) {
-  return tolerance * std::min(1.0, 4 * moments.diagonal);
+  const double thickness = std::max(a.deviations[0], 1e-12);  // of which noise adds to the area of the sides
+  const double relative = std::max({2 * tolerance / size, noise / thickness, 1e-4});
+  return std::max({std::abs(a.area - b.area) / (2 * relative * a.area), std::abs(a.radius - b.radius) / (2 * tolerance),
+                   (a.deviations - b.deviations).cwiseAbs().maxCoeff() / tolerance});
 }
 
 // Vertices of the faces in the order in which the faces name them.
@@ -302,17 +301,22 @@ ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance
   for (const int c : order) {
     const Invariants& mine = known[static_cast<std::size_t>(c)];
     if (mine.area <= 0) continue;
-    const double close = part_tolerance(result.moments[static_cast<std::size_t>(c)], tolerance);
-    bool placed = false;
-    for (std::size_t g = groups.size(); g-- > 0 && !placed;) {
-      const Invariants& first = known[static_cast<std::size_t>(groups[g].front())];
+    const double close = tolerance_of_part(tolerance, result.moments[static_cast<std::size_t>(c)].diagonal);
+    double least = 1;
+    std::vector<int>* likest = nullptr;
+    for (std::vector<int>& group : std::views::reverse(groups)) {
+      const Invariants& first = known[static_cast<std::size_t>(group.front())];
       if (first.area > 1.3 * mine.area) break;
-      if (alike(first, mine, close)) {
-        groups[g].push_back(c);
-        placed = true;
-      }
+      const double off = difference(first, mine, close, prepared.noise);
+      if (off > least || (off == least && likest != nullptr)) continue;
+      least = off;
+      likest = &group;
     }
-    if (!placed) groups.push_back({c});
+    if (likest != nullptr) {
+      likest->push_back(c);
+    } else {
+      groups.push_back({c});
+    }
   }
   std::erase_if(groups, [&](const std::vector<int>& group) {
     double area = 0;
