@@ -134,9 +134,8 @@ class GroupSearch {
   // Whether one group's residual is far below another's, but for what is left of noise that was taken out.
   bool far_less(double residual, double other) const {
     constexpr double kFarLess = 0.1;
-    constexpr double kLeft = 1.0 / 3;  // of the noise, at most
     const double noise = patch_.prepared->noise;
-    return other > noise && residual < kFarLess * other + kLeft * noise;
+    return other > noise && residual < kFarLess * other + kLeftOfNoise * noise;
   }
 
   bool continuous() const { return best_ && best_->placement.group.continuous(); }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -302,13 +303,13 @@ ComponentSurvey survey_components(const PreparedMesh& prepared, double tolerance
     const Invariants& mine = known[static_cast<std::size_t>(c)];
     if (mine.area <= 0) continue;
     const double close = tolerance_of_part(tolerance, result.moments[static_cast<std::size_t>(c)].diagonal);
-    double least = 1;
+    double least = std::numeric_limits<double>::infinity();
     std::vector<int>* likest = nullptr;
     for (std::vector<int>& group : std::views::reverse(groups)) {
       const Invariants& first = known[static_cast<std::size_t>(group.front())];
       if (first.area > 1.3 * mine.area) break;
       const double off = difference(first, mine, close, prepared.noise);
-      if (off > least || (off == least && likest != nullptr)) continue;
+      if (off > 1 || off >= least) continue;
       least = off;
       likest = &group;
     }

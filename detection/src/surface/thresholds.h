@@ -17,6 +17,9 @@ inline double tolerance_of_part(double tolerance, double diagonal) {
   return tolerance * std::min(1.0, kFull * diagonal);
 }
 
+/// Of the standard deviation of noise, at most: what is left of it in vertices from which it was taken out.
+inline constexpr double kLeftOfNoise = 0.5;
+
 /// Tolerances within which a point is next to a crease: its image may lie on either side.
 inline constexpr double kCreaseReach = 3;
 

@@ -25,7 +25,6 @@ constexpr double kCoarsest = 2;       // size of a cell of level 0, tolerances o
 constexpr double kSmallest = 1e-12;   // cell, so that its numbers do not overflow
 constexpr int kLevels = 5;            // beyond, each site is for itself
 constexpr double kFlat = 0.1;         // root mean square distance from the planes, tolerances of the component
-constexpr double kLeftOfNoise = 0.5;  // of its standard deviation, after it was taken out
 constexpr double kOneSided = 0.35;    // length of the mean normal: less, and both sides of something are in one cell
 constexpr double kSmooth = 0.97;      // the same where there is no crease: none must arise
 constexpr double kDetermined = 1e-3;  // of the largest eigenvalue: below, planes leave a direction open

@@ -11,7 +11,7 @@ class SupernodalFactor;
 
 /// The Cholesky factor of a symmetric positive definite matrix: sparse where most of it stays zero, as that of Laplace
 /// matrices does where every sample has coordinates of its own, else dense. Solves need no memory of their own but,
-/// where it is sparse, a vector.
+/// where it is sparse, two vectors.
 class SymmetricFactor {
  public:
   SymmetricFactor();
