@@ -1,6 +1,7 @@
 #include "geometry/face_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -60,7 +61,8 @@ std::uint64_t FaceCells::key_of(const Vector3d& point) const {
 
 std::size_t FaceCells::slot(std::uint64_t key) const {
   const std::size_t mask = cells_.size() - 1;
-  std::size_t at = static_cast<std::size_t>(key * kMix >> 20U) & mask;
+  // The product's highest bits: only they depend on all of the key's.
+  auto at = static_cast<std::size_t>(key * kMix >> (64 - std::bit_width(mask)));
   while (cells_[at].key != 0 && cells_[at].key != key) at = (at + 1) & mask;
   return at;
 }
