@@ -25,13 +25,27 @@ constexpr double kLittleNoise = 0.001;
 constexpr double kStiffest = 0.05;
 constexpr double kSilhouetteFrom = 0.3;  // of the levels: the pose is known by then
 constexpr double kStill = 1e-4;          // of the diagonal: the fit has converged when no sample moves more,
-constexpr double kGain = 0.02;           // or when so many steps in turn lowered the energy by less than this share;
+constexpr double kGain = 0.02;           // or when a step lowers the energy by less than this share;
 constexpr double kLastGain = 0.002;      // in the end
-constexpr int kStalled = 3;
-constexpr double kDamping = 1e-3;  // the least, of one sample's share of the data
-constexpr double kDampingStep = 4;
+constexpr double kDamping = 1e-3;        // of one sample's share of the data
+// Of what counts as far: a level's iterations end where a step brings the template no farther, since they would find
+// the same places again, and the next level asks for more.
+constexpr double kSettled = 0.1;
 constexpr int kScheduledPoints = 1300;  // of the scan that are looked at, at least, while the stiffness falls
 constexpr const char* kUsedUp = "the iterations allowed are used up";
+
+// How far a motion takes a corner of the mesh's bounding box, at most.
+double farthest_carried(const Mesh& mesh, const Similarity& motion) {
+  const Eigen::Vector3d low = mesh.vertices.colwise().minCoeff();
+  const Eigen::Vector3d high = mesh.vertices.colwise().maxCoeff();
+  double result = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d from((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
+                               (corner & 4) != 0 ? high.z() : low.z());
+    result = std::max(result, (motion(from) - from).norm());
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -148,8 +162,8 @@ void FitLoop::move_to(const FitState& state) {
   surface_.move(deformed_, context_);
 }
 
-void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
-                   FitIteration& record) {
+double FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
+                     FitIteration& record) {
   const DeformationSystem::Hold hold{now.stiffness,
                                      damping,
                                      state.q,
@@ -165,12 +179,14 @@ void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, do
   }
   const Motion back = inverse(solution.scan_step);
   const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
-  state.pose = state.pose * Similarity{1, back.linear, back.translation} *
-               Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
+  const Similarity carried = Similarity{1, back.linear, back.translation} *
+                             Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
+  state.pose = state.pose * carried;
   move_to(state);
   record.damping = damping;
   record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;
   if (input_.watch) input_.watch(record, state.pose, deformed_.vertices);
+  return record.change * size_ + farthest_carried(input_.mesh, carried);
 }
 
 FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double energy) const {
@@ -182,7 +198,8 @@ FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double
   return record;
 }
 
-std::string FitLoop::minimise(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations) {
+FitLoop::Minimum FitLoop::minimise(FitState& state, const Stage& now, double gain,
+                                   std::vector<FitIteration>& iterations) {
   struct Best {
     FitState state;
     DeformationSystem::Rotations rotations;
@@ -190,10 +207,8 @@ std::string FitLoop::minimise(FitState& state, const Stage& now, double gain, st
     double energy;
   };
   std::optional<Best> best;
-  double damping = kDamping;
   double share = 0;
-  int stalled = 0;
-  std::string reason = kUsedUp;
+  Minimum result{kUsedUp};
   while (static_cast<int>(iterations.size()) < options_.max_iterations) {
     context_.progress("fit", double(iterations.size()) / options_.max_iterations);
     const Stopwatch clock;
@@ -201,33 +216,27 @@ std::string FitLoop::minimise(FitState& state, const Stage& now, double gain, st
     if (!best) share = share_of(matches, now.every);  // the same from then on: energies are compared
     const double energy_now = energy(state, matches, share, now);
     iterations.push_back(record_of(matches, now, energy_now));
-    stalled = !best || energy_now < (1 - gain) * best->energy ? 0 : stalled + 1;
-    if (!best || energy_now < best->energy) {
-      best = Best{state, system_.rotations(), std::move(matches), energy_now};
-      damping = std::max(kDamping, damping / kDampingStep);
-    } else {
-      state = best->state;
-      system_.set_rotations(best->rotations);
-      damping *= kDampingStep;
-    }
-    if (stalled >= kStalled) {
+    if (best) result.gained = 1 - energy_now / best->energy;
+    const bool stalled = best && !(result.gained > gain);
+    if (!best || energy_now < best->energy) best = Best{state, system_.rotations(), std::move(matches), energy_now};
+    if (stalled) {
       iterations.back().seconds = clock.seconds();
-      reason = "converged: the energy no longer falls";
+      result.reason = "converged: the energy no longer falls";
       break;
     }
-    step(state, best->matches, now, share, damping, iterations.back());
+    step(state, best->matches, now, share, kDamping, iterations.back());
     iterations.back().seconds = clock.seconds();
     if (iterations.back().change < kStill) {
-      reason = "converged: no sample moves by more than 0.01 % of the diagonal";
+      result.reason = "converged: no sample moves by more than 0.01 % of the diagonal";
       break;
     }
   }
-  if (best) {
-    state = best->state;
-    move_to(state);
-    system_.set_rotations(best->rotations);
-  }
-  return reason;
+  if (!best) return result;
+  result.spread = best->matches.spread;
+  state = best->state;
+  move_to(state);
+  system_.set_rotations(best->rotations);
+  return result;
 }
 
 std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std::vector<FitIteration>& iterations) {
@@ -236,7 +245,9 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   move_to(state);
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(first_level * options_.iterations);
+  double moved = size_;  // by the last step
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
+    if (i % options_.iterations != 0 && moved < kSettled * now.robust) continue;
     context_.progress("fit", double(i) / options_.max_iterations);
     const Stopwatch clock;
     now = stage(i);
@@ -247,7 +258,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
     const double share = share_of(matches, now.every);
     iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
     least_stiffness_ = stiffness_for(matches.spread);
-    step(state, matches, now, share, 0, iterations.back());
+    moved = step(state, matches, now, share, 0, iterations.back());
     iterations.back().seconds = clock.seconds();
   }
   std::string reason = kUsedUp;
@@ -255,21 +266,25 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   now.scale_open = scale_open;
   now.others_open = true;
   if (first_level >= options_.levels) return go_on(state, now, iterations);
+  Minimum reached;
   for (const double robust : kConverging) {
     now.robust = robust * size_;
     // Converged once, the fit has reached what it had left unexplained for being on its way.
-    if (robust == kConverging[1]) now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
-    reason = minimise(state, now, robust == kConverging.back() ? kLastGain : kGain, iterations);
+    if (robust == kConverging[1]) now.stiffness = std::min(now.stiffness, stiffness_for(reached.spread));
+    reached = minimise(state, now, robust == kConverging.back() ? kLastGain : kGain, iterations);
   }
-  return reason;
+  return reached.reason;
 }
 
 std::string FitLoop::go_on(FitState& state, Stage now, std::vector<FitIteration>& iterations) {
   now.robust = kLastRobust * size_;
   now.stiffness = std::max(last_stiffness_, stiffness_for(match(state, now).spread));
-  minimise(state, now, kGain, iterations);
-  now.stiffness = std::min(now.stiffness, stiffness_for(match(state, now).spread));
-  return minimise(state, now, kLastGain, iterations);
+  Minimum reached = minimise(state, now, kGain, iterations);
+  const double warranted = stiffness_for(reached.spread);
+  const bool softer = warranted < now.stiffness;
+  if (!softer && reached.gained <= kLastGain) return reached.reason;
+  now.stiffness = std::min(now.stiffness, warranted);
+  return minimise(state, now, kLastGain, iterations).reason;
 }
 
 }  // namespace orbifit

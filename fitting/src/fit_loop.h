@@ -26,10 +26,10 @@ struct FitState {
   std::vector<Motion> others = {};
 };
 
-/// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it. Then the
-/// stiffness stays, and so does what counts as far until nothing more is gained with it: there is one energy to lower,
-/// and steps that do not lower it are taken back and damped (Levenberg and Marquardt). What the data do not determine
-/// holds still instead of swaying from one iteration to the next.
+/// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it; each of its
+/// levels ends where a step is short beside that. Then the stiffness stays, and so does what counts as far until a step
+/// gains next to nothing with it: there is one energy to lower, and a step that does not lower it is taken back. What
+/// the data do not determine holds still instead of swaying from one iteration to the next.
 class FitLoop {
  public:
   /// All references are kept. \param start  its scan and views \param system  turned as the iterations go
@@ -70,11 +70,17 @@ class FitLoop {
   void add_pulls(const FitState& state, const Stage& now, Matches& matches) const;
   double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
   FitIteration record_of(const Matches& matches, const Stage& now, double energy) const;
-  // One solve from there. \param share of each pair; what the record says of the step is filled in
-  void step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
-            FitIteration& record);
-  // Steps that lower the energy of one stage, until it stalls.
-  std::string minimise(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
+  // One solve from there. \param share of each pair; what the record says of the step is filled in \return how far it
+  // has brought the template at most, pose and deformation, template units
+  double step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
+              FitIteration& record);
+  struct Minimum {
+    std::string reason;  // why no lower one was sought
+    double spread = 0;   // as Matches has it, there
+    double gained = 0;   // share by which the last step lowered the energy; negative: raised it, and was taken back
+  };
+  // Steps that lower the energy of one stage, each by more than the share `gain`.
+  Minimum minimise(FitState& state, const Stage& now, double gain, std::vector<FitIteration>& iterations);
   // For a fit that has converged on a coarser subspace, and has only what is left to settle.
   std::string go_on(FitState& state, Stage now, std::vector<FitIteration>& iterations);
   void move_to(const FitState& state);

@@ -21,7 +21,7 @@ namespace orbifit {
 struct FitOptions {
   SubspaceOptions subspace;
   int levels = 12;                ///< of stiffness, from stiff to soft, >= 1
-  int iterations = 3;             ///< at each level, >= 1
+  int iterations = 3;             ///< at each level, at most, >= 1
   int max_iterations = 80;        ///< in all, >= levels * iterations
   double first_stiffness = 10;    ///< Laplace energy against data, > last_stiffness
   double last_stiffness = 0.01;   ///< of a scan without noise; noisier ones are followed less closely, > 0
@@ -80,7 +80,7 @@ struct FitIteration {
   int correspondences = 0;
   double rms = 0;      ///< weighted, of the distances to the surface, fraction of the template's diagonal
   double energy = 0;   ///< robust data and regularisation before this iteration's step, in mean squared diagonals
-  double damping = 0;  ///< of the step; grows in the end where a step did not lower the energy and was taken back
+  double damping = 0;  ///< of the step
   double change = 0;   ///< largest movement of a sample by the step, fraction of the diagonal
   double seconds = 0;  ///< of this iteration: correspondences, solve and the surface's move
 };
