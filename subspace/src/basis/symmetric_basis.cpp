@@ -100,8 +100,9 @@ SeedSpace solve_seed(const Constraints& constraints) {
 // The constraints on carriers alone.
 class CarrierSystem {
  public:
-  explicit CarrierSystem(int carriers)
-      : gram_(MatrixXd::Zero(3 * carriers, 3 * carriers)), side_(VectorXd::Zero(3 * carriers)) {}
+  // \param turned  whether groups have turned: else nothing asks the carriers to be elsewhere
+  CarrierSystem(int carriers, bool turned)
+      : turned_(turned), gram_(MatrixXd::Zero(3 * carriers, 3 * carriers)), side_(VectorXd::Zero(3 * carriers)) {}
 
   // \param known  whether rows of the same pairs of words were added before: then only their constants are new
   void add(const Constraints& constraints, const SeedSpace& space, bool known) {
@@ -110,7 +111,8 @@ class CarrierSystem {
     if (constant.size() > 0 && constant.cwiseAbs().maxCoeff() > 0)
       rows_.push_back({constraints.carriers, pure, constant});
     if (pure.size() == 0 || pure.cwiseAbs().maxCoeff() < kRowRounding) return;
-    if (!known) add_rows(constraints.carriers, pure);
+    if (!known) add_rows(constraints.carriers, few_rows(pure));
+    if (!turned_) return;
     const MatrixXd gram = pure.transpose() * pure;
     const VectorXd side = pure.transpose() * constant;
     for (std::size_t i = 0; i < constraints.carriers.size(); ++i) {
@@ -175,16 +177,21 @@ class CarrierSystem {
     used_ += rows.rows();
   }
 
-  // As many rows as columns, with the same squares; rounding stays that of the largest.
+  // At most as many rows as columns, with the same squares; rounding stays that of the largest.
+  static MatrixXd few_rows(const MatrixXd& rows) {
+    if (rows.rows() <= rows.cols()) return rows;
+    const Eigen::HouseholderQR<MatrixXd> qr(rows);
+    return qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+  }
+
   void compress() {
     const Eigen::Index size = gram_.cols();
     if (used_ <= size) return;
-    const Eigen::HouseholderQR<MatrixXd> qr(stacked_.topRows(used_));
-    const MatrixXd upper = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
-    stacked_.topRows(size) = upper;
+    stacked_.topRows(size) = few_rows(stacked_.topRows(used_));
     used_ = size;
   }
 
+  bool turned_;
   MatrixXd stacked_;       // rows of all constraints
   Eigen::Index used_ = 0;  // of these
   MatrixXd gram_;
@@ -318,7 +325,7 @@ Binding binding_of(const std::vector<WordPair>& pairs, const CarriedTransports& 
 
 SymmetricBasis symmetric_basis(const SymmetricSampling& sampling, const CarriedTransports& transports, int carriers,
                                const std::vector<BoundPoint>& elsewhere) {
-  CarrierSystem system(carriers);
+  CarrierSystem system(carriers, transports.turned());
   const std::vector<SeedSpace> seeds = seed_spaces(sampling, transports, elsewhere, system);
   const MatrixXd allowed = system.free();
   SymmetricBasis basis;
