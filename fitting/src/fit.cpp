@@ -11,6 +11,7 @@
 #include "orbifit/subspace/displacement_field.h"
 
 #include "assessment/fit_assessment.h"
+#include "assessment/group_comparison.h"
 #include "assessment/open_poses.h"
 #include "assessment/open_stretches.h"
 #include "fit_loop.h"
@@ -254,33 +255,28 @@ Trial better_in_doubt(const FitInput& input, const FitOptions& options, const Ru
 }
 
 // Refines a fit that is one: a subspace that is fine enough explains any scan, so that whether this one is the
-// template's a coarse one tells. Beside that judges the coarse fit's groups, unless those that are unsupported were
-// dropped.
+// template's a coarse one tells. Likewise whether its groups are the scan's, where the refined fit leaves that in
+// doubt; unless those that are unsupported were dropped.
 void refine_and_judge(const Trial& trial, const FitOptions& options, const RunContext& context, StageClock& clock,
                       FitResult& result) {
   const bool judges = options.judge_groups && !options.drop_unsupported && !trial.input.annotation.regions.empty();
-  const bool refines = result.converged;
-  const SymmetryAnnotation annotation = result.rest_annotation;
-  std::vector<GroupAgreement> groups = std::move(result.groups);
-  double refining = 0;
-  std::vector<SideTask> tasks;
+  const SymmetryAnnotation rest = result.rest_annotation;
+  Mesh coarse;
+  SymmetryAnnotation carried;
   if (judges) {
-    tasks.emplace_back([&, fitted = result.fitted, carried = result.annotation](const RunContext& own) {
-      groups = judged_groups(fitted, carried, trial.input, trial.best.start, options, own);
-    });
+    coarse = result.fitted;
+    carried = result.annotation;
   }
-  if (refines) {
-    tasks.emplace_back([&](const RunContext& own) {
-      const Stopwatch stopwatch;
-      refine(trial.input.with(annotation), trial.best.start, options, own, result);
-      conclude(options, result);
-      refining = stopwatch.seconds();
-    });
+  if (result.converged) {
+    refine(trial.input.with(rest), trial.best.start, options, context, result);
+    conclude(options, result);
+    clock.finished("refinement");
   }
-  side_by_side(tasks, context);
-  result.groups = std::move(groups);
-  if (judges && refines) clock.took("refinement", refining);
-  if (judges || refines) clock.finished(judges ? "groups" : "refinement");
+  if (!judges) return;
+  auto told = agreement_beyond_doubt(result.fitted, result.annotation, trial.best.start.scan, context);
+  result.groups =
+      told ? *std::move(told) : judged_groups(coarse, carried, trial.input, trial.best.start, options, context);
+  clock.finished("groups");
 }
 
 // What the scan leaves open, of size and pose, is the template's then, or chance's: the fit is the less to be relied

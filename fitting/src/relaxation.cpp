@@ -58,6 +58,10 @@ std::vector<GroupAgreement> judged_groups(const Mesh& fitted, const SymmetryAnno
 void drop_unsupported(const FitInput& input, const PlacedScan& start, const FitOptions& options,
                       const RunContext& context, FitResult& result) {
   constexpr int kMaxRelaxations = 5;
+  if (auto told = agreement_beyond_doubt(result.fitted, result.annotation, start.scan, context)) {
+    result.groups = *std::move(told);
+    return;
+  }
   const Mesh free = free_fit(input, start, options, context);
   for (int round = 0;; ++round) {
     std::vector<GroupAgreement> groups = group_agreement(result.fitted, free, result.annotation, start.scan, context);

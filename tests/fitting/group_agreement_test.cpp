@@ -9,6 +9,9 @@
 #include "orbifit/datasets_tools/virtual_scan.h"
 #include "orbifit/fitting/fit.h"
 
+#include "assessment/group_comparison.h"
+#include "scan/scan_preparation.h"
+
 namespace orbifit {
 namespace {
 
@@ -55,6 +58,31 @@ TEST_F(Table, ItsOwnScanAgreesWithAllGroups) {
     EXPECT_LT(group.disagreement, 0.006);
   }
   EXPECT_TRUE(result.dropped.empty());
+}
+
+// A scan that lies on the fit leaves no doubt, and stands for the fit without groups.
+TEST_F(Table, ItsOwnScanIsJudgedWithoutAFreeFit) {
+  scan_ = virtual_scan(truth_, {}, context_);
+  const PreparedScan scan = prepare_scan(scan_, {}, context_);
+  const auto own = agreement_beyond_doubt(truth_, model_.truth, scan, context_);
+  ASSERT_TRUE(own);
+  ASSERT_EQ(own->size(), model_.truth.regions.size());
+  for (const GroupAgreement& group : *own) {
+    EXPECT_FALSE(group.disagrees);
+    EXPECT_LT(group.disagreement, 1e-9);
+    EXPECT_EQ(group.free, group.held);
+  }
+  // Shifted in steps that the group of the whole does not keep.
+  PreparedScan waved = scan;
+  const double size = diagonal(truth_.vertices);
+  for (auto point : waved.points.rowwise()) point.z() += (point.x() > 0 ? 0.002 : -0.002) * size;
+  const auto off = agreement_beyond_doubt(truth_, model_.truth, waved, context_);
+  ASSERT_TRUE(off);
+  EXPECT_GT(off->front().held, 0.001);  // along legs the step is none
+  EXPECT_LE(off->front().held, 0.0021);
+  EXPECT_GT(off->front().disagreement, 0.0005);  // what a tilt does not take out
+  move_leg(0.06);
+  EXPECT_FALSE(agreement_beyond_doubt(truth_, model_.truth, scan, context_));
 }
 
 TEST_F(Table, AMovedLegDisagreesWithTheWholeButNotWithItsOwnGroup) {

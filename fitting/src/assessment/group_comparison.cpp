@@ -28,34 +28,44 @@ constexpr double kLastRobust = 0.01;  // and at the end
 constexpr double kMin = 0.008;        // of the diagonal: a disagreement,
 constexpr double kTimesFree = 1.5;    // where the group's fit is worse than the free one by this factor
 constexpr int kMinPlaces = 40;        // that say anything
-constexpr int kMaxPairs = 6000;
+constexpr int kMaxPairs = 1000;       // root means square of as many are known to a fortieth
 
 struct Place {
   Vector3d point, normal;  // of the surface of the fit with groups
   double height = 0;       // of the free fit over it, of the diagonal
 };
 
-// Both fits and the scan, with what it takes to look at a place of all three.
+// A fit with groups, one without where there is one, and the scan, with what it takes to look at a place of all three.
 class Comparison {
  public:
-  Comparison(const Mesh& fitted, const Mesh& free, const PreparedScan& scan, const RunContext& context)
+  /// \param free  null: the scan stands for it, as it lies over the fit with groups
+  Comparison(const Mesh& fitted, const Mesh* free, const PreparedScan& scan, const RunContext& context)
       : fitted_(fitted),
         free_(free),
         size_(diagonal(fitted.vertices)),
         surface_(fitted),
-        free_surface_(free),
         scan_(scan),
         scan_index_(scan.points),
         face_of_point_(static_cast<std::size_t>(scan.points.rows())),
         held_(face_of_point_.size()),
-        free_distance_(face_of_point_.size()) {
+        height_(face_of_point_.size()) {
     parallel_for(context, held_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Vector3d point = scan.points.row(static_cast<Eigen::Index>(i));
-        const auto there = free_surface_.nearest(point);
+        const auto there = surface_.index.nearest(point);
+        face_of_point_[i] = there.face;
+        held_[i] = there.distance / size_;
+        height_[i] = (surface_.normal(there.face).dot(point - there.point) < 0 ? -1 : 1) * held_[i];
+      }
+    });
+    for (const double distance : held_) free_distance_.push_back(std::min(distance, kMaxApart));
+    if (free == nullptr) return;
+    const SurfaceIndex free_surface(*free);
+    parallel_for(context, held_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto there = free_surface.nearest(scan.points.row(static_cast<Eigen::Index>(i)));
         face_of_point_[i] = there.face;
         free_distance_[i] = there.distance / size_;
-        held_[i] = surface_.index.nearest(point).distance / size_;
       }
     });
   }
@@ -65,14 +75,23 @@ class Comparison {
 
   // False where the scan has nothing near the free fit.
   bool look(int face, const Vector3d& barycentric, Place& place) const {
+    constexpr int kOverPlace = 4;  // points whose mean height is the scan's, where there is no free fit
     const auto at = [&](const Mesh& mesh) -> Vector3d {
       return mesh.vertices(mesh.faces.row(face), Eigen::all).transpose() * barycentric;
     };
-    const Vector3d free = at(free_);
-    if (scan_index_.nearest(free, 1).front().distance > std::max(kSeen * size_, 2 * scan_.spacing)) return false;
     place.point = at(fitted_);
     place.normal = surface_.normal(face);
-    place.height = place.normal.dot(free - place.point) / size_;
+    const Vector3d free = free_ != nullptr ? at(*free_) : place.point;
+    const auto near = scan_index_.nearest(free, free_ != nullptr ? 1 : kOverPlace);
+    if (near.front().distance > std::max(kSeen * size_, 2 * scan_.spacing)) return false;
+    if (free_ != nullptr) {
+      place.height = place.normal.dot(free - place.point) / size_;
+      return true;
+    }
+    place.height = 0;
+    for (const auto& each : near) {
+      place.height += height_[static_cast<std::size_t>(each.index)] / static_cast<double>(near.size());
+    }
     return true;
   }
 
@@ -102,14 +121,13 @@ class Comparison {
 
  private:
   const Mesh& fitted_;
-  const Mesh& free_;
+  const Mesh* free_;
   double size_;
   MatchSurface surface_;
-  SurfaceIndex free_surface_;
   const PreparedScan& scan_;
   PointIndex scan_index_;
-  std::vector<int> face_of_point_;  // of the free fit
-  std::vector<double> held_, free_distance_;
+  std::vector<int> face_of_point_;                     // of the free fit
+  std::vector<double> held_, height_, free_distance_;  // of the diagonal; the height is a distance with its side
 };
 
 std::vector<Motion> motions_of(const Region& region) {
@@ -202,14 +220,11 @@ void take_out_motion(std::vector<Pair>& pairs, double size) {
   }
 }
 
-}  // namespace
-
-std::vector<GroupAgreement> group_agreement(const Mesh& fitted, const Mesh& free, const SymmetryAnnotation& carried,
-                                            const PreparedScan& scan, const RunContext& context) {
-  const Comparison comparison(fitted, free, scan, context);
+std::vector<GroupAgreement> agreement(const Comparison& comparison, const SymmetryAnnotation& carried,
+                                      const RunContext& context) {
   std::vector<GroupAgreement> result(carried.regions.size());
   parallel_for(context, result.size(), [&](std::size_t begin, std::size_t end) {
-    std::vector<char> own(static_cast<std::size_t>(fitted.faces.rows()));
+    std::vector<char> own(static_cast<std::size_t>(comparison.fitted().faces.rows()));
     for (std::size_t i = begin; i < end; ++i) {
       const Region& region = carried.regions[i];
       GroupAgreement& agreement = result[i];
@@ -230,6 +245,32 @@ std::vector<GroupAgreement> group_agreement(const Mesh& fitted, const Mesh& free
   });
   blame_outermost(carried, result);
   return result;
+}
+
+}  // namespace
+
+std::vector<GroupAgreement> group_agreement(const Mesh& fitted, const Mesh& free, const SymmetryAnnotation& carried,
+                                            const PreparedScan& scan, const RunContext& context) {
+  return agreement(Comparison(fitted, &free, scan, context), carried, context);
+}
+
+std::optional<std::vector<GroupAgreement>> agreement_beyond_doubt(const Mesh& fitted, const SymmetryAnnotation& carried,
+                                                                  const PreparedScan& scan, const RunContext& context) {
+  const Comparison comparison(fitted, nullptr, scan, context);
+  std::vector<char> own(static_cast<std::size_t>(fitted.faces.rows()), 1);
+  const auto may_disagree = [&] {
+    GroupAgreement agreement;
+    comparison.distances(own, agreement);
+    return 2 * agreement.held > kMin;
+  };
+  if (may_disagree()) return std::nullopt;
+  std::ranges::fill(own, 0);
+  for (const Region& region : carried.regions) {
+    for (const int face : region.faces) own[static_cast<std::size_t>(face)] = 1;
+    if (may_disagree()) return std::nullopt;
+    for (const int face : region.faces) own[static_cast<std::size_t>(face)] = 0;
+  }
+  return agreement(comparison, carried, context);
 }
 
 }  // namespace orbifit

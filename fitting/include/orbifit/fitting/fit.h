@@ -39,7 +39,7 @@ struct FitOptions {
   double tie = 0.8;          ///< placements of at least this share of the best one's score are fitted too, in (0, 1]
   int max_tried = 8;  ///< of those, by their score: where there are more than `max_tied` short fits choose among them
   int max_tied = 3;   ///< placements fitted in full, >= 1, <= max_tried
-  bool judge_groups = false;  ///< compare with a fit without groups: see GroupAgreement; takes as long again
+  bool judge_groups = false;  ///< compare with a fit without groups: see GroupAgreement; may take as long again
   /// Leave out the regions whose groups disagree with the scan, and fit anew; at most five times. Judges them.
   bool drop_unsupported = false;
   bool contacts = true;    ///< parts of the template that touch are to touch afterwards: held together at their joints
