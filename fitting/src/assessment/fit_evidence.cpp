@@ -59,9 +59,16 @@ class Stretched {
 
 }  // namespace
 
+double Evidence::most_error() const {
+  return error * (1 + kPolicy.worse) + kPolicy.least_error * kPolicy.least_error;
+}
+
+double Evidence::most_missed() const {
+  return missed + kPolicy.uncovered;
+}
+
 bool Evidence::as_good(const Evidence& other) const {
-  const double most = error * (1 + kPolicy.worse) + kPolicy.least_error * kPolicy.least_error;
-  return other.error <= most && other.missed <= missed + kPolicy.uncovered;
+  return other.error <= most_error() && other.missed <= most_missed();
 }
 
 FitEvidence::FitEvidence(const PreparedScan& scan, const SeenSurface& seen, const FitOptions& options,

@@ -21,6 +21,9 @@ struct Evidence {
 
   /// Whether a surface with the other evidence explains the scan as well as one with this, but for chance.
   bool as_good(const Evidence& other) const;
+
+  double most_error() const;   ///< that other evidence as good may have
+  double most_missed() const;  ///< likewise
 };
 
 /// What a scan says of a fitted surface that is stretched, or put elsewhere: of what all it explains the scan as well

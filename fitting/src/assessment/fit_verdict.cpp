@@ -13,11 +13,12 @@ namespace {
 
 // What is worth a sentence.
 struct VerdictPolicy {
-  double well = 0.9;     // confidence: a tenth of the evidence is against it, as much as noise and outliers make of it
-  double mostly = 0.7;   // confidence: below this a person would not call it a fit
-  double part = 0.02;    // share of the scan: a handle, where an outlier is a point
-  double unseen = 0.3;   // share of the surface: more than the underside that no scanner sees
-  double growth = 0.01;  // of the size: what a tape measure shows
+  double well = 0.9;      // confidence: a tenth of the evidence is against it, as much as noise and outliers make of it
+  double mostly = 0.7;    // confidence: below this a person would not call it a fit
+  double part = 0.02;     // share of the scan: a handle, where an outlier is a point
+  double unseen = 0.3;    // share of the surface: more than the underside that no scanner sees
+  double stretch = 0.05;  // of a length: less is what fits of noisy scans are off by
+  double growth = 0.01;   // of the size: what a tape measure shows
   std::size_t places = 3;  // of where poses differ: nobody looks at more
 };
 constexpr VerdictPolicy kVerdictPolicy;
@@ -87,14 +88,15 @@ std::string open_stretch(const Mesh& fitted, const OpenStretch& open) {
     way = directions == 1 ? "its " + dimension(fitted, axis) + ", along " + place(axis) + ","
                           : "its girth about " + place(axis) + ",";
   }
-  if (open.shorter == 0) return way + " up to " + percent(open.longer) + " larger";
-  if (open.longer == 0) return way + " up to " + percent(open.shorter) + " smaller";
+  if (open.shorter < kVerdictPolicy.stretch) return way + " up to " + percent(open.longer) + " larger";
+  if (open.longer < kVerdictPolicy.stretch) return way + " up to " + percent(open.shorter) + " smaller";
   return way + " from " + percent(open.shorter) + " smaller to " + percent(open.longer) + " larger";
 }
 
 void add_open_size(const FitResult& result, std::vector<std::string>& told) {
   std::string ways;
   for (const OpenStretch& open : result.open_stretches) {
+    if (open.most() < kVerdictPolicy.stretch) continue;
     ways += (ways.empty() ? " " : "; ") + open_stretch(result.fitted, open);
   }
   if (!ways.empty())

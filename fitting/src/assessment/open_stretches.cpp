@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 struct StretchPolicy {
-  double least = 0.05;    // stretch: less is what fits of noisy scans are off by
+  double least = 0.05;    // the first stretch tried: about as much as fits of noisy scans are off by
   int doublings = 2;      // of it: a fifth is as much as shapes of one kind differ
   double together = 0.1;  // cosine: axes that a group takes to one another by more belong together
 };
@@ -34,6 +34,25 @@ bool belong_together(const SymmetryAnnotation& annotation, Index faces, const Ve
       return std::abs(b.dot(element.linear * a)) > kStretchPolicy.together;
     });
   });
+}
+
+// A stretch that was tried and what the scan says of it.
+struct Tried {
+  double share = 0;
+  Evidence evidence;
+};
+
+// Where between one that is as good and one that is not the evidence stops being as good: of small stretches errors are
+// squares, and what is missed grows with them.
+double last_as_good(const Evidence& own, const Tried& good, const Tried& refused) {
+  const auto part = [](double from, double to, double most) {
+    return to > most ? std::clamp((most - from) / (to - from), 0.0, 1.0) : 1.0;
+  };
+  const double by_error = part(good.evidence.error, refused.evidence.error, own.most_error());
+  const double by_missed = part(good.evidence.missed, refused.evidence.missed, own.most_missed());
+  const double squared = good.share * good.share;
+  return std::min(std::sqrt(squared + by_error * (refused.share * refused.share - squared)),
+                  good.share + by_missed * (refused.share - good.share));
 }
 
 // Projections onto the directions that must be stretched alike.
@@ -66,15 +85,16 @@ std::vector<OpenStretch> open_stretches(const PreparedScan& scan, const SeenSurf
   const FitEvidence probe(scan, seen, options, context, result.fitted, FitEvidence::Asked::explained);
   if (probe.empty()) return {};
   const Evidence own = probe.of(Matrix3d::Identity(), 0);
-  // How far it goes one way, in steps that double; 0: not at all.
+  // How far it goes one way, tried in steps that double.
   const auto open = [&](const Matrix3d& along, double sign) {
-    double reached = 0;
+    Tried good{0, own};
     for (int step = 0; step <= kStretchPolicy.doublings; ++step) {
       const double share = kStretchPolicy.least * std::pow(2, step);
-      if (!own.as_good(probe.of(along, sign * share))) break;
-      reached = share;
+      Tried next{share, probe.of(along, sign * share)};
+      if (!own.as_good(next.evidence)) return last_as_good(own, good, next);
+      good = next;
     }
-    return reached;
+    return good.share;
   };
   std::vector<Matrix3d> ways = directions(result.annotation, result.fitted.faces.rows(), probe.axes());
   if (!options.fixed_scale) ways.emplace_back(Matrix3d::Identity());

@@ -101,7 +101,7 @@ struct LandmarkAgreement {
 struct OpenStretch {
   /// Projection onto the directions that are stretched, scan's frame: of rank 1, 2 (across an axis) or 3 (all of it)
   Eigen::Matrix3d along;
-  double shorter = 0, longer = 0;  ///< by at least this share of the length: 0, 0.05, 0.1 or 0.2
+  double shorter = 0, longer = 0;  ///< up to this share of the length, in [0, 0.2]: more was not tried
   double most() const { return std::max(shorter, longer); }
 };
 
