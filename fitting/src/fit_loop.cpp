@@ -28,24 +28,8 @@ constexpr double kStill = 1e-4;          // of the diagonal: the fit has converg
 constexpr double kGain = 0.02;           // or when a step lowers the energy by less than this share;
 constexpr double kLastGain = 0.002;      // in the end
 constexpr double kDamping = 1e-3;        // of one sample's share of the data
-// Of what counts as far: a level's iterations end where a step brings the template no farther, since they would find
-// the same places again, and the next level asks for more.
-constexpr double kSettled = 0.1;
-constexpr int kScheduledPoints = 1300;  // of the scan that are looked at, at least, while the stiffness falls
+constexpr int kScheduledPoints = 1300;   // of the scan that are looked at, at least, while the stiffness falls
 constexpr const char* kUsedUp = "the iterations allowed are used up";
-
-// How far a motion takes a corner of the mesh's bounding box, at most.
-double farthest_carried(const Mesh& mesh, const Similarity& motion) {
-  const Eigen::Vector3d low = mesh.vertices.colwise().minCoeff();
-  const Eigen::Vector3d high = mesh.vertices.colwise().maxCoeff();
-  double result = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d from((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
-                               (corner & 4) != 0 ? high.z() : low.z());
-    result = std::max(result, (motion(from) - from).norm());
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -162,8 +146,8 @@ void FitLoop::move_to(const FitState& state) {
   surface_.move(deformed_, context_);
 }
 
-double FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
-                     FitIteration& record) {
+void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
+                   FitIteration& record) {
   const DeformationSystem::Hold hold{now.stiffness,
                                      damping,
                                      state.q,
@@ -179,14 +163,12 @@ double FitLoop::step(FitState& state, const Matches& matches, const Stage& now, 
   }
   const Motion back = inverse(solution.scan_step);
   const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
-  const Similarity carried = Similarity{1, back.linear, back.translation} *
-                             Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
-  state.pose = state.pose * carried;
+  state.pose = state.pose * Similarity{1, back.linear, back.translation} *
+               Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
   move_to(state);
   record.damping = damping;
   record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;
   if (input_.watch) input_.watch(record, state.pose, deformed_.vertices);
-  return record.change * size_ + farthest_carried(input_.mesh, carried);
 }
 
 FitIteration FitLoop::record_of(const Matches& matches, const Stage& now, double energy) const {
@@ -245,9 +227,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
   move_to(state);
   last_stiffness_ = stiffness_for(scan_.noise / (state.pose.scale * size_));
   Stage now = stage(first_level * options_.iterations);
-  double moved = size_;  // by the last step
   for (int i = first_level * options_.iterations; i < options_.levels * options_.iterations; ++i) {
-    if (i % options_.iterations != 0 && moved < kSettled * now.robust) continue;
     context_.progress("fit", double(i) / options_.max_iterations);
     const Stopwatch clock;
     now = stage(i);
@@ -258,7 +238,7 @@ std::string FitLoop::run(FitState& state, int first_level, bool scale_open, std:
     const double share = share_of(matches, now.every);
     iterations.push_back(record_of(matches, now, energy(state, matches, share, now)));
     least_stiffness_ = stiffness_for(matches.spread);
-    moved = step(state, matches, now, share, 0, iterations.back());
+    step(state, matches, now, share, 0, iterations.back());
     iterations.back().seconds = clock.seconds();
   }
   std::string reason = kUsedUp;

@@ -26,10 +26,10 @@ struct FitState {
   std::vector<Motion> others = {};
 };
 
-/// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it; each of its
-/// levels ends where a step is short beside that. Then the stiffness stays, and so does what counts as far until a step
-/// gains next to nothing with it: there is one energy to lower, and a step that does not lower it is taken back. What
-/// the data do not determine holds still instead of swaying from one iteration to the next.
+/// The iterations of a fit. First the stiffness falls along a schedule, and what counts as far with it. Then the
+/// stiffness stays, and so does what counts as far until a step gains next to nothing with it: there is one energy to
+/// lower, and a step that does not lower it is taken back. What the data do not determine holds still instead of
+/// swaying from one iteration to the next.
 class FitLoop {
  public:
   /// All references are kept. \param start  its scan and views \param system  turned as the iterations go
@@ -70,10 +70,9 @@ class FitLoop {
   void add_pulls(const FitState& state, const Stage& now, Matches& matches) const;
   double energy(const FitState& state, const Matches& matches, double share, const Stage& now) const;
   FitIteration record_of(const Matches& matches, const Stage& now, double energy) const;
-  // One solve from there. \param share of each pair; what the record says of the step is filled in \return how far it
-  // has brought the template at most, pose and deformation, template units
-  double step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
-              FitIteration& record);
+  // One solve from there. \param share of each pair; what the record says of the step is filled in
+  void step(FitState& state, const Matches& matches, const Stage& now, double share, double damping,
+            FitIteration& record);
   struct Minimum {
     std::string reason;  // why no lower one was sought
     double spread = 0;   // as Matches has it, there

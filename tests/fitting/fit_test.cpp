@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"chair", "chair", {{"seat_width", 0.48}, {"seat_depth", 0.48}, {"leg_height", 0.46}}}),
     case_name);
 
-// Where nothing is to be moved, one step at each level of stiffness says so, and one at each scale of what is far.
+// Where nothing is to be moved, two steps at each scale of what is far say so, once the stiffness has fallen.
 TEST(Fit, TakesNoMoreStepsThanBringItFarther) {
   RunContext context;
   const GeneratedModel model = generate("table");
@@ -106,11 +106,11 @@ TEST(Fit, TakesNoMoreStepsThanBringItFarther) {
   options.refinements = 0;
   const FitInput input{model.mesh, model.truth, scan, Similarity{}};
   const FitResult there = fit(input, options, context);
-  EXPECT_LE(there.iterations.size(), static_cast<std::size_t>(options.levels) + 12);
+  EXPECT_LE(there.iterations.size(), static_cast<std::size_t>(options.levels * options.iterations) + 8);
   FitInput away = input;
   away.pose = {1, Eigen::Matrix3d::Identity(), 0.03 * diagonal(model.mesh.vertices) * Eigen::Vector3d::UnitX()};
   const FitResult moved = fit(away, options, context);
-  EXPECT_GT(moved.iterations_in_all, there.iterations_in_all);
+  EXPECT_GE(moved.iterations_in_all, there.iterations_in_all);
   EXPECT_LT((moved.fitted.vertices - there.fitted.vertices).rowwise().norm().maxCoeff(),
             0.01 * diagonal(model.mesh.vertices));
 }

@@ -21,7 +21,7 @@ namespace orbifit {
 struct FitOptions {
   SubspaceOptions subspace;
   int levels = 12;                ///< of stiffness, from stiff to soft, >= 1
-  int iterations = 3;             ///< at each level, at most, >= 1
+  int iterations = 3;             ///< at each level, >= 1
   int max_iterations = 80;        ///< in all, >= levels * iterations
   double first_stiffness = 10;    ///< Laplace energy against data, > last_stiffness
   double last_stiffness = 0.01;   ///< of a scan without noise; noisier ones are followed less closely, > 0
