@@ -370,7 +370,7 @@ TEST(PartOfASurface, AnswersAsAnIndexOfItsFaces) {
   Random random(22);
   const Mesh mesh = random_soup(random, 400);
   const SurfaceIndex whole(mesh);
-  for (const std::size_t size : {1U, 40U, 399U, 400U}) {
+  for (const std::size_t size : {1U, 19U, 40U, 399U, 400U}) {
     std::vector<int> faces(400);
     std::iota(faces.begin(), faces.end(), 0);
     for (std::size_t i = 0; i < size; ++i) std::swap(faces[i], faces[i + random.below(400 - i)]);

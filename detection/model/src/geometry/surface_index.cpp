@@ -28,6 +28,10 @@ constexpr double kCullMargin = 1e-6;
 // Squared sine of a corner below which Ericson's method, whose products grow with the fourth power, loses digits.
 constexpr double kSliver = 1e-2;
 
+// Of that many times as many faces, some share the tree; fewer have one of their own, which is soon made and does not
+// lead past all the others.
+constexpr std::size_t kWorthATree = 20;
+
 // From far away a ray begins anew at a sphere of this radius about the box, where single precision resolves the faces.
 constexpr double kSphere = 2;
 
@@ -197,6 +201,8 @@ struct SurfaceIndex::Implementation {
 
   void take(const Mesh& mesh);  // the corners of the faces numbered; those near one another come to lie near in memory
   void build();
+  std::shared_ptr<Implementation> some(
+      const std::vector<bool>& in) const;  // those faces, by place, in a tree of theirs
   Nearest nearest(const Eigen::Vector3d& point, double max_distance, const Eigen::Vector3d* normal, double min_cosine,
                   bool unsigned_normal, const std::vector<bool>* only, bool any = false, int likely = -1) const;
 
@@ -467,6 +473,20 @@ void SurfaceIndex::Implementation::take(const Mesh& mesh) {
   for (const int face : face_numbers) corners.push_back(corners_of(mesh, face));
 }
 
+std::shared_ptr<SurfaceIndex::Implementation> SurfaceIndex::Implementation::some(const std::vector<bool>& in) const {
+  auto result = std::make_shared<Implementation>();
+  result->places.assign(places.size(), -1);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!in[i]) continue;
+    result->places[static_cast<std::size_t>(face_numbers[i])] = static_cast<int>(result->corners.size());
+    result->face_numbers.push_back(face_numbers[i]);
+    const Corners& face = corners[i];
+    result->corners.push_back({face.a / scale, face.b / scale, face.c / scale});
+  }
+  if (!result->corners.empty()) result->build();
+  return result;
+}
+
 SurfaceIndex::SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces)
     : implementation_(std::make_shared<Implementation>()) {
   Implementation& data = *implementation_;
@@ -499,6 +519,7 @@ SurfaceIndex SurfaceIndex::part(const std::vector<int>& faces) const {
     ++count;
   }
   if (count == data.face_numbers.size()) only.reset();
+  if (kWorthATree * count < data.face_numbers.size()) return {data.some(*only), nullptr};
   return {implementation_, std::move(only)};
 }
 

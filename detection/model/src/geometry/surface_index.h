@@ -16,8 +16,9 @@ class SurfaceIndex {
   /// \param faces the faces to index; empty means all. The mesh is copied as far as needed.
   explicit SurfaceIndex(const Mesh& mesh, const std::vector<int>& faces = {});
 
-  /// Of some of the faces: all that this index holds is shared, so that it costs next to nothing, O(#faces + F / 64).
-  /// Where many others lie nearer than they, queries take longer. Rays still meet all faces.
+  /// Of some of the faces. All that this index holds is shared, so that it costs next to nothing, O(#faces + F / 64);
+  /// but where many others lie nearer than they, queries take longer, and so a few among very many get a tree of their
+  /// own, O(#faces log #faces + F). Not for rays, which may meet all faces of this index.
   /// \param faces  numbers in the mesh; those that this index does not find are left out
   SurfaceIndex part(const std::vector<int>& faces) const;
 
