@@ -384,11 +384,15 @@ class PartSearch {
     std::optional<OwnGroup> group;
   };
 
-  SetLook look_at_set(const std::vector<int>& members, const std::vector<Vector3d>& axes) const {
+  SetLook look_at_set(const std::vector<int>& members) const {
     SetLook look{patch_of(members, "set"), {}};
+    look_for_group(look, {});
+    return look;
+  }
+
+  void look_for_group(SetLook& look, const std::vector<Vector3d>& axes) const {
     const bool screen = axes.empty() && needs_screen(look.patch.moments);
     look.group = find_own_group(look.patch, screen ? &screen_ : nullptr, hints(axes), context_);
-    return look;
   }
 
   bool worth_a_look(const std::vector<int>& members) {
@@ -413,7 +417,7 @@ class PartSearch {
       if (some && worth_a_look(kind.members)) sets.push_back(&kind.members);
     }
     std::vector<std::optional<SetLook>> looks(sets.size());
-    for_each(sets.size(), [&](std::size_t i) { looks[i] = look_at_set(*sets[i], {}); });
+    for_each(sets.size(), [&](std::size_t i) { looks[i] = look_at_set(*sets[i]); });
     for (std::size_t i = 0; i < sets.size() && !late(); ++i) {
       context_.progress("sets", static_cast<double>(i) / static_cast<double>(sets.size()));
       if (looks[i]) take_set_group("sets", *looks[i], *sets[i]);
@@ -435,7 +439,16 @@ class PartSearch {
       note("axes", turn, members, false, "some of many of a kind");
       return true;
     }
-    return take_set_group("axes", look_at_set(members, {turn.frame.col(2)}), members);
+    SetLook look{patch_of(members, "set"), {}};
+    // Finite groups that hold the turn are as far off as it is.
+    const GroupPlacement fitted = refine(look.patch, turn, context_);
+    if (!continuous_about(look.patch, fitted.frame.col(2), fitted.centre) &&
+        coincidence(fitted, members, area_of(members), largest_residual(fitted, look.patch))) {
+      note("axes", fitted, members, false, "far less exact than a region around it");
+      return true;
+    }
+    look_for_group(look, {turn.frame.col(2)});
+    return take_set_group("axes", look, members);
   }
 
   // The parts of `of` that none of the others holds.

@@ -236,6 +236,15 @@ class GroupSearch {
     return true;
   }
 
+  // Of what seems to turn by any angle: a look with the axis roughly refined spares most that does not a fit, and what
+  // does not turn has no mirror across its axis either.
+  void attempt_continuous(const Vector3d& axis) {
+    const GroupPlacement better = coarse({Family::Cinfv, 1}, axis);
+    if (!continuous_about(patch_, better.frame.col(2), better.centre)) return;
+    const GroupFrame frame = frame_about(axis);
+    if (attempt({Family::Cinfv, 1}, frame)) attempt({Family::Dinfh, 1}, frame);
+  }
+
   bool try_sphere(const CandidateDirections& candidates) {
     const auto [low, high] = std::ranges::minmax(candidates.variances);
     if (finite_ || high <= 0 || std::sqrt(high) - std::sqrt(std::max(low, 0.0)) > patch_.tolerance) return false;
@@ -308,8 +317,8 @@ class GroupSearch {
   void find_rotations(const Vector3d& axis, const AxisLook& look) {
     context_.check();
     if (look.continuous) {
-      const GroupFrame frame = frame_about(axis);
-      if (attempt({Family::Dinfh, 1}, frame) || attempt({Family::Cinfv, 1}, frame)) return;
+      attempt_continuous(axis);
+      if (continuous()) return;
     }
     const std::vector<int> orders = look.continuous ? orders_about(axis) : look.orders;
     if (orders.empty()) return;
