@@ -236,13 +236,12 @@ class GroupSearch {
     return true;
   }
 
-  // Of what seems to turn by any angle: a look with the axis roughly refined spares most that does not a fit, and what
-  // does not turn has no mirror across its axis either.
+  // Of what seems to turn by any angle: a look with the axis roughly refined spares most that does not the fits.
   void attempt_continuous(const Vector3d& axis) {
     const GroupPlacement better = coarse({Family::Cinfv, 1}, axis);
     if (!continuous_about(patch_, better.frame.col(2), better.centre)) return;
     const GroupFrame frame = frame_about(axis);
-    if (attempt({Family::Cinfv, 1}, frame)) attempt({Family::Dinfh, 1}, frame);
+    if (!attempt({Family::Dinfh, 1}, frame)) attempt({Family::Cinfv, 1}, frame);
   }
 
   bool try_sphere(const CandidateDirections& candidates) {
