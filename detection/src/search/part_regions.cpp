@@ -440,7 +440,7 @@ class PartSearch {
       return true;
     }
     SetLook look{patch_of(members, "set"), {}};
-    // Finite groups that hold the turn are as far off as it is.
+    // A finite group that holds the turn is at least as far off as the turn alone.
     const GroupPlacement fitted = refine(look.patch, turn, context_);
     if (!continuous_about(look.patch, fitted.frame.col(2), fitted.centre) &&
         coincidence(fitted, members, area_of(members), largest_residual(fitted, look.patch))) {

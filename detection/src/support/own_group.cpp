@@ -236,7 +236,8 @@ class GroupSearch {
     return true;
   }
 
-  // Of what seems to turn by any angle: a look with the axis roughly refined spares most that does not the fits.
+  // About an axis about which the patch seems to turn by any angle. Seldom does it: a second look, once the axis is
+  // roughly refined, spares two fits.
   void attempt_continuous(const Vector3d& axis) {
     const GroupPlacement better = coarse({Family::Cinfv, 1}, axis);
     if (!continuous_about(patch_, better.frame.col(2), better.centre)) return;
