@@ -134,7 +134,7 @@ SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mes
   std::vector<Region> measured = found.regions;
   SymmetryAnnotation apart = found;
   number(apart);
-  yield_to_parts(surface, ending_within_surface(prepared, apart.regions, apart.tolerance, context), apart, explanation,
+  yield_to_parts(surface, region_borders(prepared, apart.regions, apart.tolerance, context), apart, explanation,
                  context);
   ConsistentAnnotation kept = consistent_annotation(surface, apart, context);
   kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
@@ -146,7 +146,7 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
                                              Explanation* explanation, const RunContext& context) {
   number(found);
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
-  const std::vector<char> ends_within = ending_within_surface(prepared, found.regions, found.tolerance, context);
+  const std::vector<RegionBorder> borders = region_borders(prepared, found.regions, found.tolerance, context);
   std::vector<Region> measured = found.regions;
   Remaining possible{std::move(found), {}};
   Remaining now = possible;
@@ -154,7 +154,7 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
   for (bool first = true;; first = !first) {
     SymmetryAnnotation listed = without_what_follows(prepared, now.found, context);
     Explanation yielding;
-    yield_to_parts(surface, ends_within, listed, &yielding, context);
+    yield_to_parts(surface, borders, listed, &yielding, context);
     ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
     if (kept.left_out.empty()) {
       kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);

@@ -44,6 +44,21 @@ Mesh fine_box() {
   return test::subdivided(test::box(1, 1, 1), 6);
 }
 
+TEST(Border, IsNotSmoothWhereItIsExcused) {
+  const Mesh mesh = fine_box();
+  const PreparedMesh prepared = prepare(mesh);
+  std::vector<int> upper;
+  for (int f = 0; f < mesh.faces.rows(); ++f) {
+    if (mesh.vertices(mesh.faces.row(f), 2).mean() > 0.1) upper.push_back(f);
+  }
+  const auto share = [&](const std::function<bool(const Vector3d&)>& excused) {
+    return smooth_border_share(prepared, face_sides(prepared), upper, test::kTolerance, excused);
+  };
+  EXPECT_EQ(share([](const Vector3d&) { return true; }), 0);
+  EXPECT_EQ(share([](const Vector3d&) { return false; }), share({}));
+  EXPECT_NEAR(share([](const Vector3d& middle) { return middle.x() > 0; }), 0.5 * share({}), 0.05);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Shapes, Border,
     testing::Values(Ended{"AllOfABox", fine_box(), [](const Vector3d&) { return true; }, 0, 0},

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kCells = 80;                   // along each side of a sheet of side 1
+constexpr int kSheetCells = 80;              // along each side of a sheet of side 1
 constexpr double kPeg = 4.0 / 80;            // half of a side of its top
 constexpr double kFoot = 5.0 / 80;           // and of its foot
 const Vector2d kPegAt(24.0 / 80, 8.0 / 80);  // so far from mirrors that its images are apart
@@ -36,7 +36,7 @@ std::vector<Vector2d> images_of_peg(const PointGroup& group) {
 
 // A sheet with pegs.
 Mesh pegged(const std::vector<Vector2d>& pegs) {
-  return test::sheet(kCells, [&](double x, double y) {
+  return test::sheet(kSheetCells, [&](double x, double y) {
     return std::ranges::any_of(pegs,
                                [&](const Vector2d& peg) {
                                  return from_peg({x, y}, peg) < kPeg + 1e-9;
@@ -81,11 +81,11 @@ SymmetryAnnotation annotated(const Mesh& mesh, const PointGroup& group, const st
 void yield(const Mesh& mesh, SymmetryAnnotation& annotation, Explanation* explanation = nullptr) {
   const RunContext context;
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, annotation.tolerance, context);
-  const std::vector<char> ends_within =
-      ending_within_surface(prepare(mesh), annotation.regions, annotation.tolerance, context);
-  EXPECT_EQ(ends_within.front(), 1);  // the disc
-  for (std::size_t i = 1; i < ends_within.size(); ++i) EXPECT_EQ(ends_within[i], 0);
-  yield_to_parts(surface, ends_within, annotation, explanation, context);
+  const std::vector<RegionBorder> borders =
+      region_borders(prepare(mesh), annotation.regions, annotation.tolerance, context);
+  EXPECT_EQ(borders.front(), RegionBorder::kWithinSmooth);  // the disc
+  for (std::size_t i = 1; i < borders.size(); ++i) EXPECT_EQ(borders[i], RegionBorder::kOfPart);
+  yield_to_parts(surface, borders, annotation, explanation, context);
 }
 
 class YieldingBorders : public testing::TestWithParam<const char*> {
@@ -114,7 +114,7 @@ TEST_P(YieldingBorders, GoAroundAPartWithoutImages) {
     const Vector3d centroid = mesh.vertices(mesh.faces.row(face), Eigen::all).colwise().mean();
     const auto nearest =
         std::ranges::min_element(images, {}, [&](const Vector2d& peg) { return from_peg(centroid.head<2>(), peg); });
-    EXPECT_LT(from_peg(centroid.head<2>(), *nearest), kFoot + 2.0 / kCells);
+    EXPECT_LT(from_peg(centroid.head<2>(), *nearest), kFoot + 2.0 / kSheetCells);
     ++about[static_cast<std::size_t>(nearest - images.begin())];
   }
   EXPECT_GT(*std::ranges::min_element(about), 0);
@@ -132,6 +132,39 @@ TEST_P(YieldingBorders, StayWhereTheRegionHoldsTheParts) {
 
 INSTANTIATE_TEST_SUITE_P(Groups, YieldingBorders, testing::Values("C2", "C4", "C4v"));
 
+// A sheet goes on to one side of a mirror only, and the region ends where the other side's end has its image.
+class BeforeAnEnd : public testing::TestWithParam<const char*> {};
+
+TEST_P(BeforeAnEnd, YieldsToPartsThatSaveMore) {
+  const double mirror = 0.1;
+  const Vector2d peg(-0.1, 0.1);
+  const Mesh mesh = pegged({peg});
+  SymmetryAnnotation annotation = empty_annotation(mesh, 0.005);
+  GroupFrame across;  // its third axis is the mirror's normal
+  across << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  annotation.regions.push_back(make_region(
+      *PointGroup::parse("Cs"), Vector3d(mirror, 0, 0), across,
+      faces_where(mesh,
+                  [&](const Vector2d& point) { return point.x() > 2 * mirror - 0.5 && from_peg(point, peg) > kFoot; }),
+      "two sides"));
+  annotation.regions.push_back(
+      make_region(*PointGroup::parse(GetParam()), {peg.x(), peg.y(), 0}, GroupFrame::Identity(),
+                  faces_where(mesh, [&](const Vector2d& point) { return from_peg(point, peg) < kFoot; }), "peg"));
+  for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
+  const RunContext context;
+  const std::vector<RegionBorder> borders =
+      region_borders(prepare(mesh), annotation.regions, annotation.tolerance, context);
+  EXPECT_EQ(borders[0], RegionBorder::kBeforeEnds);
+  EXPECT_EQ(borders[1], RegionBorder::kOfPart);
+  const std::vector<int> before = annotation.regions[0].faces;
+  yield_to_parts(ConsistencySearch::surface_of(mesh, annotation.tolerance, context), borders, annotation, nullptr,
+                 context);
+  const bool saves = annotation.regions[1].group.order() > 1;
+  EXPECT_EQ(annotation.regions[0].faces.size() < before.size(), saves);
+}
+
+INSTANTIATE_TEST_SUITE_P(Groups, BeforeAnEnd, testing::Values("C1", "C4v"));
+
 TEST(YieldToParts, LeavesAloneWhatWouldLoseHalf) {
   const Mesh mesh = pegged({kPegAt});
   const PointGroup group = *PointGroup::parse("C4");
@@ -140,7 +173,7 @@ TEST(YieldToParts, LeavesAloneWhatWouldLoseHalf) {
   const std::vector<Vector2d> gaps = images_of_peg(group);
   annotation.regions[0].faces = faces_where(mesh, [&](const Vector2d& point) {
     return std::ranges::any_of(gaps, [&](const Vector2d& gap) {
-      return from_peg(point, gap) > kFoot && from_peg(point, gap) < kFoot + 1.0 / kCells;
+      return from_peg(point, gap) > kFoot && from_peg(point, gap) < kFoot + 1.0 / kSheetCells;
     });
   });
   const std::vector<int> before = annotation.regions[0].faces;

@@ -9,6 +9,7 @@
 
 #include "base/dense.h"
 #include "base/random.h"
+#include "group/verification.h"
 #include "surface/thresholds.h"
 
 namespace orbifit {
@@ -37,10 +38,12 @@ Motion reached(const Vector3d& w, const Vector3d& v, const Vector3d& centre) {
   return motion;
 }
 
-bool fits(const SurfacePatch& patch, const SurfaceIndex& whole, const Motion& motion, double tolerance) {
+bool fits(const SurfacePatch& patch, const SurfaceIndex& whole, const SurfaceEnds& ends,
+          const std::vector<Motion>& group, const Motion& motion, double tolerance) {
   const Eigen::Index total = patch.samples.points.rows();
   const Eigen::Index count = std::min<Eigen::Index>(total, kPlanarSamples);
-  Eigen::Index kept = 0;
+  Eigen::Index off = 0;
+  Eigen::Index past = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index s = i * total / count;
     const Vector3d image = motion(patch.samples.points.row(s));
@@ -48,10 +51,11 @@ bool fits(const SurfacePatch& patch, const SurfaceIndex& whole, const Motion& mo
     const bool free = patch.at_crease[static_cast<std::size_t>(s)] != 0;
     const bool on =
         free ? whole.within(image, tolerance) : whole.within_facing(image, normal, kAlikeNormals, tolerance);
-    kept += on ? 1 : 0;
-    if (static_cast<double>(i + 1 - kept) > (1 - kFits) * static_cast<double>(count)) return false;
+    if (on) continue;
+    ++(ends.past_broken_end(image, whole, group) ? past : off);
+    if (static_cast<double>(off) > (1 - kFits) * static_cast<double>(count)) return false;
   }
-  return true;
+  return 2 * past <= count && static_cast<double>(off) <= (1 - kFits) * static_cast<double>(count - past);
 }
 
 // Twists that map a continuous group to itself, in units of the patch's size about its centre.
@@ -113,7 +117,7 @@ Eigen::MatrixXd slippable_twists(const SurfacePatch& patch, const GroupPlacement
 }  // namespace
 
 bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, const SurfaceIndex& whole,
-                 double tolerance, const RunContext& context) {
+                 const SurfaceEnds& ends, double tolerance, const RunContext& context) {
   const Vector3d centre = patch.samples.points.colwise().mean();
   const double size = spread_about(patch, centre);
   if (!(size > 0)) return true;
@@ -129,6 +133,7 @@ bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, con
     for (double& weight : mixture) weight = random.normal();
     ways.emplace_back(slip * mixture.normalized());
   }
+  const std::vector<Motion> group = judged_motions(placement.group, placement.frame, placement.centre);
   constexpr std::array<double, 4> kAmounts{0.31, 0.57, 0.83, 1};
   return std::ranges::any_of(ways, [&](const Vector6d& way) {
     context.check();
@@ -139,7 +144,7 @@ bool featureless(const SurfacePatch& patch, const GroupPlacement& placement, con
     const double most = turns ? 1.7 / w.norm() : 0.2 * patch.moments.diagonal / std::max(v.norm(), 1e-12);
     return std::ranges::all_of(kAmounts, [&](double amount) {
       const double k = amount * most;
-      return fits(patch, whole, reached(k * w, k * v, centre), tolerance);
+      return fits(patch, whole, ends, group, reached(k * w, k * v, centre), tolerance);
     });
   });
 }

@@ -244,7 +244,9 @@ LineRegionSearch::Judgement LineRegionSearch::judge(const Candidate& candidate, 
   }
   if (is_known(Question::kEndsAnywhere)) return known_already();
   // What slides is turned or straight, and was looked for as such: no larger group is.
-  const auto slides = [&] { return featureless(patch, region.placement, whole_, surface_.tolerance, context); };
+  const auto slides = [&] {
+    return featureless(patch, region.placement, whole_, surface_.ends, surface_.tolerance, context);
+  };
   if (slides()) return judged(false, "other motions keep it as well");
   std::optional<OwnGroup> own;
   if (candidate.enlarge) own = find_own_group(patch, nullptr, {{region.placement.frame.col(2)}}, context);
@@ -380,7 +382,10 @@ bool LineRegionSearch::ends_anywhere(const FoundRegion& region, std::size_t firs
   bool held = false;
   for (std::size_t r = first; r < said_.size() && !held; ++r) held = holds(r);
   if (!held) return false;
-  return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance) >
+  const std::vector<Motion> motions =
+      judged_motions(region.placement.group, region.placement.frame, region.placement.centre);
+  const auto ended = [&](const Eigen::Vector3d& middle) { return surface_.ends.taken_near(middle, motions); };
+  return smooth_border_share(prepared, surface_.sides, region.faces, surface_.tolerance, ended) >
          kEvidencePolicy.smooth_border;
 }
 

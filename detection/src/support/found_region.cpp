@@ -241,10 +241,11 @@ void drop_lesser_groups(const PreparedMesh& prepared, double tolerance, std::vec
 void drop_featureless(const PreparedMesh& prepared, const SurfaceIndex& whole, double tolerance,
                       const RunContext& context, std::vector<FoundRegion>& regions, Explanation* explanation) {
   constexpr int kSamples = 400;
+  const SurfaceEnds ends(prepared, tolerance);
   std::erase_if(regions, [&](const FoundRegion& region) {
     if (region.area > 0.5 * prepared.area) return false;  // the whole is no piece of anything
     const SurfacePatch patch = make_patch(prepared, region.faces, kSamples, tolerance, context, "slip");
-    const bool drop = featureless(patch, region.placement, whole, tolerance, context);
+    const bool drop = featureless(patch, region.placement, whole, ends, tolerance, context);
     if (drop) note_drop(explanation, "featureless", region, "slides over the surface around it");
     return drop;
   });

@@ -98,8 +98,9 @@ std::vector<int> kept_faces(const ScreenedSurface& surface, const std::vector<in
   return result;
 }
 
-// What to take of the pieces.
-std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int>& faces) {
+// What to take of the pieces, where the motions keep the faces.
+std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int>& faces,
+                           const std::vector<Motion>& motions) {
   const Components& pieces = surface.prepared.components;
   const auto piece_of = [&](int face) {
     return static_cast<std::size_t>(pieces.component_of_face[static_cast<std::size_t>(face)]);
@@ -110,14 +111,15 @@ std::vector<int> by_pieces(const ScreenedSurface& surface, const std::vector<int
     in[piece_of(f)] += surface.prepared.areas[f];
     taken[static_cast<std::size_t>(f)] = 1;
   }
-  // Of what belongs of flat pieces: the length of its border, and of that within the piece.
+  // Of what belongs of flat pieces: the length of its border, and of that within the piece, where no image of it is
+  // where the surface ends.
   std::vector<double> border(pieces.faces.size(), 0);
   std::vector<double> cut(pieces.faces.size(), 0);
   for (const ScreenedSurface::FlatEdge& edge : surface.flat_edges) {
     if (taken[static_cast<std::size_t>(edge.face)] == 0) continue;
     if (edge.other >= 0 && taken[static_cast<std::size_t>(edge.other)] != 0) continue;
     border[piece_of(edge.face)] += edge.length;
-    if (edge.other >= 0) cut[piece_of(edge.face)] += edge.length;
+    if (edge.other >= 0 && !surface.ends.taken_near(edge.middle, motions)) cut[piece_of(edge.face)] += edge.length;
   }
   std::vector<int> result;
   for (std::size_t piece = 0; piece < pieces.faces.size(); ++piece) {
@@ -141,7 +143,8 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
       tolerance(detector_tolerance),
       grid(mesh, with_area(mesh), detector_tolerance),
       balls(find_balls(mesh, detector_tolerance)),
-      sides(face_sides(mesh)) {
+      sides(face_sides(mesh)),
+      ends(mesh, detector_tolerance) {
   faces = with_area(mesh);
   Random random(context.seed, "screen");
   samples = sample_surface(mesh.mesh, mesh.areas, mesh.normals, sample_count, random, faces);
@@ -162,7 +165,8 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
       const auto other = std::ranges::find_if(edge.faces, [&](int g) {
         return g != f && mesh.areas[g] > 0 && mesh.components.component_of_face[static_cast<std::size_t>(g)] == piece;
       });
-      flat_edges.push_back({f, other == edge.faces.end() ? -1 : *other, (end(1) - end(0)).norm()});
+      flat_edges.push_back(
+          {f, other == edge.faces.end() ? -1 : *other, (end(1) - end(0)).norm(), 0.5 * (end(0) + end(1))});
     }
   }
 }
@@ -170,7 +174,7 @@ ScreenedSurface::ScreenedSurface(const PreparedMesh& mesh, double detector_toler
 std::vector<int> grid_region(const ScreenedSurface& surface, const GroupPlacement& placement,
                              const RunContext& context) {
   const std::vector<Motion> motions = judged_motions(placement.group, placement.frame, placement.centre);
-  return by_pieces(surface, kept_faces(surface, surface.faces, motions, context));
+  return by_pieces(surface, kept_faces(surface, surface.faces, motions, context), motions);
 }
 
 std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePatch& patch,
@@ -202,7 +206,7 @@ std::vector<int> thinned_region(const ScreenedSurface& surface, const SurfacePat
   for (std::size_t i = 0; i < stays.size(); ++i) {
     if (stays[i] != 0) faces.push_back(patch.faces[i]);
   }
-  return by_pieces(surface, faces);
+  return by_pieces(surface, faces, motions);
 }
 
 }  // namespace orbifit

@@ -9,6 +9,7 @@
 #include "group/verification.h"
 #include "primitives/balls.h"
 #include "surface/face_sides.h"
+#include "surface/surface_ends.h"
 #include "surface/surface_grid.h"
 #include "surface/surface_patch.h"
 
@@ -31,11 +32,13 @@ struct ScreenedSurface {
   struct FlatEdge {
     int face, other;
     double length;
+    Eigen::Vector3d middle;
   };
   std::vector<FlatEdge> flat_edges;
   std::vector<char> piece_flat;  ///< by piece: a part of one plane
   Balls balls;
   std::vector<std::array<FaceSide, 3>> sides;  ///< of all faces
+  SurfaceEnds ends;
 };
 
 /// The maximal region of a group, S(G) = {x : g x is on the surface for all g in G}, roughly: by the grid, so to a

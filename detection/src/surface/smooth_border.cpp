@@ -13,16 +13,20 @@ namespace {
 using Eigen::Vector3d;
 using Sides = std::vector<std::array<FaceSide, 3>>;
 
+Vector3d middle_of(const PreparedMesh& prepared, const FaceSide& side) {
+  const auto end = [&](std::size_t k) -> Vector3d {
+    return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(side.ends[k])]);
+  };
+  return 0.5 * (end(0) + end(1));
+}
+
 // Whether the surface about an edge faces the way it does there, as far as `reach`.
 bool smooth_about(const PreparedMesh& prepared, const Sides& sides, int face, const FaceSide& side, double reach) {
   constexpr double kElsewhere = 0.9396926207859084;  // cosine of 20 degrees
   constexpr double kMax = 0.125;                     // of the area that faces elsewhere
   constexpr std::size_t kMaxFaces = 400;
   const Vector3d normal = (prepared.normals.row(face) + prepared.normals.row(side.face)).normalized();
-  const auto end = [&](std::size_t k) -> Vector3d {
-    return prepared.mesh.vertices.row(prepared.weld.representative[static_cast<std::size_t>(side.ends[k])]);
-  };
-  const Vector3d middle = 0.5 * (end(0) + end(1));
+  const Vector3d middle = middle_of(prepared, side);
   std::vector<int> near{face, side.face};
   std::unordered_set<int> seen(near.begin(), near.end());
   double area = 0;
@@ -42,7 +46,7 @@ bool smooth_about(const PreparedMesh& prepared, const Sides& sides, int face, co
 }  // namespace
 
 double smooth_border_share(const PreparedMesh& prepared, const Sides& sides, const std::vector<int>& faces,
-                           double tolerance) {
+                           double tolerance, const std::function<bool(const Vector3d& middle)>& excused) {
   constexpr std::size_t kLooks = 300;
   constexpr double kReach = 4;  // tolerances
   struct BorderEdge {
@@ -61,7 +65,8 @@ double smooth_border_share(const PreparedMesh& prepared, const Sides& sides, con
   for (std::size_t k = 0; k < looks; ++k) {
     const BorderEdge& edge = border[k * border.size() / looks];
     length += edge.side->length;
-    if (smooth_about(prepared, sides, edge.face, *edge.side, kReach * tolerance)) smooth += edge.side->length;
+    if (!smooth_about(prepared, sides, edge.face, *edge.side, kReach * tolerance)) continue;
+    if (!excused || !excused(middle_of(prepared, *edge.side))) smooth += edge.side->length;
   }
   return length > 0 ? smooth / length : 0;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "surface/face_sides.h"
@@ -13,8 +14,11 @@ namespace orbifit {
 /// joined to them; what ends within planes and gentle curves is what some motion happens to keep.
 /// Looks at no more than 300 edges. \param faces ascending \param sides of all faces, see face_sides()
 /// \param tolerance a length
+/// \param excused whether the middle of an edge, where the surface goes on smoothly, is a place for a border all the
+///                same; null: none is
 /// \return 0 where nothing is beyond the border
 double smooth_border_share(const PreparedMesh& prepared, const std::vector<std::array<FaceSide, 3>>& sides,
-                           const std::vector<int>& faces, double tolerance);
+                           const std::vector<int>& faces, double tolerance,
+                           const std::function<bool(const Eigen::Vector3d& middle)>& excused = {});
 
 }  // namespace orbifit

@@ -1,0 +1,57 @@
+#include "surface/surface_ends.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "geometry/topology.h"
+
+namespace orbifit {
+
+namespace {
+
+constexpr double kNearEnd = 4;      // tolerances
+constexpr double kNearlyAll = 0.8;  // of the area
+constexpr double kSame = 0.1;       // tolerances: distances that are alike
+
+// Whether nearly all of the surface hangs together.
+bool nearly_one(const PreparedMesh& prepared) {
+  const Components parts = touching_parts(prepared.mesh, prepared.weld);
+  const double most = kNearlyAll * prepared.area;
+  return std::ranges::any_of(parts.faces,
+                             [&](const std::vector<int>& faces) { return area_of(prepared, faces) > most; });
+}
+
+}  // namespace
+
+SurfaceEnds::SurfaceEnds(const PreparedMesh& prepared, double tolerance) : tolerance_(tolerance) {
+  std::vector<Edge> edges = welded_edges(prepared.mesh, prepared.weld);
+  std::erase_if(edges, [](const Edge& edge) { return edge.faces.size() != 1; });
+  if (edges.empty() || !nearly_one(prepared)) return;
+  Mesh lines;
+  lines.vertices = prepared.mesh.vertices;
+  lines.faces.resize(static_cast<Eigen::Index>(edges.size()), 3);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto end = [&](std::size_t k) {
+      return prepared.weld.representative[static_cast<std::size_t>(edges[e].vertices[k])];
+    };
+    lines.faces.row(static_cast<Eigen::Index>(e)) << end(0), end(1), end(1);
+  }
+  edges_.emplace(lines);
+}
+
+bool SurfaceEnds::taken_near(const Eigen::Vector3d& point, const std::vector<Motion>& motions) const {
+  return edges_ && std::ranges::any_of(motions, [&](const Motion& motion) { return near(motion(point)); });
+}
+
+bool SurfaceEnds::past_broken_end(const Eigen::Vector3d& point, const SurfaceIndex& whole,
+                                  const std::vector<Motion>& motions) const {
+  if (!edges_) return false;
+  const SurfaceIndex::Nearest end = edges_->nearest(point, whole.nearest(point).distance + kSame * tolerance_);
+  return end.face >= 0 && std::ranges::any_of(motions, [&](const Motion& motion) { return !near(motion(end.point)); });
+}
+
+bool SurfaceEnds::near(const Eigen::Vector3d& point) const {
+  return edges_->within(point, kNearEnd * tolerance_);
+}
+
+}  // namespace orbifit
