@@ -134,7 +134,7 @@ SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mes
   std::vector<Region> measured = found.regions;
   SymmetryAnnotation apart = found;
   number(apart);
-  yield_to_parts(surface, region_borders(prepared, apart.regions, apart.tolerance, context), apart, explanation,
+  yield_to_parts(surface, border_places(prepared, apart.regions, apart.tolerance, context), apart, explanation,
                  context);
   ConsistentAnnotation kept = consistent_annotation(surface, apart, context);
   kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
@@ -146,7 +146,7 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
                                              Explanation* explanation, const RunContext& context) {
   number(found);
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
-  const std::vector<RegionBorder> borders = region_borders(prepared, found.regions, found.tolerance, context);
+  const std::vector<BorderPlace> borders = border_places(prepared, found.regions, found.tolerance, context);
   std::vector<Region> measured = found.regions;
   Remaining possible{std::move(found), {}};
   Remaining now = possible;

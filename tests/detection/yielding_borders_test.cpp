@@ -81,10 +81,10 @@ SymmetryAnnotation annotated(const Mesh& mesh, const PointGroup& group, const st
 void yield(const Mesh& mesh, SymmetryAnnotation& annotation, Explanation* explanation = nullptr) {
   const RunContext context;
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, annotation.tolerance, context);
-  const std::vector<RegionBorder> borders =
-      region_borders(prepare(mesh), annotation.regions, annotation.tolerance, context);
-  EXPECT_EQ(borders.front(), RegionBorder::kWithinSmooth);  // the disc
-  for (std::size_t i = 1; i < borders.size(); ++i) EXPECT_EQ(borders[i], RegionBorder::kOfPart);
+  const std::vector<BorderPlace> borders =
+      border_places(prepare(mesh), annotation.regions, annotation.tolerance, context);
+  EXPECT_EQ(borders.front(), BorderPlace::kWithinSmooth);  // the disc
+  for (std::size_t i = 1; i < borders.size(); ++i) EXPECT_EQ(borders[i], BorderPlace::kOfPart);
   yield_to_parts(surface, borders, annotation, explanation, context);
 }
 
@@ -152,10 +152,10 @@ TEST_P(BeforeAnEnd, YieldsToPartsThatSaveMore) {
                   faces_where(mesh, [&](const Vector2d& point) { return from_peg(point, peg) < kFoot; }), "peg"));
   for (std::size_t i = 0; i < annotation.regions.size(); ++i) annotation.regions[i].id = static_cast<int>(i);
   const RunContext context;
-  const std::vector<RegionBorder> borders =
-      region_borders(prepare(mesh), annotation.regions, annotation.tolerance, context);
-  EXPECT_EQ(borders[0], RegionBorder::kBeforeEnds);
-  EXPECT_EQ(borders[1], RegionBorder::kOfPart);
+  const std::vector<BorderPlace> borders =
+      border_places(prepare(mesh), annotation.regions, annotation.tolerance, context);
+  EXPECT_EQ(borders[0], BorderPlace::kBeforeEnds);
+  EXPECT_EQ(borders[1], BorderPlace::kOfPart);
   const std::vector<int> before = annotation.regions[0].faces;
   yield_to_parts(ConsistencySearch::surface_of(mesh, annotation.tolerance, context), borders, annotation, nullptr,
                  context);

@@ -34,7 +34,7 @@ std::vector<Motion> normalised_motions(const PreparedMesh& prepared, const Regio
 
 class YieldingBorders {
  public:
-  YieldingBorders(const ShapeSurface& surface, const std::vector<RegionBorder>& borders,
+  YieldingBorders(const ShapeSurface& surface, const std::vector<BorderPlace>& borders,
                   const SymmetryAnnotation& annotation)
       : annotation_(annotation),
         borders_(borders),
@@ -45,7 +45,7 @@ class YieldingBorders {
 
   // The faces that a region keeps; nothing where it keeps all, or would keep too few.
   std::optional<std::vector<int>> kept(std::size_t region) {
-    if (border_of(region) == RegionBorder::kOfPart || !places_[region]) return std::nullopt;
+    if (border_of(region) == BorderPlace::kOfPart || !places_[region]) return std::nullopt;
     const int shape = shape_of(region);
     std::vector<int> taken;
     std::vector<int> parts;
@@ -62,12 +62,12 @@ class YieldingBorders {
     const double left = shapes_.area_of(rest);
     if (left < policy_.left * shapes_.area(shape)) return std::nullopt;
     const double lost = (shapes_.area(shape) - left) * halvings(places_[region]->group);
-    if (border_of(region) == RegionBorder::kBeforeEnds && saved_by(std::move(parts)) <= lost) return std::nullopt;
+    if (border_of(region) == BorderPlace::kBeforeEnds && saved_by(std::move(parts)) <= lost) return std::nullopt;
     return rest;
   }
 
  private:
-  RegionBorder border_of(std::size_t region) const {
+  BorderPlace border_of(std::size_t region) const {
     return borders_[static_cast<std::size_t>(annotation_.regions[region].id)];
   }
 
@@ -92,7 +92,7 @@ class YieldingBorders {
 
   // Whether the other is a part that the region touches, and neither holds the other.
   bool is_beside(std::size_t region, std::size_t other) const {
-    if (other == region || border_of(other) != RegionBorder::kOfPart || !places_[other]) return false;
+    if (other == region || border_of(other) != BorderPlace::kOfPart || !places_[other]) return false;
     const int shape = shape_of(region);
     const int part = shape_of(other);
     return shapes_.touch(shape, part) && !shapes_.within(part, shape) && !shapes_.within(shape, part);
@@ -119,7 +119,7 @@ class YieldingBorders {
   }
 
   const SymmetryAnnotation& annotation_;
-  const std::vector<RegionBorder>& borders_;  // by id
+  const std::vector<BorderPlace>& borders_;  // by id
   ConsistencyPolicy policy_;
   double tolerance_;     // mesh units
   RegionShapes shapes_;  // the regions' come first, in their order
@@ -128,12 +128,12 @@ class YieldingBorders {
 
 }  // namespace
 
-std::vector<RegionBorder> region_borders(const PreparedMesh& prepared, const std::vector<Region>& regions,
-                                         double tolerance, const RunContext& context) {
+std::vector<BorderPlace> border_places(const PreparedMesh& prepared, const std::vector<Region>& regions,
+                                       double tolerance, const RunContext& context) {
   const std::vector<std::array<FaceSide, 3>> sides = face_sides(prepared);
   const double reach = tolerance * diagonal(prepared.mesh.vertices);
   const SurfaceEnds ends(prepared, reach);
-  std::vector<RegionBorder> result(regions.size(), RegionBorder::kOfPart);
+  std::vector<BorderPlace> result(regions.size(), BorderPlace::kOfPart);
   const double most = kEvidencePolicy.smooth_border;
   parallel_for(context, regions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -142,13 +142,13 @@ std::vector<RegionBorder> region_borders(const PreparedMesh& prepared, const std
       const auto ended = [&](const Eigen::Vector3d& middle) { return ends.taken_near(middle, motions); };
       if (smooth_border_share(prepared, sides, regions[i].faces, reach) <= most) continue;
       const bool before_ends = smooth_border_share(prepared, sides, regions[i].faces, reach, ended) <= most;
-      result[i] = before_ends ? RegionBorder::kBeforeEnds : RegionBorder::kWithinSmooth;
+      result[i] = before_ends ? BorderPlace::kBeforeEnds : BorderPlace::kWithinSmooth;
     }
   });
   return result;
 }
 
-void yield_to_parts(const ShapeSurface& surface, const std::vector<RegionBorder>& borders,
+void yield_to_parts(const ShapeSurface& surface, const std::vector<BorderPlace>& borders,
                     SymmetryAnnotation& annotation, Explanation* explanation, const RunContext& context) {
   YieldingBorders yielding(surface, borders, annotation);
   std::vector<std::optional<std::vector<int>>> kept;
