@@ -287,14 +287,13 @@ class Detector {
   // Whether nearly all is one component; or much of it is, and others have no symmetry: thin parts fall into scraps
   // where a surface was made anew. Where parts are modelled as such, they and their pieces say most of what there is.
   bool one_surface() const {
-    constexpr double kNearlyAll = 0.8;  // of the area
-    constexpr double kMuch = 0.4;
-    constexpr double kAll = 0.9;  // of the area, in components with a group of their own
+    constexpr double kMuch = 0.4;  // of the area
+    constexpr double kAll = 0.9;   // of the area, in components with a group of their own
     double largest = 0;
     for (const std::vector<int>& faces : prepared_.components.faces) {
       largest = std::max(largest, area_of(prepared_, faces));
     }
-    return largest > kNearlyAll * prepared_.area ||
+    return largest > kOneSurface * prepared_.area ||
            (largest > kMuch * prepared_.area && symmetric_area_ < kAll * prepared_.area);
   }
 

@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "surface/face_points.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
@@ -48,7 +49,6 @@ bool smooth_about(const PreparedMesh& prepared, const Sides& sides, int face, co
 double smooth_border_share(const PreparedMesh& prepared, const Sides& sides, const std::vector<int>& faces,
                            double tolerance, const std::function<bool(const Vector3d& middle)>& excused) {
   constexpr std::size_t kLooks = 300;
-  constexpr double kReach = 4;  // tolerances
   struct BorderEdge {
     int face;
     const FaceSide* side;
@@ -65,7 +65,7 @@ double smooth_border_share(const PreparedMesh& prepared, const Sides& sides, con
   for (std::size_t k = 0; k < looks; ++k) {
     const BorderEdge& edge = border[k * border.size() / looks];
     length += edge.side->length;
-    if (!smooth_about(prepared, sides, edge.face, *edge.side, kReach * tolerance)) continue;
+    if (!smooth_about(prepared, sides, edge.face, *edge.side, kAboutBorder * tolerance)) continue;
     if (!excused || !excused(middle_of(prepared, *edge.side))) smooth += edge.side->length;
   }
   return length > 0 ? smooth / length : 0;

@@ -4,19 +4,16 @@
 #include <cstddef>
 
 #include "geometry/topology.h"
+#include "surface/thresholds.h"
 
 namespace orbifit {
 
 namespace {
 
-constexpr double kNearEnd = 4;      // tolerances
-constexpr double kNearlyAll = 0.8;  // of the area
-constexpr double kSame = 0.1;       // tolerances: distances that are alike
-
 // Whether nearly all of the surface hangs together.
 bool nearly_one(const PreparedMesh& prepared) {
   const Components parts = touching_parts(prepared.mesh, prepared.weld);
-  const double most = kNearlyAll * prepared.area;
+  const double most = kOneSurface * prepared.area;
   return std::ranges::any_of(parts.faces,
                              [&](const std::vector<int>& faces) { return area_of(prepared, faces) > most; });
 }
@@ -46,12 +43,12 @@ bool SurfaceEnds::taken_near(const Eigen::Vector3d& point, const std::vector<Mot
 bool SurfaceEnds::past_broken_end(const Eigen::Vector3d& point, const SurfaceIndex& whole,
                                   const std::vector<Motion>& motions) const {
   if (!edges_) return false;
-  const SurfaceIndex::Nearest end = edges_->nearest(point, whole.nearest(point).distance + kSame * tolerance_);
+  const SurfaceIndex::Nearest end = edges_->nearest(point, whole.nearest(point).distance + kWeldTolerance);
   return end.face >= 0 && std::ranges::any_of(motions, [&](const Motion& motion) { return !near(motion(end.point)); });
 }
 
 bool SurfaceEnds::near(const Eigen::Vector3d& point) const {
-  return edges_->within(point, kNearEnd * tolerance_);
+  return edges_->within(point, kAboutBorder * tolerance_);
 }
 
 }  // namespace orbifit

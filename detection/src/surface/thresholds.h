@@ -35,4 +35,10 @@ inline constexpr int kHighestOrder = 72;
 /// Of the mesh's area: what keeps more of it may be rough, and is not asked whether it is chance.
 inline constexpr double kNearlyWhole = 0.9;
 
+/// Of the area, in one component: then the mesh is one surface, not a scene of parts.
+inline constexpr double kOneSurface = 0.8;
+
+/// Tolerances about a region's border within which it is looked at: borders are ragged by a face or so.
+inline constexpr double kAboutBorder = 4;
+
 }  // namespace orbifit
