@@ -12,18 +12,17 @@ namespace {
 
 // Whether nearly all of the surface hangs together.
 bool nearly_one(const PreparedMesh& prepared) {
-  const Components parts = touching_parts(prepared.mesh, prepared.weld);
   const double most = kOneSurface * prepared.area;
-  return std::ranges::any_of(parts.faces,
+  return std::ranges::any_of(prepared.components.faces,
                              [&](const std::vector<int>& faces) { return area_of(prepared, faces) > most; });
 }
 
 }  // namespace
 
-SurfaceEnds::SurfaceEnds(const PreparedMesh& prepared, double tolerance) : tolerance_(tolerance) {
+std::shared_ptr<const SurfaceIndex> end_edges(const PreparedMesh& prepared) {
   std::vector<Edge> edges = welded_edges(prepared.mesh, prepared.weld);
   std::erase_if(edges, [](const Edge& edge) { return edge.faces.size() != 1; });
-  if (edges.empty() || !nearly_one(prepared)) return;
+  if (edges.empty() || !nearly_one(prepared)) return nullptr;
   Mesh lines;
   lines.vertices = prepared.mesh.vertices;
   lines.faces.resize(static_cast<Eigen::Index>(edges.size()), 3);
@@ -33,8 +32,11 @@ SurfaceEnds::SurfaceEnds(const PreparedMesh& prepared, double tolerance) : toler
     };
     lines.faces.row(static_cast<Eigen::Index>(e)) << end(0), end(1), end(1);
   }
-  edges_.emplace(lines);
+  return std::make_shared<const SurfaceIndex>(lines);
 }
+
+SurfaceEnds::SurfaceEnds(const PreparedMesh& prepared, double tolerance)
+    : tolerance_(tolerance), edges_(prepared.ends) {}
 
 bool SurfaceEnds::taken_near(const Eigen::Vector3d& point, const std::vector<Motion>& motions) const {
   return edges_ && std::ranges::any_of(motions, [&](const Motion& motion) { return near(motion(point)); });

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,12 +12,16 @@
 
 namespace orbifit {
 
+/// The edges with one face, each a face with two corners in one place; null where there are none, and where less than
+/// nearly all of the surface hangs together. O(F log F); prepare() asks once.
+std::shared_ptr<const SurfaceIndex> end_edges(const PreparedMesh& prepared);
+
 /// Where a surface ends: along edges with one face. What a motion takes past them has no image there, which says
 /// nothing against the motion: nobody knows how the surface went on. Of a scene of parts none are asked: a part ends
 /// where it was modelled to, or others that are like it tell how it went on.
 class SurfaceEnds {
  public:
-  /// O(F log F) \param tolerance a length; what is nearer an end than four, by which borders are ragged where faces are
+  /// \param prepared as prepare() made it, but for its components \param tolerance a length; what is nearer an end than four, by which borders are ragged where faces are
   ///                         as large as a search for them allows, is near it
   SurfaceEnds(const PreparedMesh& prepared, double tolerance);
 
@@ -35,7 +39,7 @@ class SurfaceEnds {
   bool near(const Eigen::Vector3d& point) const;
 
   double tolerance_;
-  std::optional<SurfaceIndex> edges_;  // each a face with two corners in one place; none where nothing ends
+  std::shared_ptr<const SurfaceIndex> edges_;  // end_edges()
 };
 
 }  // namespace orbifit

@@ -14,6 +14,7 @@
 
 #include "base/random.h"
 #include "surface/creases.h"
+#include "surface/surface_ends.h"
 #include "surface/thresholds.h"
 
 namespace orbifit {
@@ -110,6 +111,7 @@ PreparedMesh prepare(const Mesh& mesh) {
     }
   }
   result.index = std::make_shared<const SurfaceIndex>(result.mesh);
+  result.ends = end_edges(result);
   return result;
 }
 

@@ -31,6 +31,7 @@ struct PreparedMesh {
   double area = 0;
   double noise = 0;                           ///< that was taken out, a fraction of the diagonal
   std::shared_ptr<const SurfaceIndex> index;  ///< of all faces
+  std::shared_ptr<const SurfaceIndex> ends;   ///< end_edges(), see there
 };
 
 /// \throw InputError when a coordinate is not finite
