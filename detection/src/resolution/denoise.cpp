@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include "surface/surface_ends.h"
+
 namespace orbifit {
 
 namespace {
@@ -248,6 +250,7 @@ void denoise(PreparedMesh& prepared, double sigma, const RunContext& context) {
   }
   prepared.area = prepared.areas.sum();
   prepared.index = std::make_shared<const SurfaceIndex>(mesh);
+  prepared.ends = end_edges(prepared);
 }
 
 }  // namespace orbifit
