@@ -108,17 +108,6 @@ ConsistentAnnotation trimmed(const PreparedMesh& prepared, const ShapeSurface& s
   return kept;
 }
 
-// What was found, without what was left out of it.
-struct Remaining {
-  SymmetryAnnotation found;
-  std::vector<LeftOut> left_out;
-
-  void leave_out(const std::vector<LeftOut>& more) {
-    take_out(found, more);
-    left_out.insert(left_out.end(), more.begin(), more.end());
-  }
-};
-
 }  // namespace
 
 SymmetryAnnotation kept_consistent(const Mesh& mesh, const SymmetryAnnotation& found, Explanation* explanation,
@@ -148,31 +137,23 @@ SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const
   const ShapeSurface surface = ConsistencySearch::surface_of(mesh, found.tolerance, context);
   const std::vector<BorderPlace> borders = border_places(prepared, found.regions, found.tolerance, context);
   std::vector<Region> measured = found.regions;
-  Remaining possible{std::move(found), {}};
-  Remaining now = possible;
-  int chances = 1;  // each is as much work as all before it
-  for (bool first = true;; first = !first) {
-    SymmetryAnnotation listed = without_what_follows(prepared, now.found, context);
+  std::size_t gone = 0;
+  while (true) {
+    SymmetryAnnotation listed = without_what_follows(prepared, found, context);
     Explanation yielding;
     yield_to_parts(surface, borders, listed, &yielding, context);
     ConsistentAnnotation kept = consistent_annotation(surface, listed, context);
     if (kept.left_out.empty()) {
       kept = trimmed(prepared, surface, measured, std::move(kept), explanation, context);
-      first = false;
     }
     std::erase_if(kept.left_out, [&](const LeftOut& each) { return is_image(each, listed); });
     if (kept.left_out.empty()) {
       if (explanation != nullptr) std::ranges::move(yielding.notes, std::back_inserter(explanation->notes));
-      note_left_out(now.left_out, explanation);
-      return sorted(mesh, std::move(kept.annotation), now.left_out.size(), context);
+      return sorted(mesh, std::move(kept.annotation), gone, context);
     }
-    if (first || chances == 0) {  // it may have implied something
-      now.leave_out(kept.left_out);
-    } else {  // it was kept until now, and something may have been left out for it
-      possible.leave_out(kept.left_out);
-      now = possible;
-      --chances;
-    }
+    note_left_out(kept.left_out, explanation);
+    take_out(found, kept.left_out);
+    gone += kept.left_out.size();
   }
 }
 

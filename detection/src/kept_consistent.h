@@ -22,8 +22,7 @@ SymmetryAnnotation kept_consistent(const PreparedMesh& prepared, const Mesh& mes
 
 /// As above, of what was found without what follows from the rest (without_what_follows()), so that this stands in
 /// nothing's way: what follows from something that cannot be kept comes back. What is left out has no part in what is
-/// kept: it is all done anew without it, as found; and where it was kept for a while, what was left out for it has
-/// another chance.
+/// kept: it is all done anew without it, as found.
 /// \param found  in the frame of `mesh`, of which `prepared` is made
 SymmetryAnnotation kept_without_what_follows(const PreparedMesh& prepared, const Mesh& mesh, SymmetryAnnotation found,
                                              Explanation* explanation, const RunContext& context);
