@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "domains/vertex_sets.h"
+#include "geometry/side_order.h"
 
 namespace orbifit {
 
@@ -30,9 +30,7 @@ std::vector<BorderSide> sorted_sides(const Mesh& mesh, const std::vector<int>& w
       if (a != b) sides.push_back({{a, b}, static_cast<int>(face)});
     }
   }
-  std::ranges::sort(sides, [](const BorderSide& a, const BorderSide& b) {
-    return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
-  });
+  sort_by_ends(sides, weld.size(), &BorderSide::ends);
   return sides;
 }
 
@@ -40,8 +38,8 @@ std::vector<BorderSide> sorted_sides(const Mesh& mesh, const std::vector<int>& w
 
 AbuttingPlaces::AbuttingPlaces(const Mesh& mesh, const RegionMap& regions) : regions_(regions) {
   if (regions.places() < 2) return;
-  const std::vector<int> weld = welded_vertices(mesh.vertices);
-  const std::vector<int> vertex_sets = sets_of_vertices(mesh, regions);
+  const std::vector<int>& weld = regions.points().weld;
+  const std::vector<int> vertex_sets = by_vertex(regions.points());
   // Whether a face or a line there has all places of the vertex; corners are the others.
   std::vector<char> covered(weld.size(), 0);
   const auto cover = [&](int vertex, int set) {

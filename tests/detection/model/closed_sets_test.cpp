@@ -166,7 +166,9 @@ TEST(Disagreements, AreSettledForAWholeFamily) {
   SymmetryAnnotation annotation;
   annotation.regions = {patch(0, 0, 0, 8, 8), patch(1, 0, 1, 4, 3), patch(2, 0, 5, 4, 7), patch(3, 0, 2, 3, 6)};
   ConsistentAnnotation kept{annotation, {}, 0, 0};
-  leave_out_disagreements(plate(), annotation, kept, RunContext{});
+  const Mesh mesh = plate();
+  KnownDomains domains(mesh);
+  leave_out_disagreements(mesh, domains, annotation, kept, RunContext{});
   ASSERT_EQ(kept.left_out.size(), 1U);
   EXPECT_EQ(kept.left_out[0].id, 3);
   EXPECT_EQ(kept.annotation.regions.size(), 3U);
@@ -185,11 +187,13 @@ TEST_P(UnclosedGroups, AreNamedAndTheLesserLeftOut) {
   SymmetryAnnotation annotation;
   annotation.regions = {first, second};
   const bool closes = std::abs(std::remainder(GetParam(), std::numbers::pi / 6)) < 1e-9;
-  const Disagreements found = unclosed_groups(plate(), annotation, RunContext{});
+  const Mesh mesh = plate();
+  KnownDomains domains(mesh);
+  const Disagreements found = unclosed_groups(domains.of(annotation), annotation, RunContext{});
   if (!closes) expect_only(found, 0, 1);
   EXPECT_EQ(found.empty(), closes);
   ConsistentAnnotation kept{annotation, {}, 0, 0};
-  EXPECT_EQ(leave_out_unclosed(plate(), annotation, kept, RunContext{}), !closes);
+  EXPECT_EQ(leave_out_unclosed(mesh, domains, annotation, kept, RunContext{}), !closes);
   ASSERT_EQ(kept.annotation.regions.size(), closes ? 2U : 1U);
   EXPECT_EQ(kept.annotation.regions.front().id, 0);
   EXPECT_EQ(kept.left_out.size(), closes ? 0U : 1U);

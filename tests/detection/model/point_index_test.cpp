@@ -80,6 +80,18 @@ TEST_P(Neighbours, WithinIsInclusive) {
   }
 }
 
+TEST_P(Neighbours, OneAloneIsTheFirst) {
+  const PointIndex index(points_);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d query = random_point();
+    const PointIndex::Neighbour nearest = index.nearest(query);
+    expect_equal({nearest}, brute(query), 1);
+    for (const double radius : {nearest.distance, nearest.distance * (1 - 1e-9), nearest.distance * 1.5}) {
+      EXPECT_EQ(index.any_within(query, radius), !index.within(query, radius).empty()) << radius;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Clouds, Neighbours,
                          testing::Values(Cloud{"random", 1, 0, false}, Cloud{"grid", 1, 0, true},
                                          Cloud{"far", 1e3, 1e4, false}, Cloud{"tiny", 1e-100, 0, false},
@@ -90,6 +102,8 @@ TEST(PointIndex, OfNothingFindsNothing) {
   const PointIndex index(Points(0, 3));
   EXPECT_TRUE(index.nearest({0, 0, 0}, 3).empty());
   EXPECT_TRUE(index.within({0, 0, 0}, 3).empty());
+  EXPECT_EQ(index.nearest({0, 0, 0}).index, -1);
+  EXPECT_FALSE(index.any_within({0, 0, 0}, 3));
 }
 
 TEST(PointIndex, AsksForNothingFindsNothing) {

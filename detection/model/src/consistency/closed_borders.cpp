@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "consistency/consistency_search.h"
-#include "domains/closed_sets.h"
 #include "domains/domain_map.h"
 #include "domains/vertex_images.h"
 #include "domains/vertex_sets.h"
@@ -158,7 +157,7 @@ bool close_borders(const ShapeSurface& surface, SymmetryAnnotation& annotation, 
   }
   bool any = false;
   while (true) {
-    const DomainMap domains(mesh, annotation, instance_motions(annotation));
+    const DomainMap& domains = surface.domains.of(annotation);
     std::vector<Conflict> conflicts = BorderCheck(mesh, domains, surface.vertex_images, context).run();
     bool taken = false;
     while (const std::optional<Loss> loss = least_loss(mesh, faces, domains, conflicts)) {

@@ -42,7 +42,8 @@ class Choice {
   std::optional<ConsistentAnnotation> run() {
     {
       ConsistencySearch search(mesh_, annotation_, shapes_, {}, {}, context_);
-      if (search.agrees() && disagreements(mesh_, annotation_, context_).empty()) return std::nullopt;
+      if (search.agrees() && disagreements(surface_.domains.of(annotation_), annotation_, context_).empty())
+        return std::nullopt;
       for (std::size_t i = 0; i < annotation_.regions.size(); ++i) savings_[{false, i}] = search.saving({false, i});
       for (std::size_t i = 0; i < annotation_.patterns.size(); ++i) savings_[{true, i}] = search.saving({true, i});
     }
@@ -53,7 +54,7 @@ class Choice {
     while (improve()) {
     }
     readmit();
-    leave_out_disagreements(mesh_, annotation_, best_.kept, context_);
+    leave_out_disagreements(mesh_, surface_.domains, annotation_, best_.kept, context_);
     return std::move(best_.kept);
   }
 

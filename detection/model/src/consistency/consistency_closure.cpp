@@ -18,15 +18,16 @@ namespace {
 
 class Closure {
  public:
-  Closure(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept, const RunContext& context)
-      : mesh_(mesh), given_(given), kept_(kept), context_(context), areas_(face_areas(mesh)) {}
+  Closure(const Mesh& mesh, KnownDomains& domains, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
+          const RunContext& context)
+      : domains_(domains), given_(given), kept_(kept), context_(context), areas_(face_areas(mesh)) {}
 
   // What motions take to one another goes together: without one, the others would lose their image.
   // \param named  disagreements() or unclosed_groups()
   // \return whether anything had to go
-  bool leave_out_one(decltype(disagreements)* named) {
+  bool leave_out_one(decltype(unclosed_groups)* named) {
     std::vector<ClaimFamily> families;
-    const Disagreements pairs = named(mesh_, kept_.annotation, context_, &families);
+    const Disagreements pairs = named(domains_.of(kept_.annotation), kept_.annotation, context_, &families);
     std::map<Claim, std::size_t> family_of;
     std::vector<double> savings(families.size(), 0);
     for (std::size_t f = 0; f < families.size(); ++f) {
@@ -126,7 +127,7 @@ class Closure {
            region.group.symbol() + ")";
   }
 
-  const Mesh& mesh_;
+  KnownDomains& domains_;
   const SymmetryAnnotation& given_;
   ConsistentAnnotation& kept_;
   const RunContext& context_;
@@ -135,16 +136,16 @@ class Closure {
 
 }  // namespace
 
-void leave_out_disagreements(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
-                             const RunContext& context) {
-  Closure closure(mesh, given, kept, context);
+void leave_out_disagreements(const Mesh& mesh, KnownDomains& domains, const SymmetryAnnotation& given,
+                             ConsistentAnnotation& kept, const RunContext& context) {
+  Closure closure(mesh, domains, given, kept, context);
   while (closure.leave_out_one(disagreements)) {
   }
 }
 
-bool leave_out_unclosed(const Mesh& mesh, const SymmetryAnnotation& given, ConsistentAnnotation& kept,
-                        const RunContext& context) {
-  Closure closure(mesh, given, kept, context);
+bool leave_out_unclosed(const Mesh& mesh, KnownDomains& domains, const SymmetryAnnotation& given,
+                        ConsistentAnnotation& kept, const RunContext& context) {
+  Closure closure(mesh, domains, given, kept, context);
   bool any = false;
   while (closure.leave_out_one(unclosed_groups)) any = true;
   return any;

@@ -64,7 +64,7 @@ ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const Sy
         continue;
       }
     }
-    if (!leave_out_unclosed(surface.mesh, annotation, result, context)) break;
+    if (!leave_out_unclosed(surface.mesh, surface.domains, annotation, result, context)) break;
     settled = false;
   }
   return result;

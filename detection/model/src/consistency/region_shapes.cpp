@@ -13,6 +13,7 @@
 #include "base/disjoint_sets.h"
 #include "domains/vertex_sets.h"
 #include "geometry/grid_cell.h"
+#include "geometry/side_order.h"
 #include "geometry/topology.h"
 
 namespace orbifit {
@@ -57,7 +58,7 @@ std::vector<int> numbered_points(const Mesh& mesh) {
       if (ends[0] != ends[1]) sides.push_back({ends, vertices});
     }
   }
-  std::ranges::sort(sides, {}, &Side::ends);
+  sort_by_ends(sides, count, &Side::ends);
   DisjointSets sets(count);
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i + 1;
@@ -101,7 +102,8 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       areas(face_areas(of)),
       centroids(face_centroids(of)),
       index(of),
-      vertex_images(of.vertices, kDoublet * diagonal) {}
+      vertex_images(of.vertices, kDoublet * diagonal),
+      domains(of) {}
 
 const std::vector<std::array<bool, 3>>& ShapeSurface::open_edges() const {
   if (open_edges_) return *open_edges_;

@@ -19,6 +19,7 @@
 
 #include "base/digest.h"
 #include "consistency/group_place.h"
+#include "domains/known_domains.h"
 #include "domains/piece_moments.h"
 #include "domains/vertex_images.h"
 #include "geometry/surface_index.h"
@@ -46,6 +47,7 @@ struct ShapeSurface {
   Points centroids;  ///< of faces
   SurfaceIndex index;
   mutable VertexImages vertex_images;
+  mutable KnownDomains domains;
   mutable Answers<double> arrived, distances;
   mutable Answers<PieceMoments> common_moments;
   mutable Answers<std::vector<int>> image_faces;

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "domains/domain_map.h"
-#include "domains/vertex_sets.h"
 
 namespace orbifit {
 
@@ -27,11 +26,8 @@ enum class Question { images, groups };  // where motions take sets, or whether 
 
 class Check {
  public:
-  Check(Question question, const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context)
-      : question_(question),
-        annotation_(annotation),
-        context_(context),
-        domains_(mesh, annotation, instance_motions(annotation)) {
+  Check(Question question, const DomainMap& domains, const SymmetryAnnotation& annotation, const RunContext& context)
+      : question_(question), annotation_(annotation), context_(context), domains_(domains) {
     for (std::size_t r = 0; r < annotation.regions.size(); ++r) claims_.push_back({false, r});
     for (std::size_t p = 0; p < annotation.patterns.size(); ++p) {
       claims_.insert(claims_.end(), annotation.patterns[p].instances.size(), {true, p});
@@ -44,8 +40,8 @@ class Check {
       }
     }
     products_.resize(static_cast<std::size_t>(domains_.count()));
-    for (const int set : sets_of_vertices(mesh, domains_)) reach(set);
-    for (int face = 0; face < mesh.faces.rows(); ++face) reach(domains_.set_of_face(face));
+    for (const int set : by_vertex(domains_.points())) reach(set);
+    for (const int set : domains_.sets_of_faces()) reach(set);
   }
 
   Disagreements run() {
@@ -152,7 +148,7 @@ class Check {
   Question question_;
   const SymmetryAnnotation& annotation_;
   const RunContext& context_;
-  DomainMap domains_;
+  const DomainMap& domains_;
   std::vector<Claim> claims_;  // by place
   std::vector<int> family_;    // by place, another one of its family, nearer to the family's first
   std::vector<std::vector<Product>> products_;
@@ -161,9 +157,9 @@ class Check {
   Disagreements result_;
 };
 
-Disagreements answer(Question question, const Mesh& mesh, const SymmetryAnnotation& annotation,
+Disagreements answer(Question question, const DomainMap& domains, const SymmetryAnnotation& annotation,
                      const RunContext& context, std::vector<ClaimFamily>* families) {
-  Check check(question, mesh, annotation, context);
+  Check check(question, domains, annotation, context);
   Disagreements result = check.run();
   if (families != nullptr) *families = check.families();
   return result;
@@ -180,14 +176,19 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
   return result;
 }
 
-Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+Disagreements disagreements(const DomainMap& domains, const SymmetryAnnotation& annotation, const RunContext& context,
                             std::vector<ClaimFamily>* families) {
-  return answer(Question::images, mesh, annotation, context, families);
+  return answer(Question::images, domains, annotation, context, families);
 }
 
-Disagreements unclosed_groups(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+                            std::vector<ClaimFamily>* families) {
+  return disagreements(DomainMap(mesh, annotation, instance_motions(annotation)), annotation, context, families);
+}
+
+Disagreements unclosed_groups(const DomainMap& domains, const SymmetryAnnotation& annotation, const RunContext& context,
                               std::vector<ClaimFamily>* families) {
-  return answer(Question::groups, mesh, annotation, context, families);
+  return answer(Question::groups, domains, annotation, context, families);
 }
 
 }  // namespace orbifit

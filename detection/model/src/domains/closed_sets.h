@@ -9,6 +9,8 @@
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
 
+#include "domains/domain_map.h"
+
 namespace orbifit {
 
 /// A region or a pattern of the annotation, by its place in the list there.
@@ -34,13 +36,16 @@ std::vector<std::vector<Motion>> instance_motions(const SymmetryAnnotation& anno
 /// under the motions is the same wherever it begins, and a field made of such closures is exact by construction. Where
 /// it does not hold, two claims are named each time. Empty: it holds. Cost O(F), and for each set the orders of the
 /// groups that hold it.
+/// \param domains  of the mesh and the annotation, its patterns' motions being instance_motions()
 /// \param families  if given, all claims, each in one family, ascending
+Disagreements disagreements(const DomainMap& domains, const SymmetryAnnotation& annotation, const RunContext& context,
+                            std::vector<ClaimFamily>* families = nullptr);
 Disagreements disagreements(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
                             std::vector<ClaimFamily>* families = nullptr);
 
 /// Pairs of regions whose motions take a face or a vertex, or what the motions take these to, to ever more places
 /// (DomainMap::unclosed()). Sets of places may go to sets of places all the same. As disagreements() else.
-Disagreements unclosed_groups(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context,
+Disagreements unclosed_groups(const DomainMap& domains, const SymmetryAnnotation& annotation, const RunContext& context,
                               std::vector<ClaimFamily>* families = nullptr);
 
 }  // namespace orbifit

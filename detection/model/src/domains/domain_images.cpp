@@ -77,12 +77,18 @@ PieceMoments DomainMap::common_piece(int a, int b) const {
 
 // Two pinwheels at one place that turn opposite ways have the same moments: only their surfaces tell them apart.
 void DomainMap::find_twins(const Mesh& mesh) {
-  std::vector<PieceMoments> moments;
-  for (int place = 0; place < places(); ++place) moments.push_back(moments_of_faces(mesh, at(place).faces, origin_));
+  std::vector<std::optional<PieceMoments>> known(places_.size());
+  const auto moments = [&](int place) -> const PieceMoments& {
+    std::optional<PieceMoments>& of_place = known[static_cast<std::size_t>(place)];
+    if (!of_place) of_place = moments_of_faces(mesh, at(place).faces, origin_);
+    return *of_place;
+  };
+  const auto apart = [&](const PieceMoments& a, const PieceMoments& b) { return separation(a, Motion{}, b, size_); };
   const auto alike = [&](int p, int q) {
-    return (p < count()) == (q < count()) && at(p).faces != at(q).faces &&
-           separation(moments[static_cast<std::size_t>(p)], Motion{}, moments[static_cast<std::size_t>(q)], size_) <=
-               kSamePiece;
+    if ((p < count()) != (q < count())) return false;
+    // The sets' moments sum to the place's to rounding, and are known.
+    if (apart(common_faces(p, p), common_faces(q, q)) > 2 * kSamePiece) return false;
+    return at(p).faces != at(q).faces && apart(moments(p), moments(q)) <= kSamePiece;
   };
   const auto mark = [&](int place) {
     if (twins_.contains(place)) return;

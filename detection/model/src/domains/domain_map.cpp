@@ -5,12 +5,11 @@
 #include <iterator>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include <Eigen/Geometry>
 
 #include "orbifit/model/point_group.h"
-
-#include "domains/vertex_sets.h"
 
 namespace orbifit {
 
@@ -100,13 +99,27 @@ DomainMap::DomainMap(const Mesh& mesh, const SymmetryAnnotation& annotation,
 
 void DomainMap::find_sets(const Mesh& mesh) {
   const auto faces = static_cast<std::size_t>(mesh.faces.rows());
-  std::vector<std::vector<int>> members(faces);
+  std::vector<std::size_t> first(faces + 1, 0);  // of each face among the members
+  for (const Place& place : places_) {
+    for (const int face : place.faces) ++first[static_cast<std::size_t>(face) + 1];
+  }
+  for (std::size_t face = 0; face < faces; ++face) first[face + 1] += first[face];
+  std::vector<int> members(first.back());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for (int place = 0; place < places(); ++place) {
-    for (const int face : at(place).faces) members[static_cast<std::size_t>(face)].push_back(place);
+    for (const int face : at(place).faces) members[next[static_cast<std::size_t>(face)]++] = place;
   }
   set_of_face_.resize(faces);
-  intern({});
-  for (std::size_t face = 0; face < faces; ++face) set_of_face_[face] = intern(members[face]);
+  std::vector<int> set;
+  int number = intern(set);
+  for (std::size_t face = 0; face < faces; ++face) {
+    const std::span here(members.data() + first[face], first[face + 1] - first[face]);
+    if (!std::ranges::equal(here, set)) {  // neighbours mostly have the same
+      set.assign(here.begin(), here.end());
+      number = intern(set);
+    }
+    set_of_face_[face] = number;
+  }
   for (Place& place : places_) {
     place.whole = static_cast<Eigen::Index>(place.faces.size()) == mesh.faces.rows();
     for (const int face : place.faces) {
@@ -118,14 +131,17 @@ void DomainMap::find_sets(const Mesh& mesh) {
 // Also those that share no face but vertices: what lies on both must keep both.
 void DomainMap::find_meeting(const Mesh& mesh) {
   meeting_.resize(places_.size());
-  std::vector<int> sets = sets_of_vertices(mesh, *this);
-  std::map<int, PieceMoments> points;
+  points_ = point_sets(mesh, *this);
+  std::vector<int> sets = by_vertex(points_);
+  std::vector<PieceMoments> points(sets_.size());
+  const double weight = kPoint * kPoint * size_ * size_;
   for (std::size_t v = 0; v < sets.size(); ++v) {
     const Eigen::Vector3d place = mesh.vertices.row(static_cast<Eigen::Index>(v)).transpose() - origin_;
-    const double weight = kPoint * kPoint * size_ * size_;
-    points[sets[v]] += {weight, weight * place, weight * place * place.transpose()};
+    points[static_cast<std::size_t>(sets[v])] += {weight, weight * place, weight * place * place.transpose()};
   }
-  point_moments_.assign(points.begin(), points.end());
+  for (std::size_t set = 0; set < points.size(); ++set) {
+    if (points[set].area > 0) point_moments_.emplace_back(static_cast<int>(set), points[set]);
+  }
   sets.insert(sets.end(), set_of_face_.begin(), set_of_face_.end());
   std::ranges::sort(sets);
   sets.erase(std::unique(sets.begin(), sets.end()), sets.end());

@@ -17,6 +17,7 @@
 #include "orbifit/model/motion.h"
 
 #include "domains/piece_moments.h"
+#include "domains/point_sets.h"
 #include "geometry/point_index.h"
 
 namespace orbifit {
@@ -75,8 +76,12 @@ class DomainMap {
   const std::string& name(int place) const { return at(place).name; }
 
   int set_of_face(int face) const { return set_of_face_[static_cast<std::size_t>(face)]; }
+  const std::vector<int>& sets_of_faces() const { return set_of_face_; }
   const std::vector<int>& set_places(int set) const { return *sets_[static_cast<std::size_t>(set)]; }
   const std::vector<int>& regions_of_face(int face) const { return set_places(set_of_face(face)); }
+
+  /// Of the mesh's vertices.
+  const PointSets& points() const { return points_; }
 
   /// How many sets have numbers so far, and the number of a set, given anew where it has none. Not for use by several
   /// threads.
@@ -174,6 +179,7 @@ class DomainMap {
   double size_ = 0;  // the mesh's diagonal
   int regions_ = 0;
   std::vector<int> set_of_face_;
+  PointSets points_;
   mutable std::map<std::vector<int>, int> number_of_set_;
   mutable std::vector<const std::vector<int>*> sets_;
   mutable std::unordered_map<std::uint64_t, int> with_;

@@ -4,10 +4,13 @@
 
 namespace orbifit {
 
-int VertexImages::Images::look(int vertex) const {
+Eigen::Vector3d VertexImages::Images::place_of(int vertex) const {
+  return motion_(of_.vertices_.row(vertex).transpose());
+}
+
+int VertexImages::Images::look(const Eigen::Vector3d& place) const {
   int result = kNone;
-  of_.grid_.visit(motion_(of_.vertices_.row(vertex).transpose()),
-                  [&](int other) { result = result == kNone ? other : kSeveral; });
+  of_.grid_.visit(place, [&](int other) { result = result == kNone ? other : kSeveral; });
   return result;
 }
 
@@ -15,7 +18,20 @@ void VertexImages::Images::ask(const std::vector<int>& vertices, const RunContex
   constexpr std::size_t kLeastShare = 1000;  // a tenth of a millisecond
   if (known_.empty()) return;
   const auto body = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) (*this)(vertices[i]);
+    constexpr std::size_t kTogether = 64;  // what a processor can wait for at once, several times over
+    std::vector<int> open;
+    std::vector<Eigen::Vector3d> places;
+    for (std::size_t i = begin; i < end;) {
+      open.clear();
+      places.clear();
+      for (; i < end && open.size() < kTogether; ++i) {
+        if (known_[static_cast<std::size_t>(vertices[i])] != kUnknown) continue;
+        open.push_back(vertices[i]);
+        places.push_back(place_of(vertices[i]));
+      }
+      of_.grid_.fetch(places);
+      for (std::size_t k = 0; k < open.size(); ++k) known_[static_cast<std::size_t>(open[k])] = look(places[k]);
+    }
   };
   parallel_for(context, vertices.size(), body, kLeastShare);
 }

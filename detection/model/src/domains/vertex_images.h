@@ -37,9 +37,9 @@ class VertexImages {
    public:
     /// The vertex where it takes a vertex, or kNone, or kSeveral. O(1), on average.
     int operator()(int vertex) {
-      if (known_.empty()) return look(vertex);
+      if (known_.empty()) return look(place_of(vertex));
       int& known = known_[static_cast<std::size_t>(vertex)];
-      if (known == kUnknown) known = look(vertex);
+      if (known == kUnknown) known = look(place_of(vertex));
       return known;
     }
 
@@ -51,7 +51,8 @@ class VertexImages {
     static constexpr int kUnknown = -3;
     Images(const VertexImages& of, const Motion& motion, bool remembers)
         : of_(of), motion_(motion), known_(remembers ? static_cast<std::size_t>(of.vertices_.rows()) : 0, kUnknown) {}
-    int look(int vertex) const;
+    Eigen::Vector3d place_of(int vertex) const;
+    int look(const Eigen::Vector3d& place) const;
 
     const VertexImages& of_;
     Motion motion_;

@@ -1,146 +1,31 @@
 #include "domains/vertex_sets.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace orbifit {
 
 namespace {
 
-constexpr double kWeld = 1e-9;  // of the diagonal
-
-int root(std::vector<int>& parents, int v) {
-  while (parents[static_cast<std::size_t>(v)] != v) {
-    int& parent = parents[static_cast<std::size_t>(v)];
-    parent = parents[static_cast<std::size_t>(parent)];
-    v = parent;
-  }
-  return v;
-}
-
-// A side of a face: the welded ends, ascending, and the vertices there.
-struct Side {
-  std::array<int, 2> ends;
-  std::array<int, 2> vertices;
-};
-
-// Joins vertices at one position whose faces meet in an edge of two faces.
-std::vector<int> linked(const Mesh& mesh, const std::vector<int>& weld) {
-  std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(3 * mesh.faces.rows()));
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    for (int k = 0; k < 3; ++k) {
-      std::array<int, 2> vertices{mesh.faces(face, k), mesh.faces(face, (k + 1) % 3)};
-      std::array<int, 2> ends{weld[static_cast<std::size_t>(vertices[0])], weld[static_cast<std::size_t>(vertices[1])]};
-      if (ends[0] == ends[1]) continue;
-      if (ends[0] > ends[1]) {
-        std::swap(ends[0], ends[1]);
-        std::swap(vertices[0], vertices[1]);
-      }
-      sides.push_back({ends, vertices});
-    }
-  }
-  std::ranges::sort(sides, {}, &Side::ends);
-  std::vector<int> parents(weld.size());
-  std::iota(parents.begin(), parents.end(), 0);
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
-    if (end == i + 2) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        const int a = root(parents, sides[i].vertices[k]);
-        const int b = root(parents, sides[i + 1].vertices[k]);
-        parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      }
-    }
-    i = end;
-  }
-  return parents;
-}
-
-}  // namespace
-
-std::vector<int> welded_vertices(const Points& vertices) {
-  const double tolerance = kWeld * diagonal(vertices);
-  std::vector<int> result(static_cast<std::size_t>(vertices.rows()));
-  std::iota(result.begin(), result.end(), 0);
-  if (!(tolerance > 0)) return result;
-  const VertexGrid grid(vertices, tolerance);
-  for (std::size_t v = 0; v < result.size(); ++v) {
-    grid.visit(vertices.row(static_cast<Eigen::Index>(v)).transpose(),
-               [&](int other) { result[v] = std::min(result[v], other); });
-  }
-  return result;
-}
-
-namespace {
-
-// Sets of places by group of vertices that are one point of one part: those of all faces around.
-struct PointSets {
-  std::vector<int> root;  // of each vertex, the vertex that stands for its point
-  std::vector<int> sets;  // of each root
-};
-
-PointSets point_sets(const Mesh& mesh, const DomainMap& domains) {
-  PointSets result;
-  result.sets.assign(static_cast<std::size_t>(mesh.vertices.rows()), 0);
-  result.root.resize(result.sets.size());
-  std::iota(result.root.begin(), result.root.end(), 0);
-  if (domains.places() > 0) {
-    const std::vector<int> weld = welded_vertices(mesh.vertices);
-    bool doubled = false;
-    for (std::size_t v = 0; v < weld.size(); ++v) doubled = doubled || weld[v] != static_cast<int>(v);
-    if (doubled) {
-      std::vector<int> parents = linked(mesh, weld);
-      for (int v = 0; v < static_cast<int>(weld.size()); ++v)
-        result.root[static_cast<std::size_t>(v)] = root(parents, v);
-    }
-  }
-  for (Eigen::Index face = 0; face < mesh.faces.rows(); ++face) {
-    for (const int vertex : mesh.faces.row(face)) {
-      int& here = result.sets[static_cast<std::size_t>(result.root[static_cast<std::size_t>(vertex)])];
-      const int set = domains.set_of_face(static_cast<int>(face));
-      if (here != set) here = domains.joined(here, set);
-    }
-  }
-  return result;
-}
-
-std::vector<int> by_vertex(const PointSets& points) {
-  std::vector<int> result;
-  result.reserve(points.root.size());
-  for (const int root : points.root) result.push_back(points.sets[static_cast<std::size_t>(root)]);
-  return result;
-}
-
-}  // namespace
-
-std::vector<int> sets_of_vertices(const Mesh& mesh, const DomainMap& domains) {
-  return by_vertex(point_sets(mesh, domains));
-}
-
-namespace {
+constexpr double kRounding = 1e-9;  // of the diagonal
 
 // Sets are carried along by every motion of every place, vertex by vertex, until nothing changes.
 class SetClosure {
  public:
-  SetClosure(const Mesh& mesh, const DomainMap& domains, VertexImages& images, PointSets points)
+  SetClosure(const Mesh& mesh, const DomainMap& domains, VertexImages& images)
       : mesh_(mesh),
         domains_(domains),
         images_(images),
         of_place_(static_cast<std::size_t>(domains.places())),
-        normals_(vertex_normals(mesh)),
-        rounding_(kWeld * diagonal(mesh.vertices)),
-        points_(std::move(points)),
-        queued_(points_.root.size(), 0) {}
+        rounding_(kRounding * diagonal(mesh.vertices)),
+        points_(domains.points()),
+        queued_(points_.roots.size(), 0) {}
 
   PointSets run(const RunContext& context) {
     ask_images(context);
-    for (std::size_t v = 0; v < points_.root.size(); ++v) {
-      if (points_.root[v] != static_cast<int>(v)) continue;
+    for (std::size_t v = 0; v < points_.roots.size(); ++v) {
+      if (points_.roots[v] != static_cast<int>(v)) continue;
       queue_.push_back(static_cast<int>(v));
       queued_[v] = 1;
     }
@@ -158,7 +43,7 @@ class SetClosure {
   }
 
  private:
-  int root_of(int vertex) const { return points_.root[static_cast<std::size_t>(vertex)]; }
+  int root_of(int vertex) const { return points_.roots[static_cast<std::size_t>(vertex)]; }
   int& set_of(int vertex) { return points_.sets[static_cast<std::size_t>(root_of(vertex))]; }
 
   void join(int vertex, int set) {
@@ -172,7 +57,7 @@ class SetClosure {
   // Asks at once, on all threads, where the motions of each place take its vertices.
   void ask_images(const RunContext& context) {
     std::vector<std::vector<int>> vertices(of_place_.size());
-    for (int v = 0; v < static_cast<int>(points_.root.size()); ++v) {
+    for (int v = 0; v < static_cast<int>(points_.roots.size()); ++v) {
       if (root_of(v) != v) continue;
       for (const int place : domains_.set_places(set_of(v))) vertices[static_cast<std::size_t>(place)].push_back(v);
     }
@@ -221,12 +106,14 @@ class SetClosure {
     if (image == VertexImages::kNone) return;
     const int arrival = domains_.arrival(place, element);
     const int carried = domains_.carried_set(set_of(vertex), place, element);
+    if (image != VertexImages::kSeveral && set_of(image) == carried) return;
     const Motion& motion = domains_.elements(place)[static_cast<std::size_t>(element)];
     const Eigen::Vector3d position = mesh_.vertices.row(vertex).transpose();
     const std::vector<int> near =
         image == VertexImages::kSeveral ? nearest_to(motion(position)) : std::vector<int>{image};
     if (std::ranges::any_of(near, [&](int other) { return set_of(other) == carried; })) return;
     const bool alone_there = lone_point(nearest_to(position), place) && lone_point(near, arrival);
+    if (normals_.rows() == 0) normals_ = vertex_normals(mesh_);
     const Eigen::Vector3d turned = motion.linear * normals_.row(vertex).transpose();
     std::vector<int> met;
     for (const int other : near) {
@@ -245,7 +132,7 @@ class SetClosure {
   const DomainMap& domains_;
   VertexImages& images_;
   std::vector<std::vector<VertexImages::Images*>> of_place_;  // by place and element
-  Points normals_;
+  Points normals_;                                            // of the vertices, once they are asked for
   double rounding_;
   PointSets points_;
   std::vector<int> queue_;  // roots
@@ -256,11 +143,10 @@ class SetClosure {
 
 std::vector<int> closed_sets_of_vertices(const Mesh& mesh, const DomainMap& domains, VertexImages& images,
                                          const RunContext& context) {
-  PointSets points = point_sets(mesh, domains);
   bool partial = false;
   for (int place = 0; place < domains.places(); ++place) partial = partial || !domains.whole(place);
-  if (!partial) return by_vertex(points);
-  return by_vertex(SetClosure(mesh, domains, images, std::move(points)).run(context));
+  if (!partial) return by_vertex(domains.points());
+  return by_vertex(SetClosure(mesh, domains, images).run(context));
 }
 
 }  // namespace orbifit

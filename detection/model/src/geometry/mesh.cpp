@@ -68,35 +68,53 @@ Points vertex_normals(const Mesh& mesh) {
   return normals;
 }
 
+namespace {
+
+// Whether to look through all vertices costs more than to sort those of so many faces.
+bool few_faces(const Mesh& mesh, const std::vector<int>& faces) {
+  constexpr std::size_t kMarks = 32;  // read in the time in which one number is sorted
+  return kMarks * 3 * faces.size() < static_cast<std::size_t>(mesh.vertices.rows());
+}
+
+}  // namespace
+
 std::vector<int> vertices_of_faces(const Mesh& mesh, const std::vector<int>& faces) {
   std::vector<int> result;
-  result.reserve(3 * faces.size());
-  for (const int face : faces) {
-    for (int k = 0; k < 3; ++k) result.push_back(mesh.faces(face, k));
+  if (few_faces(mesh, faces)) {
+    result.reserve(3 * faces.size());
+    for (const int face : faces) {
+      for (int k = 0; k < 3; ++k) result.push_back(mesh.faces(face, k));
+    }
+    std::ranges::sort(result);
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
   }
-  std::ranges::sort(result);
-  result.erase(std::unique(result.begin(), result.end()), result.end());
+  std::vector<char> met(static_cast<std::size_t>(mesh.vertices.rows()), 0);
+  for (const int face : faces) {
+    for (int k = 0; k < 3; ++k) met[static_cast<std::size_t>(mesh.faces(face, k))] = 1;
+  }
+  for (std::size_t v = 0; v < met.size(); ++v) {
+    if (met[v] != 0) result.push_back(static_cast<int>(v));
+  }
   return result;
 }
 
 Mesh submesh(const Mesh& mesh, const std::vector<int>& faces, std::vector<int>* vertex_of) {
-  std::vector<int> number(static_cast<std::size_t>(mesh.vertices.rows()), -1);
-  for (const int f : faces) {
-    for (int k = 0; k < 3; ++k) number[static_cast<std::size_t>(mesh.faces(f, k))] = 0;
+  std::vector<int> kept = vertices_of_faces(mesh, faces);
+  std::vector<int> number;  // of each vertex, where many are looked up
+  if (!few_faces(mesh, faces)) {
+    number.resize(static_cast<std::size_t>(mesh.vertices.rows()));
+    for (std::size_t i = 0; i < kept.size(); ++i) number[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
   }
-  std::vector<int> kept;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] < 0) continue;
-    number[v] = static_cast<int>(kept.size());
-    kept.push_back(static_cast<int>(v));
-  }
+  const auto number_of = [&](int vertex) {
+    if (!number.empty()) return number[static_cast<std::size_t>(vertex)];
+    return static_cast<int>(std::ranges::lower_bound(kept, vertex) - kept.begin());
+  };
   Mesh result;
   result.vertices = mesh.vertices(kept, Eigen::all);
   result.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      result.faces(static_cast<Eigen::Index>(f), k) = number[static_cast<std::size_t>(mesh.faces(faces[f], k))];
-    }
+    for (int k = 0; k < 3; ++k) result.faces(static_cast<Eigen::Index>(f), k) = number_of(mesh.faces(faces[f], k));
   }
   if (vertex_of != nullptr) *vertex_of = std::move(kept);
   return result;

@@ -136,6 +136,27 @@ class NearestSet : public ResultSet {
   std::vector<Candidate> heap_;
 };
 
+// Likewise of one, which needs no list.
+class NearestOne : public ResultSet {
+ public:
+  bool full() const override { return best_.index >= 0; }
+
+  void addPoint(double squared_distance, std::size_t index) override {
+    const Candidate candidate{squared_distance, static_cast<int>(index)};
+    if (full() && !(candidate < best_)) return;
+    best_ = candidate;
+    bound_ = squared_distance * kSlack + std::numeric_limits<double>::denorm_min();
+  }
+
+  double worstDist() const override { return bound_; }
+
+  const Candidate& best() const { return best_; }
+
+ private:
+  double bound_ = std::numeric_limits<double>::infinity();
+  Candidate best_{0, -1};
+};
+
 class RadiusSet : public ResultSet {
  public:
   explicit RadiusSet(double radius)
@@ -155,6 +176,30 @@ class RadiusSet : public ResultSet {
   double radius_;
   double bound_;
   std::vector<Candidate> candidates_;
+};
+
+// Whether there is any within the radius: nothing is near enough once there is.
+class AnySet : public ResultSet {
+ public:
+  explicit AnySet(double radius)
+      : radius_(radius), bound_(radius * radius * kSlack + std::numeric_limits<double>::denorm_min()) {}
+
+  bool full() const override { return true; }
+
+  void addPoint(double squared_distance, std::size_t) override {
+    if (!(std::sqrt(squared_distance) <= radius_)) return;
+    found_ = true;
+    bound_ = -1;
+  }
+
+  double worstDist() const override { return bound_; }
+
+  bool found() const { return found_; }
+
+ private:
+  double radius_;
+  double bound_;
+  bool found_ = false;
 };
 
 std::vector<PointIndex::Neighbour> sorted(std::vector<Candidate>& candidates) {
@@ -190,6 +235,20 @@ std::vector<PointIndex::Neighbour> PointIndex::nearest(const Eigen::Vector3d& po
   NearestSet set(static_cast<std::size_t>(std::min(count, available)));
   implementation_->tree->search(set, point.data());
   return sorted(set.candidates());
+}
+
+PointIndex::Neighbour PointIndex::nearest(const Eigen::Vector3d& point) const {
+  if (implementation_->points.rows() == 0) return {};
+  NearestOne set;
+  implementation_->tree->search(set, point.data());
+  return {set.best().index, std::sqrt(set.best().squared_distance)};
+}
+
+bool PointIndex::any_within(const Eigen::Vector3d& point, double radius) const {
+  if (implementation_->points.rows() == 0 || !(radius >= 0)) return false;
+  AnySet set(radius);
+  implementation_->tree->search(set, point.data());
+  return set.found();
 }
 
 std::vector<PointIndex::Neighbour> PointIndex::within(const Eigen::Vector3d& point, double radius) const {

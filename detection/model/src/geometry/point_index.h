@@ -24,6 +24,11 @@ class PointIndex {
   std::vector<Neighbour> nearest(const Eigen::Vector3d& point, int count) const;
   std::vector<Neighbour> within(const Eigen::Vector3d& point, double radius) const;
 
+  /// The first of nearest(); index -1 where there are no points.
+  Neighbour nearest(const Eigen::Vector3d& point) const;
+  /// Whether within() has any: ends with the first that is met.
+  bool any_within(const Eigen::Vector3d& point, double radius) const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

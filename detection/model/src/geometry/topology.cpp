@@ -1,13 +1,13 @@
 #include "geometry/topology.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -15,6 +15,7 @@
 
 #include "base/disjoint_sets.h"
 #include "geometry/grid_cell.h"
+#include "geometry/side_order.h"
 
 namespace orbifit {
 
@@ -33,6 +34,7 @@ class GroupGrid {
     // Wide cells, so that most vertices look into one cell only; and never so many that their numbers overflow.
     cell_ = std::max(4 * tolerance, 1e-15 * (vertices.colwise().maxCoeff() - origin_).maxCoeff());
     if (!(cell_ > 0)) cell_ = 1;
+    first_.assign(std::bit_ceil(2 * static_cast<std::size_t>(vertices.rows())), -1);
   }
 
   // The group whose first vertex is nearest within the tolerance, the lowest number among equals; -1 for none.
@@ -45,9 +47,9 @@ class GroupGrid {
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const auto found = groups_.find({x, y, z});
-          if (found == groups_.end()) continue;
-          for (const int group : found->second) {
+          const Cell cell{x, y, z};
+          for (int group = first_[slot_of(cell)]; group >= 0; group = next_[static_cast<std::size_t>(group)]) {
+            if (cells_[static_cast<std::size_t>(group)] != cell) continue;
             const double distance =
                 (vertices_.row(representative[static_cast<std::size_t>(group)]) - point).stableNorm();
             if (distance > tolerance_) continue;
@@ -62,16 +64,23 @@ class GroupGrid {
     return best;
   }
 
-  void insert(const Eigen::RowVector3d& point, int group) { groups_[cell_of(point)].push_back(group); }
+  // Groups come in the order of their numbers.
+  void insert(const Eigen::RowVector3d& point) {
+    const Cell& cell = cells_.emplace_back(cell_of(point));
+    next_.push_back(std::exchange(first_[slot_of(cell)], static_cast<int>(next_.size())));
+  }
 
  private:
+  std::size_t slot_of(const Cell& cell) const { return CellHash{}(cell) & (first_.size() - 1); }
   Cell cell_of(const Eigen::RowVector3d& point) const { return grid_cell(Eigen::RowVector3d(point - origin_), cell_); }
 
   const Points& vertices_;
   double tolerance_;
   double cell_ = 1;
   Eigen::RowVector3d origin_;
-  std::unordered_map<Cell, std::vector<int>, CellHash> groups_;
+  std::vector<Cell> cells_;  // by group
+  std::vector<int> first_;   // by slot of a hash table: the last group that came there; -1: none
+  std::vector<int> next_;    // by group: the one that came to the same slot before
 };
 
 std::array<int, 3> corner_groups(const Mesh& mesh, const Weld& weld, Eigen::Index face) {
@@ -89,8 +98,6 @@ bool collapsed(const std::array<int, 3>& corners) {
 struct EdgeUse {
   std::array<int, 2> vertices;  // ascending
   int face;
-
-  bool operator<(const EdgeUse& other) const { return std::tie(vertices, face) < std::tie(other.vertices, other.face); }
 };
 
 // Every side of every face that has two ends, by vertices, then face.
@@ -105,7 +112,7 @@ std::vector<EdgeUse> edge_uses(const Mesh& mesh, const Weld& weld, bool of_colla
       if (low != high) uses.push_back({{low, high}, static_cast<int>(f)});
     }
   }
-  std::sort(uses.begin(), uses.end());
+  sort_by_ends(uses, weld.group_of_vertex.size(), &EdgeUse::vertices);
   return uses;
 }
 
@@ -250,7 +257,7 @@ Weld weld_vertices(const Points& vertices, double tolerance) {
     if (group < 0) {
       group = static_cast<int>(weld.representative.size());
       weld.representative.push_back(static_cast<int>(v));
-      grid.insert(vertices.row(v), group);
+      grid.insert(vertices.row(v));
     }
     weld.group_of_vertex.push_back(group);
   }

@@ -51,6 +51,10 @@ class VertexGrid {
       low[k] = whole(scaled[static_cast<Eigen::Index>(k)] - margin);
       high[k] = whole(scaled[static_cast<Eigen::Index>(k)] + margin);
     }
+    if (low == high) {  // as most are: cells are wide
+      visit_slot(slot(first_.size() - 1, low), place, visit);
+      return;
+    }
     std::size_t seen[8];
     int count = 0;
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
@@ -61,12 +65,18 @@ class VertexGrid {
           for (int i = 0; i < count; ++i) again = again || seen[i] == at;
           if (again) continue;
           seen[count++] = at;
-          const Entry* const end = entries_.data() + first_[at + 1];
-          for (const Entry* entry = entries_.data() + first_[at]; entry != end; ++entry) {
-            if ((entry->place - place).squaredNorm() <= tolerance_ * tolerance_) visit(entry->vertex);
-          }
+          visit_slot(at, place, visit);
         }
       }
+    }
+  }
+
+  /// Of many places that will be visited: has the memory fetched in which each will be looked for, so that the visits
+  /// need not wait for it one after another.
+  void fetch(const std::vector<Eigen::Vector3d>& places) const {
+    for (const Eigen::Vector3d& place : places) __builtin_prefetch(&first_[slot_at(place)]);
+    for (const Eigen::Vector3d& place : places) {
+      __builtin_prefetch(entries_.data() + first_[slot_at(place)]);
     }
   }
 
@@ -84,6 +94,20 @@ class VertexGrid {
   static std::int64_t whole(double number) {
     const auto towards_zero = static_cast<std::int64_t>(number);
     return towards_zero - (static_cast<double>(towards_zero) > number ? 1 : 0);
+  }
+
+  template <class Visit>
+  void visit_slot(std::size_t at, const Eigen::Vector3d& place, const Visit& visit) const {
+    const Entry* const end = entries_.data() + first_[at + 1];
+    for (const Entry* entry = entries_.data() + first_[at]; entry != end; ++entry) {
+      if ((entry->place - place).squaredNorm() <= tolerance_ * tolerance_) visit(entry->vertex);
+    }
+  }
+
+  std::size_t slot_at(const Eigen::Vector3d& place) const {
+    const Eigen::Vector3d scaled = (place - origin_) / width_;
+    if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) return 0;
+    return slot(first_.size() - 1, {whole(scaled[0]), whole(scaled[1]), whole(scaled[2])});
   }
 
   static std::size_t slot(std::size_t slots, const Cell& cell) { return CellHash{}(cell) & (slots - 1); }

@@ -46,7 +46,8 @@ Points face_centroids(const Mesh& mesh);
 /// Area-weighted unit normal at each vertex, #V by 3; zero where no face of positive area meets.
 Points vertex_normals(const Mesh& mesh);
 
-/// The mesh of some of the faces with the vertices they use; vertices keep their order.
+/// The mesh of some of the faces with the vertices they use; vertices keep their order. Of few faces the cost does not
+/// grow with the mesh.
 /// \param[out] vertex_of for each vertex of the result its number in `mesh`; may be null
 Mesh submesh(const Mesh& mesh, const std::vector<int>& faces, std::vector<int>* vertex_of = nullptr);
 
