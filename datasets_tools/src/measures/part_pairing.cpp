@@ -16,8 +16,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 // Divides a patch, whose faces are `faces` in the mesh.
-std::optional<RegionParts::Division> divided(const Mesh& mesh, const Mesh& patch, const std::vector<int>& faces,
-                                             double reach) {
+std::optional<RegionParts::Division> divided(const Mesh& patch, const std::vector<int>& faces) {
   const std::vector<std::vector<int>> parts =
       touching_parts(patch, weld_vertices(patch.vertices), DoubledParts::apart).faces;
   // Loose triangles are no parts.
@@ -25,6 +24,7 @@ std::optional<RegionParts::Division> divided(const Mesh& mesh, const Mesh& patch
   if (parts.size() < 2 || kFacesOfAPart * parts.size() > faces.size()) return std::nullopt;
   RegionParts::Division division;
   division.part_of_vertex.assign(static_cast<std::size_t>(patch.vertices.rows()), -1);
+  division.shared.assign(division.part_of_vertex.size(), 0);
   const Eigen::VectorXd areas = face_areas(patch);
   for (const std::vector<int>& part : parts) {
     std::vector<int> own;
@@ -37,8 +37,11 @@ std::optional<RegionParts::Division> divided(const Mesh& mesh, const Mesh& patch
       for (int k = 0; k < 3; ++k) {
         const int v = patch.faces(f, k);
         moment += areas[f] / 3 * patch.vertices.row(v).transpose();
-        if (division.part_of_vertex[static_cast<std::size_t>(v)] >= 0) continue;
-        division.part_of_vertex[static_cast<std::size_t>(v)] = static_cast<int>(division.parts.size());
+        int& of_vertex = division.part_of_vertex[static_cast<std::size_t>(v)];
+        const auto here = static_cast<int>(division.parts.size());
+        if (of_vertex >= 0 && of_vertex != here) division.shared[static_cast<std::size_t>(v)] = 1;
+        if (of_vertex >= 0) continue;
+        of_vertex = here;
         vertices.push_back(v);
       }
     }
@@ -46,7 +49,7 @@ std::optional<RegionParts::Division> divided(const Mesh& mesh, const Mesh& patch
     if (!(area > 0)) vertices.clear();  // nothing to tell it by
     const Vector3d centroid =
         area > 0 ? Vector3d(moment / area) : Vector3d(patch.vertices.row(patch.faces(part[0], 0)));
-    division.parts.push_back({RegionSurface(mesh, own, reach), std::move(vertices), centroid, area});
+    division.parts.push_back({std::move(own), std::move(vertices), centroid, area});
   }
   return division;
 }
@@ -81,7 +84,10 @@ class Pairer {
     const std::size_t count = from_.whole().vertices().size();
     pairing_.places.resize(motions_.size() * count);
     done_.assign(pairing_.places.size(), false);
-    if (from_.division() && to_.division()) pair_division(*from_.division(), *to_.division());
+    if (from_.division() && to_.division()) {
+      find_lone_vertices();
+      pair_division(*from_.division(), *to_.division());
+    }
     std::vector<std::size_t> rest;
     for (std::size_t i = 0; i < done_.size(); ++i) {
       if (!done_[i]) rest.push_back(i);
@@ -94,6 +100,46 @@ class Pairer {
  private:
   std::size_t pair_of(std::size_t motion, int vertex) const {
     return motion * from_.whole().vertices().size() + static_cast<std::size_t>(vertex);
+  }
+
+  void find_lone_vertices() {
+    lone_.resize(static_cast<std::size_t>(images_.rows()));
+    parallel_for(context_, lone_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        lone_[i] = to_.whole().lone_vertex_at(images_.row(static_cast<Index>(i)).transpose());
+      }
+    });
+  }
+
+  // Whether a vertex of `to`, by number, is of this part and no other: the part by itself has it as the whole has it.
+  bool only_of(int vertex, std::size_t part) const {
+    const auto v = static_cast<std::size_t>(vertex);
+    return vertex >= 0 && to_.division()->part_of_vertex[v] == static_cast<int>(part) && to_.division()->shared[v] == 0;
+  }
+
+  // On one part of `to`. Where an image is at one vertex of all of `to`, and that is the part's, the part is not asked.
+  std::vector<SurfacePlace> places_on_part(std::size_t part, const std::vector<std::size_t>& pairs) const {
+    std::vector<SurfacePlace> result(pairs.size());
+    std::vector<std::size_t> open;
+    std::vector<std::size_t> open_pairs;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const int lone = lone_[pairs[i]];
+      if (only_of(lone, part)) {
+        result[i].vertex = to_.whole().vertices()[static_cast<std::size_t>(lone)];
+      } else {
+        open.push_back(i);
+        open_pairs.push_back(pairs[i]);
+      }
+    }
+    if (open.empty()) return result;
+    const std::vector<SurfacePlace> places = places_on(to_.surface_of(part), open_pairs);
+    for (std::size_t i = 0; i < open.size(); ++i) result[open[i]] = places[i];
+    return result;
+  }
+
+  // Of a place that the part has for a pair.
+  Vector3d normal_at(const SurfacePlace& place, std::size_t part, std::size_t pair) const {
+    return (only_of(lone_[pair], part) ? to_.whole() : to_.surface_of(part)).normal_at(place);
   }
 
   std::vector<SurfacePlace> places_on(const RegionSurface& surface, const std::vector<std::size_t>& pairs) const {
@@ -149,15 +195,14 @@ class Pairer {
     }
     for (std::size_t k = 0; k < requests.size(); ++k) {
       const Request& request = requests[k];
-      const RegionSurface& surface = to.parts[k].surface;
-      const std::vector<SurfacePlace> places = places_on(surface, request.pairs);
+      const std::vector<SurfacePlace> places = places_on_part(k, request.pairs);
       for (std::size_t i = 0; i < places.size(); ++i) {
         const auto row = static_cast<Index>(request.pairs[i]);
         Candidate& candidate = *request.answers[i];
-        const double distance = (surface.point_at(places[i]) - images_.row(row).transpose()).norm();
+        const double distance = (to_.whole().point_at(places[i]) - images_.row(row).transpose()).norm();
         candidate.squares += distance * distance;
         candidate.farthest = std::max(candidate.farthest, distance);
-        candidate.facing += surface.normal_at(places[i]).dot(normals_.row(row).transpose());
+        candidate.facing += normal_at(places[i], k, request.pairs[i]).dot(normals_.row(row).transpose());
         candidate.count += 1;
       }
     }
@@ -211,7 +256,7 @@ class Pairer {
       for (const Wanted& one : wanted[k]) {
         pairs.insert(pairs.end(), choices[one.choice].pairs.begin(), choices[one.choice].pairs.end());
       }
-      const std::vector<SurfacePlace> places = places_on(to.parts[k].surface, pairs);
+      const std::vector<SurfacePlace> places = places_on_part(k, pairs);
       auto next = places.begin();
       for (const Wanted& one : wanted[k]) {
         const auto end = next + static_cast<std::ptrdiff_t>(choices[one.choice].pairs.size());
@@ -251,12 +296,20 @@ class Pairer {
   const RunContext& context_;
   Pairing pairing_;
   std::vector<bool> done_;
+  std::vector<int> lone_;  // by pair: RegionSurface::lone_vertex_at() of all of `to`, where it has parts
 };
 
 }  // namespace
 
-RegionParts::RegionParts(const Mesh& mesh, const std::vector<int>& faces, double reach) : whole_(mesh, faces, reach) {
-  division_ = divided(mesh, whole_.patch(), faces, reach);
+RegionParts::RegionParts(const Mesh& mesh, const std::vector<int>& faces, double reach)
+    : mesh_(mesh), reach_(reach), whole_(mesh, faces, reach), division_(divided(whole_.patch(), faces)) {
+  if (division_) surfaces_.resize(division_->parts.size());
+}
+
+const RegionSurface& RegionParts::surface_of(std::size_t part) const {
+  std::unique_ptr<const RegionSurface>& surface = surfaces_[part];
+  if (!surface) surface = std::make_unique<const RegionSurface>(mesh_, division_->parts[part].faces, reach_);
+  return *surface;
 }
 
 Pairing pair_parts(const RegionParts& from, const RegionParts& to, const std::vector<Motion>& motions,

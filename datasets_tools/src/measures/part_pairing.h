@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace orbifit {
 class RegionParts {
  public:
   struct Part {
-    RegionSurface surface;
+    std::vector<int> faces;     ///< of the mesh
     std::vector<int> vertices;  ///< numbers within whole().vertices()
     Eigen::Vector3d centroid;   ///< of its area
     double area = 0;
@@ -27,20 +28,27 @@ class RegionParts {
   struct Division {
     std::vector<Part> parts;
     std::vector<int> part_of_vertex;  ///< by number within whole().vertices()
+    std::vector<char> shared;         ///< likewise: whether other parts have the vertex as well
   };
 
-  /// \param reach  as RegionSurface has it
+  /// \param mesh  kept by reference \param reach  as RegionSurface has it
   RegionParts(const Mesh& mesh, const std::vector<int>& faces, double reach);
 
   const RegionSurface& whole() const { return whole_; }
+
+  /// A part by itself; made when it is first asked for. Not for use by several threads.
+  const RegionSurface& surface_of(std::size_t part) const;
 
   /// None where there is a single part, or hardly more than single triangles. Parts are touching_parts(), those in one
   /// place each by itself.
   const std::optional<Division>& division() const { return division_; }
 
  private:
+  const Mesh& mesh_;
+  double reach_;
   RegionSurface whole_;
   std::optional<Division> division_;
+  mutable std::vector<std::unique_ptr<const RegionSurface>> surfaces_;  // by part
 };
 
 /// Points q on one surface for points p of another under some motions.

@@ -29,20 +29,6 @@ std::uint64_t mixed(std::int64_t key) {
   return value ^ (value >> 32);
 }
 
-// Costs nothing for the rest of the mesh, unlike submesh().
-Mesh patch_of(const Mesh& mesh, const std::vector<int>& faces, const std::vector<int>& vertices) {
-  Mesh patch;
-  patch.vertices = mesh.vertices(vertices, Eigen::all);
-  patch.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const auto at = std::ranges::lower_bound(vertices, mesh.faces(faces[f], k));
-      patch.faces(static_cast<Eigen::Index>(f), k) = static_cast<int>(at - vertices.begin());
-    }
-  }
-  return patch;
-}
-
 }  // namespace
 
 Eigen::Vector3d SurfacePlace::operator()(const Mesh& mesh) const {
@@ -52,8 +38,8 @@ Eigen::Vector3d SurfacePlace::operator()(const Mesh& mesh) const {
 }
 
 RegionSurface::RegionSurface(const Mesh& mesh, const std::vector<int>& faces, double reach)
-    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(kCell * reach), vertices_(vertices_of_faces(mesh, faces)) {
-  patch_ = patch_of(mesh, faces, vertices_);
+    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(kCell * reach) {
+  patch_ = submesh(mesh, faces, &vertices_);
   normals_ = vertex_normals(patch_);
   origin_ = bounding_box_centre(patch_.vertices);
   const std::size_t count = vertices_.size();
@@ -81,18 +67,14 @@ std::int64_t RegionSurface::key_of(const Eigen::Vector3d& cell) const {
   return bits(cell.x()) | (bits(cell.y()) << 21) | (bits(cell.z()) << 42);
 }
 
-int RegionSurface::vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
+// Calls visit(vertex, distance) for each vertex within reach.
+template <class Visit>
+void RegionSurface::visit_near(const Eigen::Vector3d& point, const Visit& visit) const {
   const Eigen::Vector3d low = ((point - origin_).array() - reach_) / cell_size_;
   const Eigen::Vector3d high = ((point - origin_).array() + reach_) / cell_size_;
   const Eigen::Vector3d first = low.array().floor();
   const Eigen::Vector3d last = high.array().floor();
   const std::size_t slots = first_of_slot_.size() - 1;
-  struct Candidate {
-    int vertex;
-    double distance;
-  };
-  std::vector<Candidate> near;
-  double least = reach_;
   for (double x = first.x(); x <= last.x(); ++x) {
     for (double y = first.y(); y <= last.y(); ++y) {
       for (double z = first.z(); z <= last.z(); ++z) {
@@ -102,13 +84,32 @@ int RegionSurface::vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d
           const Cell& cell = cells_[static_cast<std::size_t>(i)];
           if (cell.key != key) continue;
           const double distance = (patch_.vertices.row(cell.vertex).transpose() - point).norm();
-          if (distance > reach_) continue;
-          near.push_back({cell.vertex, distance});
-          least = std::min(least, distance);
+          if (!(distance > reach_)) visit(cell.vertex, distance);
         }
       }
     }
   }
+}
+
+int RegionSurface::lone_vertex_at(const Eigen::Vector3d& point) const {
+  int result = kNone;
+  visit_near(point, [&](int vertex, double) { result = result == kNone ? vertex : kSeveral; });
+  return result;
+}
+
+int RegionSurface::vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
+  const int lone = lone_vertex_at(point);
+  if (lone != kSeveral) return lone;
+  struct Candidate {
+    int vertex;
+    double distance;
+  };
+  std::vector<Candidate> near;
+  double least = reach_;
+  visit_near(point, [&](int vertex, double distance) {
+    near.push_back({vertex, distance});
+    least = std::min(least, distance);
+  });
   int best = -1;
   double best_agreement = 0;
   double best_distance = 0;

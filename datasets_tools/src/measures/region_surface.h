@@ -34,6 +34,12 @@ class RegionSurface {
   /// of the faces, on the side that faces as `normals` do where a thin part has both sides near.
   std::vector<SurfacePlace> places(const Points& points, const Points& normals, const RunContext& context) const;
 
+  /// The vertex within reach of a point, by number within vertices(), where there is but one: no normal is needed to
+  /// tell which is meant then. kNone or kSeveral else.
+  int lone_vertex_at(const Eigen::Vector3d& point) const;
+  static constexpr int kNone = -1;
+  static constexpr int kSeveral = -2;
+
   Eigen::Vector3d point_at(const SurfacePlace& place) const { return place(mesh_); }
   Eigen::Vector3d normal_at(const SurfacePlace& place) const;  ///< of one of places(): unit, or zero
 
@@ -43,6 +49,8 @@ class RegionSurface {
     int vertex;  // number within the region
   };
   std::int64_t key_of(const Eigen::Vector3d& cell) const;
+  template <class Visit>
+  void visit_near(const Eigen::Vector3d& point, const Visit& visit) const;
   int vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 
   const Mesh& mesh_;
@@ -50,7 +58,7 @@ class RegionSurface {
   double reach_;
   double cell_size_;
   Eigen::Vector3d origin_;
-  std::vector<int> vertices_;  // before patch_, whose making fills it
+  std::vector<int> vertices_;
   Mesh patch_;
   Points normals_;
   std::vector<Cell> cells_;         // ordered by slot
