@@ -43,6 +43,7 @@ FitLoop::FitLoop(const FitInput& input, const PlacedScan& start, DeformationSyst
       options_(options),
       context_(context),
       size_(diagonal(input.mesh.vertices)),
+      centre_(bounding_box_centre(input.mesh.vertices)),
       deformed_(input.mesh),
       surface_(moving_template(start, deformed_)) {}
 
@@ -162,9 +163,8 @@ void FitLoop::step(FitState& state, const Matches& matches, const Stage& now, do
     state.others[k] = conjugate(state.pose, solution.other_steps[k]) * state.others[k];
   }
   const Motion back = inverse(solution.scan_step);
-  const Eigen::Vector3d centre = bounding_box_centre(input_.mesh.vertices);
   state.pose = state.pose * Similarity{1, back.linear, back.translation} *
-               Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre};
+               Similarity{solution.growth, Eigen::Matrix3d::Identity(), (1 - solution.growth) * centre_};
   move_to(state);
   record.damping = damping;
   record.change = (system_.samples_at(state.q) - before).rowwise().norm().maxCoeff() / size_;

@@ -94,6 +94,7 @@ class FitLoop {
   const FitOptions& options_;
   const RunContext& context_;
   double size_;                 // the template's diagonal
+  Eigen::Vector3d centre_;      // of its box
   double first_scale_ = 1;      // of the pose, where the fit began
   double last_stiffness_ = 0;   // as the scan's noise allows
   double least_stiffness_ = 0;  // as what is left unexplained allows

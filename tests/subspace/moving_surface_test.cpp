@@ -44,6 +44,10 @@ TEST_F(Moved, AnswersAsAnIndexOfItsOwn) {
     const auto expected = index.nearest(point, most);
     const auto found = surface_.nearest(point, most);
     ASSERT_EQ(found.face < 0, expected.face < 0);
+    const double distance = surface_.nearest(point).distance;
+    for (const double within : {distance, distance * (1 - 1e-9), 2 * distance}) {
+      EXPECT_EQ(surface_.within(point, within, found.place), surface_.nearest(point, within).face >= 0);
+    }
     if (found.face >= 0) {
       ++near;
       EXPECT_NEAR(found.distance, expected.distance, 1e-13 * size_);

@@ -29,7 +29,8 @@ KurzFit::KurzFit(const FitInput& input, const UnitInput& unit, const KurzOptions
       size_(diagonal(unit.mesh.vertices)),
       demands_(symmetry_demands(unit.mesh, unit.annotation, options.quadrature_points,
                                 options.symmetry_weight > 0 ? options.mode : GroupMode::fixed, context)),
-      signed_normals_(options.signed_normals && unit.scan.normals_oriented && faces_outwards(unit.mesh, context)),
+      signed_normals_(options.signed_normals && unit.scan.normals_oriented &&
+                      faces_outwards(unit.mesh, MovingSurface(unit.mesh), context)),
       deformed_(unit.mesh),
       surface_(deformed_) {
   if (options.symmetry_weight == 0) demands_.demands.clear();

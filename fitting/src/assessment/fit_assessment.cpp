@@ -98,7 +98,7 @@ void assess_fit(const FitInput& input, const PreparedScan& scan, const SeenSurfa
   parallel_for(context, result.seen.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Eigen::Vector3d vertex = result.fitted.vertices.row(static_cast<Eigen::Index>(v));
-      result.seen[v] = seen.points().nearest(vertex, 1).front().distance <= near ? 1 : 0;
+      result.seen[v] = seen.points().any_within(vertex, near) ? 1 : 0;
     }
   });
   const Eigen::VectorXd areas = face_areas(result.fitted);

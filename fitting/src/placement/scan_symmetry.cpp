@@ -141,7 +141,7 @@ double mirrored_share(const MirrorPlane& plane, const ScanSample& sample, const 
     const double weight = std::pow(plane.direction.dot(sample.normal(i)), 2);
     weights += weight;
     const Vector3d image = sample.centre + sample.extent * plane.image(x);
-    const PointIndex::Neighbour near = scan.nearest(image, 1).front();
+    const PointIndex::Neighbour near = scan.nearest(image);
     if (near.distance < kNear * sample.extent) {
       const Vector3d normal = all.normals.row(near.index);
       if (like_normals(plane.turned(sample.normal(i)), normal, sample.oriented, kLike)) mirrored += weight;

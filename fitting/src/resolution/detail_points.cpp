@@ -27,7 +27,7 @@ DetailPoints detail_points(const FitInput& input, const PlacedScan& start, const
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < scan.points.rows(); ++i) {
       const Eigen::Vector3d point = scan.points.row(i).transpose();
-      if (used.nearest(point, 1).front().distance <= kBeside * start.scan.spacing) kept.push_back(i);
+      if (used.any_within(point, kBeside * start.scan.spacing)) kept.push_back(i);
     }
     append(all.points, to_template(result.pose, scan.points(kept, Eigen::all)));
     append(all.normals, normals_to_template(result.pose, scan.normals(kept, Eigen::all)));

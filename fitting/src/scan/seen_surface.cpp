@@ -144,7 +144,7 @@ SeenSurface::Coverage SeenSurface::coverage(const SurfaceSamples& samples, const
   result.samples = static_cast<int>(samples.points.rows());
   for (Eigen::Index i = 0; i < samples.points.rows(); ++i) {
     const Vector3d own = samples.points.row(i);
-    if (index_.nearest(pose(own), 1).front().distance <= reach) {
+    if (index_.any_within(pose(own), reach)) {
       ++result.seen;
       continue;
     }
@@ -165,13 +165,14 @@ SeenSurface::Look SeenSurface::look(const SurfaceSamples& samples, const Occlude
     for (std::size_t i = begin; i < end; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       const Vector3d own = samples.points.row(row);
-      const PointIndex::Neighbour near = index_.nearest(pose(own), 1).front();
-      if (near.distance <= reach) {
+      if (index_.any_within(pose(own), reach)) {
         seen[i] = 1;
         continue;
       }
       const Sight sight = expected(own, samples.normals.row(row), surface, pose, reach, kSameSurfacePulled);
-      if (sight != Sight::hidden) all[i] = {static_cast<int>(i), near.index, near.distance, sight == Sight::through};
+      if (sight == Sight::hidden) continue;
+      const PointIndex::Neighbour near = index_.nearest(pose(own));
+      all[i] = {static_cast<int>(i), near.index, near.distance, sight == Sight::through};
     }
   });
   std::erase_if(all, [](const Missed& each) { return each.sample < 0; });

@@ -185,7 +185,7 @@ FitStarts find_starts(const FitInput& input, const FitOptions& options, bool dou
   parallel_for(context, result.places.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       PlacedScan& start = result.places[i];
-      start.views = std::make_shared<const ScanViews>(input.mesh, input.scan, start.scan, own);
+      start.views = std::make_shared<const ScanViews>(input.mesh, start.shared->tree(), input.scan, start.scan, own);
     }
   });
   return result;

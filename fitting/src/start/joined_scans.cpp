@@ -127,7 +127,8 @@ PlacedScan join_scans(const FitInput& input, const PlacedScan& start, const FitR
   }
   result.overlap = overlaps.used / overlaps.points;
   result.torn_off = overlaps.torn_off / overlaps.points;
-  result.views = std::make_shared<const ScanViews>(input.mesh, joined_cloud(input, result), result.scan, context);
+  result.views = std::make_shared<const ScanViews>(input.mesh, moving_template(result, input.mesh),
+                                                   joined_cloud(input, result), result.scan, context);
   return result;
 }
 

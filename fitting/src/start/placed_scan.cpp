@@ -39,7 +39,7 @@ Shares shares_of(const PointCloud& cloud, const PreparedScan& kept, const Surfac
   std::vector<int> front;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d point = looks.row(static_cast<Eigen::Index>(i));
-    if (index.nearest(point, 1).front().distance <= 2 * kept.spacing) {
+    if (index.any_within(point, 2 * kept.spacing)) {
       front.push_back(static_cast<int>(i));
     } else if (surface.nearest(back(point), reach / pose.scale).face < 0) {
       may_join[i] = 1;

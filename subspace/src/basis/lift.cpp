@@ -31,7 +31,7 @@ LiftWeights lift_weights(const Points& points, const Points& samples, double sig
         total += weight;
       }
       if (rows[p].empty()) {
-        rows[p].emplace_back(row, index.nearest(point, 1).front().index, 1);
+        rows[p].emplace_back(row, index.nearest(point).index, 1);
         total = 1;
       }
       for (auto& entry : rows[p]) entry = Eigen::Triplet<double>(row, entry.col(), entry.value() / total);

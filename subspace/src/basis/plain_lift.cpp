@@ -39,10 +39,10 @@ PlainLift::PlainLift(const SymmetricSampling& sampling, const RegionMap& regions
   }
   // Cells half as wide as a Gaussian reaches: samples by counting sort.
   const Points& points = sampling.points;
-  const double reach = kPlainReach * (sampling.radii.size() > 0 ? sampling.radii.maxCoeff() : 1);
+  reach_ = kPlainReach * (sampling.radii.size() > 0 ? sampling.radii.maxCoeff() : 1);
   origin_ = points.colwise().minCoeff();
   const Eigen::Vector3d extent = points.colwise().maxCoeff().transpose() - origin_;
-  width_ = 0.5 * reach;
+  width_ = 0.5 * reach_;
   const auto count_of = [&]() -> Eigen::Vector3d { return (extent / width_).array().floor() + 1; };
   while (count_of().prod() > kMaxCells) width_ *= 2;
   const Eigen::Vector3d counts = count_of();
@@ -139,13 +139,12 @@ void PlainLift::terms(const Eigen::Vector3d& point, int set, Scratch& scratch, s
 }
 
 void PlainLift::gaussian_terms(const Eigen::Vector3d& point, Scratch& scratch) const {
-  const double reach = kPlainReach * sampling_.radii.maxCoeff();
   std::array<int, 3> low{};
   std::array<int, 3> high{};
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    low[i] = std::max(0, static_cast<int>(std::floor((point[k] - reach - origin_[k]) / width_)));
-    high[i] = std::min(cells_[i] - 1, static_cast<int>(std::floor((point[k] + reach - origin_[k]) / width_)));
+    low[i] = std::max(0, static_cast<int>(std::floor((point[k] - reach_ - origin_[k]) / width_)));
+    high[i] = std::min(cells_[i] - 1, static_cast<int>(std::floor((point[k] + reach_ - origin_[k]) / width_)));
   }
   double largest = 0;
   for (int x = low[0]; x <= high[0]; ++x) {

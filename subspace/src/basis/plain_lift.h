@@ -74,6 +74,7 @@ class PlainLift {
   bool faded_;
   std::vector<int> partial_places_;      // those that do not hold the whole mesh
   std::vector<std::vector<int>> rings_;  // canonical samples, by place
+  double reach_;                         // of the widest Gaussian
   double width_;                         // of the grid's cells
   Eigen::Vector3d origin_;
   std::array<int, 3> cells_{};

@@ -157,34 +157,67 @@ class Kept {
     }
   }
 
-  bool near(int number) const { return distance(number) < spacing_[static_cast<std::size_t>(number)]; }
+  // Whether another one is kept nearer than the spacing.
+  bool near(int number) const {
+    constexpr double kRounding = 1e-9;  // of the spacing
+    context_.check();
+    const Candidate& here = at(number);
+    const double spacing = spacing_[static_cast<std::size_t>(number)];
+    const double width = width_.at(here.parts);
+    const Cell low = cell_at(here.middle.array() - (1 + kRounding) * spacing, here.parts, width);
+    const Cell high = cell_at(here.middle.array() + (1 + kRounding) * spacing, here.parts, width);
+    Cell cell = low;
+    for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) {
+      for (cell[3] = low[3]; cell[3] <= high[3]; ++cell[3]) {
+        for (cell[4] = low[4]; cell[4] <= high[4]; ++cell[4]) {
+          const auto entry = by_cell_.find(cell);
+          if (entry == by_cell_.end()) continue;
+          const bool any = std::ranges::any_of(
+              entry->second, [&](int other) { return (at(other).middle - here.middle).norm() < spacing; });
+          if (any) return true;
+        }
+      }
+    }
+    return false;
+  }
 
   void add(int number) {
     by_cell_[cell_of(number)].push_back(number);
     by_parts_[at(number).parts].push_back(number);
   }
 
-  // From a candidate to the nearest one kept, which is told as well; infinite where none is within the widest spacing
-  // between the same parts.
-  double distance(int number, int* nearest = nullptr) const {
+  // The nearest one that is kept between the same parts, of several the first; the candidate itself where none is
+  // within their widest spacing.
+  int nearest(int number) const {
     context_.check();
+    const Candidate& here = at(number);
+    const double width = width_.at(here.parts);
+    const Cell middle = cell_at(here.middle, here.parts, width);
     double least = std::numeric_limits<double>::infinity();
-    const Cell middle = cell_of(number);
-    for (int neighbour = 0; neighbour < 27; ++neighbour) {
+    int result = number;
+    for (const int neighbour : kFromTheMiddle) {
       Cell cell = middle;
-      cell[2] += neighbour % 3 - 1;
-      cell[3] += neighbour / 3 % 3 - 1;
-      cell[4] += neighbour / 9 - 1;
+      double squared = 0;  // from there to the cell, in its widths
+      for (int axis = 0, rest = neighbour; axis < 3; ++axis, rest /= 3) {
+        const int step = rest % 3 - 1;
+        const auto k = static_cast<std::size_t>(2 + axis);
+        const double place = here.middle[axis] / width - static_cast<double>(middle[k]);
+        const double gap = step == 0 ? 0 : step < 0 ? place : 1 - place;
+        squared += gap * gap;
+        cell[k] += step;
+      }
+      constexpr double kSure = 1 - 1e-9;  // whatever rounding does
+      if (kSure * std::sqrt(squared) * width > least) continue;
       const auto entry = by_cell_.find(cell);
       if (entry == by_cell_.end()) continue;
       for (const int other : entry->second) {
-        const double here = (at(other).middle - at(number).middle).norm();
-        if (here > least || (here == least && nearest != nullptr && other > *nearest)) continue;
-        least = here;
-        if (nearest != nullptr) *nearest = other;
+        const double distance = (at(other).middle - here.middle).norm();
+        if (distance > least || (distance == least && other > result)) continue;
+        least = distance;
+        result = other;
       }
     }
-    return least;
+    return result;
   }
 
   const std::map<std::array<int, 2>, Numbers>& by_parts() const { return by_parts_; }
@@ -194,11 +227,15 @@ class Kept {
 
   const Candidate& at(int number) const { return candidates_[static_cast<std::size_t>(number)]; }
 
-  Cell cell_of(int number) const {
-    const Candidate& here = at(number);
-    const auto [x, y, z] = grid_cell(here.middle, width_.at(here.parts));
-    return {here.parts[0], here.parts[1], x, y, z};
+  // Numbers of neighbouring cells, each axis' step a digit of three: the cell itself, then those around it.
+  static constexpr std::array<int, 27> kFromTheMiddle{13, 0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12,
+                                                      14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
+
+  static Cell cell_at(const Vector3d& point, const std::array<int, 2>& parts, double width) {
+    const auto [x, y, z] = grid_cell(point, width);
+    return {parts[0], parts[1], x, y, z};
   }
+  Cell cell_of(int number) const { return cell_at(at(number).middle, at(number).parts, width_.at(at(number).parts)); }
 
   const std::vector<Candidate>& candidates_;
   const std::vector<double>& spacing_;
@@ -273,9 +310,7 @@ Joints joints_of(const std::vector<Candidate>& candidates, const Orbits& orbits,
   std::map<int, std::size_t> number_of;
   for (const Numbers& orbit : orbits) {
     for (const int number : orbit) {
-      int nearest = number;
-      kept.distance(number, &nearest);
-      const auto [entry, added] = number_of.try_emplace(hanging.root(nearest), result.members.size());
+      const auto [entry, added] = number_of.try_emplace(hanging.root(kept.nearest(number)), result.members.size());
       if (added) result.members.emplace_back();
       result.members[entry->second].push_back(number);
     }

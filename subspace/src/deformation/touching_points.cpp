@@ -117,7 +117,7 @@ class TouchingSearch::OfPart {
     const Vector3d centre = (corner(face, 0) + corner(face, 1) + corner(face, 2)) / 3;
     double radius = 0;
     for (int k = 0; k < 3; ++k) radius = std::max(radius, (corner(face, k) - centre).norm());
-    return to_.surface->nearest(centre, radius + tolerance_, likely_).face >= 0;
+    return to_.surface->within(centre, radius + tolerance_, likely_);
   }
 
   // Corners, and a lattice of points between them where the face is large.

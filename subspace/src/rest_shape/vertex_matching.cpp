@@ -121,10 +121,10 @@ std::vector<int> matched_at(const Points& positions, const Neighbourhoods& aroun
   parallel_for(context, count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d position = positions.row(static_cast<Index>(i));
-      const auto image = index.nearest(motion(position), 1).front();
+      const auto image = index.nearest(motion(position));
       forward[i] = image.index;
       distance[i] = image.distance;
-      backward[i] = index.nearest(back(position), 1).front().index;
+      backward[i] = index.nearest(back(position)).index;
       const auto near = index.nearest(position, 2);
       spacing[i] = near.back().distance;
     }

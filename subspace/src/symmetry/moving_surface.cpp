@@ -78,6 +78,7 @@ struct MovingSurface::Query {
   const Vector3d* facing = nullptr;
   double min_cosine = 0;
   bool unsigned_normal = false;
+  bool any = false;  // whichever face is met will do
 
   float limit = kUnbounded;  // boxes farther than this, squared, hold nothing nearer, nor do planes
   double plane_limit = std::numeric_limits<double>::infinity();
@@ -163,7 +164,11 @@ void MovingSurface::move(const Mesh& mesh, const RunContext& context) {
   parallel_for(
       context, levels_.front().size(),
       [&](std::size_t begin, std::size_t end) { fit_faces(rounded.get(), begin, end); }, kMinShare);
-  for (std::size_t level = 1; level < levels_.size(); ++level) fit_nodes(level, 0, levels_[level].size());
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    parallel_for(
+        context, levels_[level].size(), [&](std::size_t begin, std::size_t end) { fit_nodes(level, begin, end); },
+        kMinShare);
+  }
 }
 
 void MovingSurface::fit_faces(const float* vertices, std::size_t begin, std::size_t end) {
@@ -231,6 +236,7 @@ void MovingSurface::measure(std::size_t place, Query& query) const {
   query.place = place;
   query.barycentric = barycentric;
   query.reach(distance, scale_);
+  if (query.any) query.limit = -1;
 }
 
 void MovingSurface::search(std::size_t level, std::size_t group, Query& query) const {
@@ -289,6 +295,14 @@ MovingSurface::Nearest MovingSurface::nearest(const Vector3d& point, double max_
   query.point = point;
   query.max_distance = max_distance;
   return answer(query, likely);
+}
+
+bool MovingSurface::within(const Vector3d& point, double distance, int likely) const {
+  Query query{};
+  query.point = point;
+  query.max_distance = distance;
+  query.any = true;
+  return answer(query, likely).face >= 0;
 }
 
 MovingSurface::Nearest MovingSurface::nearest_facing(const Vector3d& point, const Vector3d& normal, double min_cosine,

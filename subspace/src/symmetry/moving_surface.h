@@ -32,6 +32,9 @@ class MovingSurface {
   Nearest nearest(const Eigen::Vector3d& point, double max_distance = std::numeric_limits<double>::infinity(),
                   int likely = -1) const;
 
+  /// Whether any face has a point within `distance`: ends with the first that is met. \param likely  as of nearest()
+  bool within(const Eigen::Vector3d& point, double distance, int likely = -1) const;
+
   /// Only faces whose unit normal n has n . normal >= min_cosine (|n . normal| if `unsigned_normal`).
   Nearest nearest_facing(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double min_cosine,
                          double max_distance = std::numeric_limits<double>::infinity(), bool unsigned_normal = false,

@@ -42,7 +42,7 @@ class Turned {
   const std::vector<Index>& trials() const { return trials_; }
 
   Index image(const Matrix3d& linear, Index point) const {
-    return index_.nearest(linear * points_.row(point).transpose(), 1).front().index;
+    return index_.nearest(linear * points_.row(point).transpose()).index;
   }
 
   /// Root mean square distance of images from places; infinite where a place is its own image without being fixed:
@@ -51,7 +51,7 @@ class Turned {
     double sum = 0;
     for (const Index i : trials_) {
       const Vector3d point = points_.row(i);
-      const auto image = index_.nearest(linear * point, 1).front();
+      const auto image = index_.nearest(linear * point);
       if (image.index == i && image.distance > kFixed * point.norm()) return std::numeric_limits<double>::infinity();
       sum += image.distance * image.distance;
     }
