@@ -158,9 +158,12 @@ SymmetryAnnotation template_annotation(const FitArguments& arguments, const Mesh
 }
 
 // `annotation`, the input's, becomes what of it is consistent.
-StageTime make_consistent(const Mesh& mesh, SymmetryAnnotation& annotation, const RunContext& run) {
+StageTime make_consistent(SymmetryAnnotation& annotation, FitInput& input, const RunContext& run) {
   const auto began = std::chrono::steady_clock::now();
-  annotation = made_consistent(mesh, annotation, run);
+  ConsistentAnnotation consistent = consistent_annotation(input.mesh, annotation, run);
+  tell_changes(consistent, run);
+  annotation = std::move(consistent.annotation);
+  input.surface_index = std::move(consistent.surface_index);
   return {"consistency", std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()};
 }
 
@@ -185,7 +188,7 @@ FitResult fit_and_pair(const FitInput& input, const FitOptions& options, const R
 
 FitResult prepare_and_fit(const FitArguments& arguments, SymmetryAnnotation& annotation, FitInput& input,
                           RunContext& run, std::optional<SymmetryPairs>& pairs) {
-  const StageTime agreeing = make_consistent(input.mesh, annotation, run);
+  const StageTime agreeing = make_consistent(annotation, input, run);
   if (!arguments.landmarks.empty()) input.landmarks = read_landmarks(arguments.landmarks, input.mesh);
   if (!arguments.handles.empty()) input.handles = read_handles(arguments.handles, input.mesh).handles;
   FitResult result = fit_and_pair(input, arguments.options, run, pairs);

@@ -70,12 +70,11 @@ struct Request {
 class Pairer {
  public:
   Pairer(const RegionParts& from, const RegionParts& to, const std::vector<Motion>& motions, const Points& images,
-         const Points& normals, double tolerance, double reach, const RunContext& context)
+         double tolerance, double reach, const RunContext& context)
       : from_(from),
         to_(to),
         motions_(motions),
         images_(images),
-        normals_(normals),
         tolerance_(tolerance),
         reach_(reach),
         context_(context) {}
@@ -84,13 +83,16 @@ class Pairer {
     const std::size_t count = from_.whole().vertices().size();
     pairing_.places.resize(motions_.size() * count);
     done_.assign(pairing_.places.size(), false);
-    if (from_.division() && to_.division()) {
-      find_lone_vertices();
-      pair_division(*from_.division(), *to_.division());
-    }
+    find_lone_vertices();
+    if (from_.division() && to_.division()) pair_division(*from_.division(), *to_.division());
     std::vector<std::size_t> rest;
     for (std::size_t i = 0; i < done_.size(); ++i) {
-      if (!done_[i]) rest.push_back(i);
+      if (done_[i]) continue;
+      if (lone_[i] >= 0) {
+        pairing_.places[i].vertex = to_.whole().vertices()[static_cast<std::size_t>(lone_[i])];
+      } else {
+        rest.push_back(i);
+      }
     }
     const std::vector<SurfacePlace> places = places_on(to_.whole(), rest);
     for (std::size_t i = 0; i < rest.size(); ++i) pairing_.places[rest[i]] = places[i];
@@ -100,6 +102,12 @@ class Pairer {
  private:
   std::size_t pair_of(std::size_t motion, int vertex) const {
     return motion * from_.whole().vertices().size() + static_cast<std::size_t>(vertex);
+  }
+
+  // Of the vertex of `from`, where the motion turns it.
+  Vector3d normal_of(std::size_t pair) const {
+    const std::size_t count = from_.whole().vertices().size();
+    return motions_[pair / count].linear * from_.whole().normals().row(static_cast<Index>(pair % count)).transpose();
   }
 
   void find_lone_vertices() {
@@ -148,7 +156,7 @@ class Pairer {
     Points normals(points.rows(), 3);
     for (Index i = 0; i < points.rows(); ++i) {
       points.row(i) = images_.row(static_cast<Index>(pairs[static_cast<std::size_t>(i)]));
-      normals.row(i) = normals_.row(static_cast<Index>(pairs[static_cast<std::size_t>(i)]));
+      normals.row(i) = normal_of(pairs[static_cast<std::size_t>(i)]).transpose();
     }
     return surface.places(points, normals, context_);
   }
@@ -202,7 +210,7 @@ class Pairer {
         const double distance = (to_.whole().point_at(places[i]) - images_.row(row).transpose()).norm();
         candidate.squares += distance * distance;
         candidate.farthest = std::max(candidate.farthest, distance);
-        candidate.facing += normal_at(places[i], k, request.pairs[i]).dot(normals_.row(row).transpose());
+        candidate.facing += normal_at(places[i], k, request.pairs[i]).dot(normal_of(request.pairs[i]));
         candidate.count += 1;
       }
     }
@@ -290,13 +298,12 @@ class Pairer {
   const RegionParts& to_;
   const std::vector<Motion>& motions_;
   const Points& images_;
-  const Points& normals_;
   const double tolerance_;
   const double reach_;
   const RunContext& context_;
   Pairing pairing_;
   std::vector<bool> done_;
-  std::vector<int> lone_;  // by pair: RegionSurface::lone_vertex_at() of all of `to`, where it has parts
+  std::vector<int> lone_;  // by pair: RegionSurface::lone_vertex_at() of all of `to`
 };
 
 }  // namespace
@@ -313,9 +320,8 @@ const RegionSurface& RegionParts::surface_of(std::size_t part) const {
 }
 
 Pairing pair_parts(const RegionParts& from, const RegionParts& to, const std::vector<Motion>& motions,
-                   const Points& images, const Points& normals, double tolerance, double reach,
-                   const RunContext& context) {
-  return Pairer(from, to, motions, images, normals, tolerance, reach, context).result();
+                   const Points& images, double tolerance, double reach, const RunContext& context) {
+  return Pairer(from, to, motions, images, tolerance, reach, context).result();
 }
 
 }  // namespace orbifit

@@ -67,11 +67,10 @@ struct Pairing {
 /// part, where there is one within `tolerance`; else on all of `to`. So what touches a part, or is nearer to its image
 /// than its counterpart is, does not matter.
 /// \param motions  which make the images, in space
-/// \param images, normals  of vertex v under motion m in row m * #vertices + v
+/// \param images  of vertex v under motion m in row m * #vertices + v
 /// \param tolerance  mesh units, > 0
 /// \param reach  distance at which places are the same, mesh units
 Pairing pair_parts(const RegionParts& from, const RegionParts& to, const std::vector<Motion>& motions,
-                   const Points& images, const Points& normals, double tolerance, double reach,
-                   const RunContext& context);
+                   const Points& images, double tolerance, double reach, const RunContext& context);
 
 }  // namespace orbifit

@@ -62,7 +62,6 @@ RegionPairs pair_up(const Mesh& mesh, const Region& region, double tolerance, do
   pairs.elements = tested_elements(region, surface);
   const Index count = surface.positions().rows();
   Points images(count * static_cast<Index>(pairs.elements.size()), 3);
-  Points normals(images.rows(), 3);
   std::vector<Motion> motions;
   for (std::size_t e = 0; e < pairs.elements.size(); ++e) {
     const Motion& g = pairs.elements[e];
@@ -71,11 +70,10 @@ RegionPairs pair_up(const Mesh& mesh, const Region& region, double tolerance, do
     images.middleRows(row, count) =
         ((surface.positions().rowwise() - region.centre.transpose()) * g.linear.transpose()).rowwise() +
         shift.transpose();
-    normals.middleRows(row, count) = surface.normals() * g.linear.transpose();
     motions.push_back({g.linear, shift - g.linear * region.centre});
   }
   const double apart = std::max(tolerance, region.residual.max) * rest_diagonal;
-  Pairing pairing = pair_parts(parts, parts, motions, images, normals, apart, reach, context);
+  Pairing pairing = pair_parts(parts, parts, motions, images, apart, reach, context);
   pairs.places = std::move(pairing.places);
   pairs.choices = std::move(pairing.choices);
   return pairs;
@@ -271,9 +269,7 @@ PatternResidual pattern_residual(const Mesh& mesh, const Mesh* deformed, const P
     const Points images = (first.positions() * motion.linear.transpose()).rowwise() + motion.translation.transpose();
     const RegionParts parts(mesh, instance.faces, reach);
     const std::vector<SurfacePlace> places =
-        pair_parts(first_parts, parts, {motion}, images, first.normals() * motion.linear.transpose(), apart, reach,
-                   context)
-            .places;
+        pair_parts(first_parts, parts, {motion}, images, apart, reach, context).places;
     Points from(images.rows(), 3);
     Points to(images.rows(), 3);
     for (Index i = 0; i < images.rows(); ++i) {
@@ -355,13 +351,16 @@ SymmetryReport SymmetryPairs::residual(const Mesh* deformed, CarriedMotions moti
   const Shape rest(mesh);
   std::optional<Shape> now;
   if (deformed != nullptr) now.emplace(*deformed);
-  std::vector<RegionPairs> pairs = pairs_->pairs;  // of parts at one place others may be chosen
+  const bool open = std::ranges::any_of(pairs_->pairs, [](const RegionPairs& each) { return !each.choices.empty(); });
+  std::vector<RegionPairs> chosen;  // of parts at one place others may be chosen
+  if (open) chosen = pairs_->pairs;
+  const std::vector<RegionPairs>& pairs = open ? chosen : pairs_->pairs;
   std::vector<CarriedFrame> frames(annotation.regions.size());
   constexpr int kRounds = 4;  // of frames and choices, each of which rests on the other
   for (int round = 0; deformed != nullptr && round < kRounds; ++round) {
     frames = carried_frames(mesh, *deformed, annotation.regions, pairs, motions, context);
     bool changed = false;
-    for (std::size_t r = 0; r < pairs.size(); ++r) changed = choose(*deformed, frames[r], pairs[r]) || changed;
+    for (std::size_t r = 0; r < chosen.size(); ++r) changed = choose(*deformed, frames[r], chosen[r]) || changed;
     if (!changed) break;
   }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "orbifit/model/mesh.h"
@@ -50,16 +52,18 @@ double robust_weight(double distance, double scale);
 
 /// A surface at rest to match against. The mesh is kept by reference.
 class MatchSurface {
+  std::shared_ptr<const SurfaceIndex> shared_;
+  const Mesh* mesh_;
+
  public:
-  explicit MatchSurface(const Mesh& mesh) : index(mesh), mesh_(&mesh) {}
+  /// \param known  of the mesh; null: made
+  explicit MatchSurface(const Mesh& mesh, std::shared_ptr<const SurfaceIndex> known = nullptr)
+      : shared_(known ? std::move(known) : std::make_shared<const SurfaceIndex>(mesh)), mesh_(&mesh), index(*shared_) {}
 
   const Mesh& mesh() const { return *mesh_; }
   Eigen::Vector3d normal(int face) const { return face_normal(*mesh_, face); }
 
-  SurfaceIndex index;
-
- private:
-  const Mesh* mesh_;
+  const SurfaceIndex& index;
 };
 
 /// Scan -> surface, never the other way: what the scan does not see must not pull. Both in the template's frame.

@@ -5,8 +5,8 @@
 namespace orbifit {
 
 SharedTemplate::SharedTemplate(const Mesh& mesh, bool contacts, std::shared_ptr<const Subspace> given,
-                               const RunContext& context)
-    : given_(std::move(given)), surface_(mesh), tree_(std::make_shared<const MovingSurface>(mesh)) {
+                               std::shared_ptr<const SurfaceIndex> index, const RunContext& context)
+    : given_(std::move(given)), surface_(mesh, std::move(index)), tree_(std::make_shared<const MovingSurface>(mesh)) {
   if (contacts) search_ = std::make_unique<const ContactSearch>(mesh, tree_, ContactOptions{}, context);
 }
 

@@ -19,7 +19,9 @@ class SharedTemplate {
  public:
   /// \param mesh  kept by reference \param contacts  whether they will be asked for
   /// \param given  the subspace that the fit was given; null: it builds its own
-  SharedTemplate(const Mesh& mesh, bool contacts, std::shared_ptr<const Subspace> given, const RunContext& context);
+  /// \param index  of the mesh; null: made
+  SharedTemplate(const Mesh& mesh, bool contacts, std::shared_ptr<const Subspace> given,
+                 std::shared_ptr<const SurfaceIndex> index, const RunContext& context);
   SharedTemplate(const SharedTemplate&) = delete;
   SharedTemplate& operator=(const SharedTemplate&) = delete;
   SharedTemplate(SharedTemplate&&) = delete;

@@ -155,7 +155,8 @@ FitStarts starts_of(const FitInput& input, const FitOptions& options, bool doubt
                     StageClock& clock) {
   ScanPreparationOptions preparation;
   preparation.most_points = options.scan_points;
-  const auto shared = std::make_shared<const SharedTemplate>(input.mesh, options.contacts, input.subspace, context);
+  const auto shared = std::make_shared<const SharedTemplate>(input.mesh, options.contacts, input.subspace,
+                                                             input.surface_index, context);
   const MatchSurface& surface = shared->surface();
   LandmarkConsensus said = said_by_landmarks(input, options);
   if (doubt_landmarks) said.pose = input.pose;

@@ -31,7 +31,10 @@ bool is_given(const LeftOut& left_out, const SymmetryAnnotation& annotation) {
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context) {
   if (annotation.regions.empty() && annotation.patterns.empty()) return {annotation, {}, 0, 0};
-  return consistent_annotation(ConsistencySearch::surface_of(mesh, annotation.tolerance, context), annotation, context);
+  const ShapeSurface surface = ConsistencySearch::surface_of(mesh, annotation.tolerance, context);
+  ConsistentAnnotation result = consistent_annotation(surface, annotation, context);
+  result.surface_index = surface.index;
+  return result;
 }
 
 ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const SymmetryAnnotation& annotation,
@@ -70,12 +73,16 @@ ConsistentAnnotation consistent_annotation(const ShapeSurface& surface, const Sy
   return result;
 }
 
-SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
-  ConsistentAnnotation result = consistent_annotation(mesh, annotation, context);
+void tell_changes(const ConsistentAnnotation& result, const RunContext& context) {
   for (const LeftOut& left_out : result.left_out) context.message("left out " + to_string(left_out));
   if (result.added > 0) {
     context.message("added " + std::to_string(result.added) + " images of regions that the annotation lacked");
   }
+}
+
+SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context) {
+  ConsistentAnnotation result = consistent_annotation(mesh, annotation, context);
+  tell_changes(result, context);
   return std::move(result.annotation);
 }
 

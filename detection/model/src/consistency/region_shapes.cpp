@@ -98,12 +98,20 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       near(reach),
       diagonal(orbifit::diagonal(of.vertices)),
       origin(bounding_box_centre(of.vertices)),
-      point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
       centroids(face_centroids(of)),
-      index(of),
       vertex_images(of.vertices, kDoublet * diagonal),
-      domains(of) {}
+      domains(of) {
+  parallel_for(running, 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t task = begin; task < end; ++task) {
+      if (task == 0) {
+        index = std::make_shared<const SurfaceIndex>(of);
+      } else {
+        point_of_vertex = numbered_points(of);
+      }
+    }
+  });
+}
 
 const std::vector<std::array<bool, 3>>& ShapeSurface::open_edges() const {
   if (open_edges_) return *open_edges_;
@@ -185,7 +193,7 @@ const SurfaceIndex& RegionShapes::index(int shape) const {
   if (!known.index) {
     const bool few = kFew * known.faces.size() < known.holds.size() && !known.faces.empty();
     known.index = few ? std::make_unique<SurfaceIndex>(surface_.mesh, known.faces)
-                      : std::make_unique<SurfaceIndex>(surface_.index.part(known.faces));
+                      : std::make_unique<SurfaceIndex>(surface_.index->part(known.faces));
   }
   return *known.index;
 }
@@ -464,8 +472,8 @@ bool RegionShapes::past_the_end(int shape, const Motion& motion) const {
   Eigen::Index past = 0;
   for (Eigen::Index k = 0; k < samples.rows(); ++k) {
     const Vector3d image = motion(samples.row(k).transpose());
-    if (surface_.index.within(image, surface_.near)) continue;
-    const SurfaceIndex::Nearest nearest = surface_.index.nearest(image);
+    if (surface_.index->within(image, surface_.near)) continue;
+    const SurfaceIndex::Nearest nearest = surface_.index->nearest(image);
     if (nearest.face < 0) continue;
     const std::array<bool, 3>& edges = open[static_cast<std::size_t>(nearest.face)];
     for (std::size_t corner = 0; corner < 3; ++corner) {  // a point on an edge has no share of the corner opposite

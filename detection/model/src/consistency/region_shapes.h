@@ -44,8 +44,8 @@ struct ShapeSurface {
   Eigen::Vector3d origin;            ///< of moments
   std::vector<int> point_of_vertex;  ///< of soups, one for the vertices at one position whose faces share an edge
   Eigen::VectorXd areas;
-  Points centroids;  ///< of faces
-  SurfaceIndex index;
+  Points centroids;                           ///< of faces
+  std::shared_ptr<const SurfaceIndex> index;  ///< for who goes on with the mesh as well
   mutable VertexImages vertex_images;
   mutable KnownDomains domains;
   mutable Answers<double> arrived, distances;

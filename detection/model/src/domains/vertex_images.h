@@ -53,6 +53,7 @@ class VertexImages {
         : of_(of), motion_(motion), known_(remembers ? static_cast<std::size_t>(of.vertices_.rows()) : 0, kUnknown) {}
     Eigen::Vector3d place_of(int vertex) const;
     int look(const Eigen::Vector3d& place) const;
+    void ask_in_turn(const int* vertices, std::size_t count);
 
     const VertexImages& of_;
     Motion motion_;
@@ -63,8 +64,13 @@ class VertexImages {
   Images& of(const Motion& motion);
 
  private:
+  void find_lone();
+  // Whether a vertex, if there is one of that number, lies at a place, and surely no other.
+  bool alone_at(int vertex, const Eigen::Vector3d& place) const;
+
   const Points& vertices_;
   VertexGrid grid_;
+  std::vector<char> lone_;  // whether no other vertex lies near each, once motions are asked for
   std::size_t most_remembered_;
   std::map<std::array<double, 12>, Images> by_motion_;
 };

@@ -40,19 +40,27 @@ class VertexGrid {
     }
   }
 
+  double tolerance() const { return tolerance_; }
+
   /// Calls visit(vertex) for each vertex within the tolerance of `place`.
   template <class Visit>
   void visit(const Eigen::Vector3d& place, const Visit& visit) const {
+    visit_within(place, tolerance_, visit);
+  }
+
+  /// Likewise within another distance, at most four tolerances.
+  template <class Visit>
+  void visit_within(const Eigen::Vector3d& place, double distance, const Visit& visit) const {
     const Eigen::Vector3d scaled = (place - origin_) / width_;
     if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) return;  // farther than any vertex
-    const double margin = tolerance_ / width_;
+    const double margin = distance / width_;
     Cell low, high;
     for (std::size_t k = 0; k < 3; ++k) {
       low[k] = whole(scaled[static_cast<Eigen::Index>(k)] - margin);
       high[k] = whole(scaled[static_cast<Eigen::Index>(k)] + margin);
     }
     if (low == high) {  // as most are: cells are wide
-      visit_slot(slot(first_.size() - 1, low), place, visit);
+      visit_slot(slot(first_.size() - 1, low), place, distance, visit);
       return;
     }
     std::size_t seen[8];
@@ -65,18 +73,9 @@ class VertexGrid {
           for (int i = 0; i < count; ++i) again = again || seen[i] == at;
           if (again) continue;
           seen[count++] = at;
-          visit_slot(at, place, visit);
+          visit_slot(at, place, distance, visit);
         }
       }
-    }
-  }
-
-  /// Of many places that will be visited: has the memory fetched in which each will be looked for, so that the visits
-  /// need not wait for it one after another.
-  void fetch(const std::vector<Eigen::Vector3d>& places) const {
-    for (const Eigen::Vector3d& place : places) __builtin_prefetch(&first_[slot_at(place)]);
-    for (const Eigen::Vector3d& place : places) {
-      __builtin_prefetch(entries_.data() + first_[slot_at(place)]);
     }
   }
 
@@ -97,17 +96,11 @@ class VertexGrid {
   }
 
   template <class Visit>
-  void visit_slot(std::size_t at, const Eigen::Vector3d& place, const Visit& visit) const {
+  void visit_slot(std::size_t at, const Eigen::Vector3d& place, double distance, const Visit& visit) const {
     const Entry* const end = entries_.data() + first_[at + 1];
     for (const Entry* entry = entries_.data() + first_[at]; entry != end; ++entry) {
-      if ((entry->place - place).squaredNorm() <= tolerance_ * tolerance_) visit(entry->vertex);
+      if ((entry->place - place).squaredNorm() <= distance * distance) visit(entry->vertex);
     }
-  }
-
-  std::size_t slot_at(const Eigen::Vector3d& place) const {
-    const Eigen::Vector3d scaled = (place - origin_) / width_;
-    if (!(scaled.cwiseAbs().maxCoeff() <= 2 * kMaxCells)) return 0;
-    return slot(first_.size() - 1, {whole(scaled[0]), whole(scaled[1]), whole(scaled[2])});
   }
 
   static std::size_t slot(std::size_t slots, const Cell& cell) { return CellHash{}(cell) & (slots - 1); }

@@ -18,6 +18,8 @@
 
 namespace orbifit {
 
+class SurfaceIndex;
+
 struct FitOptions {
   SubspaceOptions subspace;
   int levels = 12;                ///< of stiffness, from stiff to soft, >= 1
@@ -198,10 +200,12 @@ struct FitInput {
   /// More scans of the same object, each in a frame of its own, all at one scale: they have one shape together and a
   /// pose each. Kept by pointer.
   std::vector<const PointCloud*> others = {};
+  /// Of the mesh, where it is known (ConsistentAnnotation has it); null: made by fit().
+  std::shared_ptr<const SurfaceIndex> surface_index = nullptr;
 
   /// The same to be fitted with another annotation, which is kept by reference.
   FitInput with(const SymmetryAnnotation& other) const {
-    return {mesh, other, scan, pose, landmarks, handles, nullptr, nullptr, others};
+    return {mesh, other, scan, pose, landmarks, handles, nullptr, nullptr, others, surface_index};
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "orbifit/model/run_context.h"
 
 namespace orbifit {
+
+class SurfaceIndex;
 
 /// A region or pattern that cannot be kept beside larger ones.
 struct LeftOut {
@@ -26,6 +29,8 @@ struct ConsistentAnnotation {
   std::vector<LeftOut> left_out;  ///< larger ones first
   int added = 0;                  ///< images of regions that the annotation lacked
   double largest_movement = 0;    ///< of a group on its own region, fraction of the diagonal
+  /// Of the mesh, for who would make it again, as fit() would; null where it was not needed.
+  std::shared_ptr<const SurfaceIndex> surface_index = nullptr;
 };
 
 /// Makes the groups of an annotation agree with one another exactly, so that every subspace can keep all of them.
@@ -65,7 +70,10 @@ struct ConsistentAnnotation {
 ConsistentAnnotation consistent_annotation(const Mesh& mesh, const SymmetryAnnotation& annotation,
                                            const RunContext& context);
 
-/// The consistent annotation alone; what is left out and added is told as messages.
+/// What is left out and added, as messages.
+void tell_changes(const ConsistentAnnotation& result, const RunContext& context);
+
+/// The consistent annotation alone; tells its changes.
 SymmetryAnnotation made_consistent(const Mesh& mesh, const SymmetryAnnotation& annotation, const RunContext& context);
 
 }  // namespace orbifit
