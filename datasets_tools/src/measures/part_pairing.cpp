@@ -113,8 +113,9 @@ class Pairer {
   void find_lone_vertices() {
     lone_.resize(static_cast<std::size_t>(images_.rows()));
     parallel_for(context_, lone_.size(), [&](std::size_t begin, std::size_t end) {
+      VertexFinder::Walk walk(to_.whole().vertex_finder());
       for (std::size_t i = begin; i < end; ++i) {
-        lone_[i] = to_.whole().lone_vertex_at(images_.row(static_cast<Index>(i)).transpose());
+        lone_[i] = walk.at(static_cast<int>(i), images_.row(static_cast<Index>(i)).transpose());
       }
     });
   }
@@ -303,7 +304,7 @@ class Pairer {
   const RunContext& context_;
   Pairing pairing_;
   std::vector<bool> done_;
-  std::vector<int> lone_;  // by pair: RegionSurface::lone_vertex_at() of all of `to`
+  std::vector<int> lone_;  // by pair: what VertexFinder::at() of all of `to` says of the image
 };
 
 }  // namespace

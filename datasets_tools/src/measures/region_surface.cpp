@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "geometry/surface_index.h"
 
@@ -13,21 +12,11 @@ namespace {
 // A point whose nearest face looks this much the other way is taken to be on the wrong side of a thin part.
 constexpr double kOtherSide = -0.2;
 constexpr double kSameSide = 0.2;
-// Width of the cells in which vertices are looked for, in reaches: most points have all that is in reach in one of
-// them.
-constexpr double kCell = 32;
 // Vertices that are nearer to one another than this share of the reach are at one place, and their normals tell them
 // apart; else the nearer one is meant.
 constexpr double kOnePlace = 1e-3;
 // How much further away, as a multiple of the reach, the side that faces the right way may be.
 constexpr double kThinness = 1e4;
-
-std::uint64_t mixed(std::int64_t key) {
-  std::uint64_t value = static_cast<std::uint64_t>(key) * 0x9E3779B97F4A7C15ULL;
-  value ^= value >> 29;
-  value *= 0xBF58476D1CE4E5B9ULL;
-  return value ^ (value >> 32);
-}
 
 }  // namespace
 
@@ -38,75 +27,26 @@ Eigen::Vector3d SurfacePlace::operator()(const Mesh& mesh) const {
 }
 
 RegionSurface::RegionSurface(const Mesh& mesh, const std::vector<int>& faces, double reach)
-    : mesh_(mesh), faces_(faces), reach_(reach), cell_size_(kCell * reach) {
-  patch_ = submesh(mesh, faces, &vertices_);
-  normals_ = vertex_normals(patch_);
-  origin_ = bounding_box_centre(patch_.vertices);
-  const std::size_t count = vertices_.size();
-  std::size_t slots = 16;
-  while (slots < 2 * count) slots *= 2;
-  std::vector<std::int64_t> keys(count);
-  first_of_slot_.assign(slots + 1, 0);
-  const auto slot_of = [&](std::int64_t key) { return mixed(key) & (slots - 1); };
-  for (std::size_t v = 0; v < count; ++v) {
-    const Eigen::Vector3d point = patch_.vertices.row(static_cast<Eigen::Index>(v));
-    keys[v] = key_of(((point - origin_) / cell_size_).array().floor().matrix());
-    ++first_of_slot_[slot_of(keys[v]) + 1];
-  }
-  for (std::size_t s = 0; s < slots; ++s) first_of_slot_[s + 1] += first_of_slot_[s];
-  std::vector<int> next(first_of_slot_.begin(), first_of_slot_.end() - 1);
-  cells_.resize(count);
-  for (std::size_t v = 0; v < count; ++v) {
-    cells_[static_cast<std::size_t>(next[slot_of(keys[v])]++)] = {keys[v], static_cast<int>(v)};
-  }
-}
-
-std::int64_t RegionSurface::key_of(const Eigen::Vector3d& cell) const {
-  // 21 bits a coordinate: cells of 3.2e-5 diagonals about the middle need 15.
-  const auto bits = [](double value) { return static_cast<std::int64_t>(value) & 0x1FFFFF; };
-  return bits(cell.x()) | (bits(cell.y()) << 21) | (bits(cell.z()) << 42);
-}
-
-// Calls visit(vertex, distance) for each vertex within reach.
-template <class Visit>
-void RegionSurface::visit_near(const Eigen::Vector3d& point, const Visit& visit) const {
-  const Eigen::Vector3d low = ((point - origin_).array() - reach_) / cell_size_;
-  const Eigen::Vector3d high = ((point - origin_).array() + reach_) / cell_size_;
-  const Eigen::Vector3d first = low.array().floor();
-  const Eigen::Vector3d last = high.array().floor();
-  const std::size_t slots = first_of_slot_.size() - 1;
-  for (double x = first.x(); x <= last.x(); ++x) {
-    for (double y = first.y(); y <= last.y(); ++y) {
-      for (double z = first.z(); z <= last.z(); ++z) {
-        const std::int64_t key = key_of({x, y, z});
-        const std::size_t slot = mixed(key) & (slots - 1);
-        for (int i = first_of_slot_[slot]; i < first_of_slot_[slot + 1]; ++i) {
-          const Cell& cell = cells_[static_cast<std::size_t>(i)];
-          if (cell.key != key) continue;
-          const double distance = (patch_.vertices.row(cell.vertex).transpose() - point).norm();
-          if (!(distance > reach_)) visit(cell.vertex, distance);
-        }
-      }
-    }
-  }
-}
-
-int RegionSurface::lone_vertex_at(const Eigen::Vector3d& point) const {
-  int result = kNone;
-  visit_near(point, [&](int vertex, double) { result = result == kNone ? vertex : kSeveral; });
-  return result;
+    : mesh_(mesh),
+      faces_(faces),
+      reach_(reach),
+      patch_(submesh(mesh, faces, &vertices_)),
+      normals_(vertex_normals(patch_)),
+      finder_(patch_.vertices, reach) {
+  finder_.prepare_walks();
 }
 
 int RegionSurface::vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
-  const int lone = lone_vertex_at(point);
-  if (lone != kSeveral) return lone;
+  const int lone = finder_.at(point);
+  if (lone != VertexFinder::kSeveral) return lone;
   struct Candidate {
     int vertex;
     double distance;
   };
   std::vector<Candidate> near;
   double least = reach_;
-  visit_near(point, [&](int vertex, double distance) {
+  finder_.grid().visit(point, [&](int vertex) {
+    const double distance = (patch_.vertices.row(vertex).transpose() - point).norm();
     near.push_back({vertex, distance});
     least = std::min(least, distance);
   });

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "orbifit/model/mesh.h"
 #include "orbifit/model/run_context.h"
+
+#include "geometry/vertex_finder.h"
 
 namespace orbifit {
 
@@ -24,6 +25,8 @@ class RegionSurface {
  public:
   /// \param reach distance within which a point is said to be at a vertex, mesh units, > 0
   RegionSurface(const Mesh& mesh, const std::vector<int>& faces, double reach);
+  RegionSurface(const RegionSurface&) = delete;
+  RegionSurface& operator=(const RegionSurface&) = delete;
 
   const std::vector<int>& vertices() const { return vertices_; }  ///< of the mesh, ascending
   const Points& positions() const { return patch_.vertices; }     ///< of vertices(), #R by 3
@@ -34,35 +37,23 @@ class RegionSurface {
   /// of the faces, on the side that faces as `normals` do where a thin part has both sides near.
   std::vector<SurfacePlace> places(const Points& points, const Points& normals, const RunContext& context) const;
 
-  /// The vertex within reach of a point, by number within vertices(), where there is but one: no normal is needed to
-  /// tell which is meant then. kNone or kSeveral else.
-  int lone_vertex_at(const Eigen::Vector3d& point) const;
-  static constexpr int kNone = -1;
-  static constexpr int kSeveral = -2;
+  /// Of vertices(), by number there, to which a point is within reach. Where it is but one, no normal is needed to tell
+  /// which is meant.
+  const VertexFinder& vertex_finder() const { return finder_; }
 
   Eigen::Vector3d point_at(const SurfacePlace& place) const { return place(mesh_); }
   Eigen::Vector3d normal_at(const SurfacePlace& place) const;  ///< of one of places(): unit, or zero
 
  private:
-  struct Cell {
-    std::int64_t key;
-    int vertex;  // number within the region
-  };
-  std::int64_t key_of(const Eigen::Vector3d& cell) const;
-  template <class Visit>
-  void visit_near(const Eigen::Vector3d& point, const Visit& visit) const;
   int vertex_at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 
   const Mesh& mesh_;
   std::vector<int> faces_;
   double reach_;
-  double cell_size_;
-  Eigen::Vector3d origin_;
   std::vector<int> vertices_;
   Mesh patch_;
   Points normals_;
-  std::vector<Cell> cells_;         // ordered by slot
-  std::vector<int> first_of_slot_;  // #slots + 1
+  VertexFinder finder_;  // of patch_
 };
 
 }  // namespace orbifit

@@ -112,10 +112,13 @@ Eigen::VectorXd distances(const Mesh& mesh, const RegionPairs& pairs, const Carr
   Eigen::VectorXd result(static_cast<Index>(pairs.places.size()));
   const std::size_t count = pairs.vertices.size();
   parallel_for(context, pairs.places.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d p = carried(mesh.vertices.row(pairs.vertices[i % count]));
-      const Vector3d q = carried(pairs.places[i](mesh));
-      result[static_cast<Index>(i)] = (pairs.elements[i / count](p) - q).norm();
+    for (std::size_t i = begin; i < end;) {
+      const Motion& element = pairs.elements[i / count];
+      for (std::size_t v = i % count; v < count && i < end; ++v, ++i) {
+        const Vector3d p = carried(mesh.vertices.row(pairs.vertices[v]));
+        const Vector3d q = carried(pairs.places[i](mesh));
+        result[static_cast<Index>(i)] = (element(p) - q).norm();
+      }
     }
   });
   return result;

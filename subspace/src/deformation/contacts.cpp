@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -373,33 +374,35 @@ std::vector<double> part_lengths(const Mesh& mesh, const Components& parts) {
   return result;
 }
 
-// The sample of a part nearest to a point; of all samples, where the part has none.
+// The sample of a part nearest to a point, of several the first; of all samples, where the part has none.
 class NearestSample {
  public:
   NearestSample(const Points& samples, const MovingSurface& surface, const std::vector<int>& part_of_face)
-      : samples_(samples) {
-    for (Index k = 0; k < samples.rows(); ++k) {
+      : samples_(samples), all_(static_cast<std::size_t>(samples.rows())) {
+    std::iota(all_.begin(), all_.end(), 0);
+    for (const int k : all_) {
       const int face = surface.nearest(samples.row(k).transpose()).face;
-      part_of_sample_.push_back(face < 0 ? -1 : part_of_face[static_cast<std::size_t>(face)]);
+      if (face >= 0) of_part_[part_of_face[static_cast<std::size_t>(face)]].push_back(k);
     }
   }
 
   int operator()(const Vector3d& point, int part) const {
+    const auto own = of_part_.find(part);
     int best = 0;
-    std::pair<bool, double> least{true, std::numeric_limits<double>::infinity()};
-    for (Index k = 0; k < samples_.rows(); ++k) {
-      const std::pair<bool, double> here{part_of_sample_[static_cast<std::size_t>(k)] != part,
-                                         (samples_.row(k).transpose() - point).squaredNorm()};
-      if (!(here < least)) continue;
-      least = here;
-      best = static_cast<int>(k);
+    double least = std::numeric_limits<double>::infinity();
+    for (const int k : own != of_part_.end() ? own->second : all_) {
+      const double squared = (samples_.row(k).transpose() - point).squaredNorm();
+      if (!(squared < least)) continue;
+      least = squared;
+      best = k;
     }
     return best;
   }
 
  private:
   const Points& samples_;
-  std::vector<int> part_of_sample_;
+  Numbers all_;
+  std::unordered_map<int, Numbers> of_part_;
 };
 
 Contact contact_of(const Candidate& candidate, const std::vector<TouchingPoints>& touching, const Mesh& mesh,

@@ -47,8 +47,10 @@ class DiscGrid {
   DiscGrid(double radius, const RegionMap& regions) : width_(radius), regions_(regions) {}
 
   bool covered(const Vector3d& point, int set, double radius) const {
+    constexpr int kMiddle = 13;  // of the cells around
     const Cell cell = cell_of(point);
-    for (int k = 0; k < 27; ++k) {
+    for (int neighbour = 0; neighbour < 27; ++neighbour) {
+      const int k = (neighbour + kMiddle) % 27;  // what covers it lies in its own cell mostly
       const auto found = cells_.find(key({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1}));
       if (found == cells_.end()) continue;
       for (const Disc& disc : found->second) {

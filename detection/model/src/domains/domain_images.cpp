@@ -205,6 +205,7 @@ std::vector<int> DomainMap::images_of(int other, int place, int element) const {
 
 int DomainMap::carried_set(int set, int place, int element) const {
   Images& known = images(place, element);
+  if (known.last.first == set) return known.last.second;
   const auto [entry, added] = known.sets.try_emplace(set, -1);
   if (added) {
     std::vector<int> members = around_[static_cast<std::size_t>(arrival(place, element))];
@@ -218,6 +219,7 @@ int DomainMap::carried_set(int set, int place, int element) const {
     members.erase(std::unique(members.begin(), members.end()), members.end());
     entry->second = intern(members);
   }
+  known.last = *entry;
   return entry->second;
 }
 

@@ -152,6 +152,7 @@ class DomainMap {
   struct Images {
     std::vector<std::pair<int, int>> pairs;  // a place and where it goes, ascending
     std::unordered_map<int, int> sets;       // carried sets known so far
+    std::pair<int, int> last{-1, -1};        // the last one of those: neighbours ask for the same
   };
   bool group_goes_to(int from, const Motion& motion, int to) const;
   bool group_within(int inner, int outer) const;

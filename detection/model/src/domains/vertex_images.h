@@ -9,7 +9,7 @@
 #include "orbifit/model/motion.h"
 #include "orbifit/model/run_context.h"
 
-#include "geometry/vertex_grid.h"
+#include "geometry/vertex_finder.h"
 
 namespace orbifit {
 
@@ -18,28 +18,28 @@ namespace orbifit {
 /// threads.
 class VertexImages {
  public:
-  static constexpr int kNone = -1;                                       ///< no vertex lies there
-  static constexpr int kSeveral = -2;                                    ///< ask grid() which
+  static constexpr int kNone = VertexFinder::kNone;
+  static constexpr int kSeveral = VertexFinder::kSeveral;
   static constexpr std::size_t kMostRemembered = std::size_t{1} << 25U;  ///< 128 MiB
 
   /// \param vertices  kept by reference
   /// \param tolerance  how near is there, mesh units
   /// \param most_remembered  images; those of more motions are looked up each time
   VertexImages(const Points& vertices, double tolerance, std::size_t most_remembered = kMostRemembered)
-      : vertices_(vertices), grid_(vertices, tolerance), most_remembered_(most_remembered) {}
+      : vertices_(vertices), finder_(vertices, tolerance), most_remembered_(most_remembered) {}
   VertexImages(const VertexImages&) = delete;
   VertexImages& operator=(const VertexImages&) = delete;
 
-  const VertexGrid& grid() const { return grid_; }
+  const VertexGrid& grid() const { return finder_.grid(); }
 
   /// Where one motion takes vertices.
   class Images {
    public:
     /// The vertex where it takes a vertex, or kNone, or kSeveral. O(1), on average.
     int operator()(int vertex) {
-      if (known_.empty()) return look(place_of(vertex));
+      if (known_.empty()) return of_.finder_.at(place_of(vertex));
       int& known = known_[static_cast<std::size_t>(vertex)];
-      if (known == kUnknown) known = look(place_of(vertex));
+      if (known == kUnknown) known = of_.finder_.at(place_of(vertex));
       return known;
     }
 
@@ -52,8 +52,6 @@ class VertexImages {
     Images(const VertexImages& of, const Motion& motion, bool remembers)
         : of_(of), motion_(motion), known_(remembers ? static_cast<std::size_t>(of.vertices_.rows()) : 0, kUnknown) {}
     Eigen::Vector3d place_of(int vertex) const;
-    int look(const Eigen::Vector3d& place) const;
-    void ask_in_turn(const int* vertices, std::size_t count);
 
     const VertexImages& of_;
     Motion motion_;
@@ -64,13 +62,8 @@ class VertexImages {
   Images& of(const Motion& motion);
 
  private:
-  void find_lone();
-  // Whether a vertex, if there is one of that number, lies at a place, and surely no other.
-  bool alone_at(int vertex, const Eigen::Vector3d& place) const;
-
   const Points& vertices_;
-  VertexGrid grid_;
-  std::vector<char> lone_;  // whether no other vertex lies near each, once motions are asked for
+  VertexFinder finder_;
   std::size_t most_remembered_;
   std::map<std::array<double, 12>, Images> by_motion_;
 };
