@@ -11,6 +11,8 @@
 namespace orbifit {
 namespace {
 
+using Eigen::Vector3d;
+
 constexpr int kColumns = 20;  // of squares of side 1
 constexpr int kRows = 5;
 
