@@ -114,7 +114,7 @@ void DomainMap::find_sets(const Mesh& mesh) {
   int number = intern(set);
   for (std::size_t face = 0; face < faces; ++face) {
     const std::span here(members.data() + first[face], first[face + 1] - first[face]);
-    if (!std::ranges::equal(here, set)) {  // neighbours mostly have the same
+    if (!std::equal(here.begin(), here.end(), set.begin(), set.end())) {  // neighbours mostly have the same
       set.assign(here.begin(), here.end());
       number = intern(set);
     }
