@@ -4,6 +4,8 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <new>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -54,10 +56,14 @@ void run_on(std::size_t threads, int allowed, const Work& work) {
   const auto loop = [&] { tbb::parallel_for(std::size_t{0}, threads, work, tbb::simple_partitioner{}); };
   // More than there are cores would not be faster, and TBB warns of them.
   const int usable = std::min(allowed, tbb::info::default_concurrency());
-  if (tbb::this_task_arena::max_concurrency() == usable) {
-    loop();
-  } else {
-    arena_of(usable).execute(loop);
+  try {
+    if (tbb::this_task_arena::max_concurrency() == usable) {
+      loop();
+    } else {
+      arena_of(usable).execute(loop);
+    }
+  } catch (const std::runtime_error&) {  // not from the work, which keeps what it throws: a thread cannot begin
+    throw std::bad_alloc();
   }
 }
 
