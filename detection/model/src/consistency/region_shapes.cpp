@@ -98,20 +98,12 @@ ShapeSurface::ShapeSurface(const Mesh& of, double reach, const RunContext& runni
       near(reach),
       diagonal(orbifit::diagonal(of.vertices)),
       origin(bounding_box_centre(of.vertices)),
+      point_of_vertex(numbered_points(of)),
       areas(face_areas(of)),
       centroids(face_centroids(of)),
+      index(std::make_shared<const SurfaceIndex>(of)),
       vertex_images(of.vertices, kDoublet * diagonal),
-      domains(of) {
-  parallel_for(running, 2, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t task = begin; task < end; ++task) {
-      if (task == 0) {
-        index = std::make_shared<const SurfaceIndex>(of);
-      } else {
-        point_of_vertex = numbered_points(of);
-      }
-    }
-  });
-}
+      domains(of) {}
 
 const std::vector<std::array<bool, 3>>& ShapeSurface::open_edges() const {
   if (open_edges_) return *open_edges_;

@@ -65,8 +65,7 @@ std::vector<int> linked(const Mesh& mesh, const std::vector<int>& weld) {
 }  // namespace
 
 std::vector<int> welded_vertices(const Points& vertices) {
-  constexpr double kWeld = 1e-9;  // of the diagonal
-  const double tolerance = kWeld * diagonal(vertices);
+  const double tolerance = kSamePosition * diagonal(vertices);
   std::vector<int> result(static_cast<std::size_t>(vertices.rows()));
   std::iota(result.begin(), result.end(), 0);
   if (!(tolerance > 0)) return result;

@@ -17,6 +17,8 @@ struct PointSets {
   std::vector<int> sets;   ///< #V: number of the set of places of each root
 };
 
+inline constexpr double kSamePosition = 1e-9;  ///< of the diagonal: what writing a mesh to a file rounds away
+
 /// Of each vertex, the smallest index of a vertex at the same position.
 std::vector<int> welded_vertices(const Points& vertices);
 

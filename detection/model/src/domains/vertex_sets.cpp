@@ -8,8 +8,6 @@ namespace orbifit {
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // of the diagonal
-
 // Sets are carried along by every motion of every place, vertex by vertex, until nothing changes.
 class SetClosure {
  public:
@@ -18,7 +16,7 @@ class SetClosure {
         domains_(domains),
         images_(images),
         of_place_(static_cast<std::size_t>(domains.places())),
-        rounding_(kRounding * diagonal(mesh.vertices)),
+        rounding_(kSamePosition * diagonal(mesh.vertices)),
         points_(domains.points()),
         queued_(points_.roots.size(), 0) {}
 
